@@ -1,0 +1,44 @@
+"""regrasp: contact forces while a grasp changes, planned, proven and explained."""
+
+from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverFailed, SolverUnavailable
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.margins import Margins
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.batch import best_squeezes, locus_intervals
+from regrasp.planning.change import plan_addition, plan_removal
+from regrasp.planning.choice import choose_state
+from regrasp.planning.criteria import ChosenState
+from regrasp.planning.locus import EquilibriumLocus
+from regrasp.planning.timing import TimeScaling
+from regrasp.planning.transition import Transition
+from regrasp.verification import Verification, verify
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "ChosenState",
+    "Contact",
+    "EquilibriumLocus",
+    "EscapeTwist",
+    "Grasp",
+    "GraspState",
+    "Infeasible",
+    "InvalidInput",
+    "Margins",
+    "RegraspError",
+    "SolverFailed",
+    "SolverUnavailable",
+    "TimeScaling",
+    "Transition",
+    "Verification",
+    "Wrench",
+    "best_squeezes",
+    "choose_state",
+    "locus_intervals",
+    "plan_addition",
+    "plan_removal",
+    "verify",
+]

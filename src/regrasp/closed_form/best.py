@@ -1,0 +1,193 @@
+"""The best squeeze on an equilibrium locus, for each objective.
+
+Along the locus the normal and tangential force of contact i are linear in the squeeze x,
+
+    N_i = p_i x + q_i,     T_i = g_i x + h_i     (p_i^2 + g_i^2 = 1),
+
+and every objective is the worse of two functions of x, one per contact, each with a single best point.
+So the best x is the best point of one contact where the other is no worse, or else the one place between
+the two best points where both are equal: a root of a linear or quadratic equation.
+
+``lo, hi`` bound x. For ``angle`` and ``force`` both must be finite (limit the forces first); the others
+are bounded by themselves.
+"""
+
+from math import atan, atan2, sqrt
+
+
+def contact_lines(
+    ux: float, uy: float, phi: float, a: float, b: float, nx1: float, ny1: float, nx2: float, ny2: float
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """(p1, q1, g1, h1, p2, q2, g2, h2) from the frame of two contacts; normals of any length."""
+    scale1, scale2 = 1.0 / sqrt(nx1 * nx1 + ny1 * ny1), 1.0 / sqrt(nx2 * nx2 + ny2 * ny2)
+    c1, s1 = (nx1 * ux + ny1 * uy) * scale1, (ny1 * ux - nx1 * uy) * scale1
+    c2, s2 = (nx2 * ux + ny2 * uy) * scale2, (ny2 * ux - nx2 * uy) * scale2
+    return c1, a * s1, -s1, a * c1, -c2, b * s2 - phi * c2, s2, b * c2 + phi * s2
+
+
+def clamp(x: float, lo: float, hi: float) -> float:
+    """The point of [lo, hi] nearest to x."""
+    return lo if x < lo else (hi if x > hi else x)
+
+
+def angle_margin(n: float, t: float, mu: float) -> float:
+    """atan(mu) less the angle between the force (n, t) and the normal [rad]."""
+    return atan(mu) - atan2(abs(t), n)
+
+
+def force_margin(n: float, t: float, mu: float) -> float:
+    """Distance of a force (n, t) inside the cone to its boundary [N]."""
+    return (mu * n - abs(t)) / sqrt(1.0 + mu * mu)
+
+
+def best_angle(
+    lo: float,
+    hi: float,
+    p1: float,
+    q1: float,
+    g1: float,
+    h1: float,
+    mu1: float,
+    p2: float,
+    q2: float,
+    g2: float,
+    h2: float,
+    mu2: float,
+) -> float:
+    """The x of the widest least angle margin; a plateau is decided by the force margin.
+
+    The force direction atan2(T, N) turns one way only as x grows, with the sign of the constant
+    g q - p h; where that is zero it does not turn at all.
+    """
+    turn1, turn2 = g1 * q1 - p1 * h1, g2 * q2 - p2 * h2
+    if turn1 == 0.0 and turn2 == 0.0:
+        return best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+    if turn1 == 0.0:
+        return _upright(lo, hi, g2, h2, turn2)
+    best1 = _upright(lo, hi, g1, h1, turn1)
+    if turn2 == 0.0:
+        return best1
+    best2 = _upright(lo, hi, g2, h2, turn2)
+    if best1 > best2:  # let contact 1 be the one whose best point lies left
+        best1, best2, turn1, turn2, mu1, mu2 = best2, best1, turn2, turn1, mu2, mu1
+        p1, q1, g1, h1, p2, q2, g2, h2 = p2, q2, g2, h2, p1, q1, g1, h1
+    if angle_margin(p1 * best1 + q1, g1 * best1 + h1, mu1) <= angle_margin(
+        p2 * best1 + q2, g2 * best1 + h2, mu2
+    ):
+        return best1
+    if angle_margin(p2 * best2 + q2, g2 * best2 + h2, mu2) <= angle_margin(
+        p1 * best2 + q1, g1 * best2 + h1, mu1
+    ):
+        return best2
+    # Between them |delta_1| - |delta_2| = alpha_1 - alpha_2: the vector (N_1, |T_1|) is parallel to
+    # (N_2, |T_2|) turned by alpha_1 - alpha_2, whose cosine and sine are as k to d.
+    sign1 = 1.0 if turn1 > 0.0 else -1.0
+    sign2 = -1.0 if turn2 > 0.0 else 1.0
+    g1, h1, g2, h2 = sign1 * g1, sign1 * h1, sign2 * g2, sign2 * h2
+    k, d = 1.0 + mu1 * mu2, mu1 - mu2
+    n_slope, n_offset = k * p2 - d * g2, k * q2 - d * h2
+    t_slope, t_offset = d * p2 + k * g2, d * q2 + k * h2
+    return _root_between(
+        best1,
+        best2,
+        n_slope * g1 - t_slope * p1,
+        n_slope * h1 + n_offset * g1 - t_slope * q1 - t_offset * p1,
+        n_offset * h1 - t_offset * q1,
+    )
+
+
+def best_force(
+    lo: float,
+    hi: float,
+    p1: float,
+    q1: float,
+    g1: float,
+    h1: float,
+    mu1: float,
+    p2: float,
+    q2: float,
+    g2: float,
+    h2: float,
+    mu2: float,
+) -> float:
+    """The x of the widest least force margin: the top of the lower envelope of four lines.
+
+    Each contact has two, its distances (mu N -+ T) / sqrt(1 + mu^2) to the edges of its cone.
+    """
+    w1, w2 = 1.0 / sqrt(1.0 + mu1 * mu1), 1.0 / sqrt(1.0 + mu2 * mu2)
+    slope = (w1 * (mu1 * p1 - g1), w1 * (mu1 * p1 + g1), w2 * (mu2 * p2 - g2), w2 * (mu2 * p2 + g2))
+    offset = (w1 * (mu1 * q1 - h1), w1 * (mu1 * q1 + h1), w2 * (mu2 * q2 - h2), w2 * (mu2 * q2 + h2))
+    lowest = 0
+    for i in range(1, 4):
+        below = slope[i] * lo + offset[i] - (slope[lowest] * lo + offset[lowest])
+        if below < 0.0 or (below == 0.0 and slope[i] < slope[lowest]):
+            lowest = i
+    x = lo
+    while slope[lowest] > 0.0:  # climb the lowest line to where a flatter one crosses under it
+        crossing, flatter = hi, -1
+        for i in range(4):
+            if slope[i] < slope[lowest]:
+                at = (offset[i] - offset[lowest]) / (slope[lowest] - slope[i])
+                if at < crossing:
+                    crossing, flatter = at, i
+        if flatter < 0:
+            return hi
+        x, lowest = clamp(crossing, x, hi), flatter
+    return x
+
+
+def best_effort(lo: float, hi: float, phi: float) -> float:
+    """The x of the least sum of squares |f_1|^2 + |f_2|^2."""
+    return clamp(-0.5 * phi, lo, hi)
+
+
+def best_peak(lo: float, hi: float, phi: float, a: float, b: float) -> float:
+    """The x of the least larger force, max(|f_1|, |f_2|)."""
+    x1, x2 = clamp(0.0, lo, hi), clamp(-phi, lo, hi)  # each force's own least
+    if x1 * x1 + a * a >= (x1 + phi) * (x1 + phi) + b * b:
+        return x1
+    if x2 * x2 + a * a <= (x2 + phi) * (x2 + phi) + b * b:
+        return x2
+    return clamp(0.5 * ((a - b) * (a + b) / phi - phi), min(x1, x2), max(x1, x2))
+
+
+def best_peak_normal(lo: float, hi: float, phi: float, p1: float, q1: float, p2: float, q2: float) -> float:
+    """The x of the least larger normal force, max(N_1, N_2)."""
+    if p1 == 0.0 and p2 == 0.0:
+        return best_effort(lo, hi, phi)
+    x1 = lo if p1 > 0.0 else hi  # each normal force's own least
+    x2 = lo if p2 > 0.0 else hi
+    if p1 == 0.0:
+        return x2
+    if p2 == 0.0 or x1 == x2:
+        return x1
+    if p1 * x1 + q1 >= p2 * x1 + q2:
+        return x1
+    if p1 * x2 + q1 <= p2 * x2 + q2:
+        return x2
+    return clamp((q2 - q1) / (p1 - p2), lo, hi)
+
+
+def _upright(lo: float, hi: float, g: float, h: float, turn: float) -> float:
+    """The x of [lo, hi] where a force inside its cone is nearest to the normal (T = 0)."""
+    at_lo, at_hi = g * lo + h, g * hi + h
+    if turn < 0.0:
+        at_lo, at_hi = -at_lo, -at_hi
+    if at_lo >= 0.0:  # it turns away from the normal all the way
+        return lo
+    if at_hi <= 0.0:
+        return hi
+    return clamp(-h / g, lo, hi)
+
+
+def _root_between(lo: float, hi: float, c2: float, c1: float, c0: float) -> float:
+    """The root of c2 x^2 + c1 x + c0 in [lo, hi], where the polynomial is known to change sign."""
+    discriminant = c1 * c1 - 4.0 * c2 * c0
+    root = sqrt(discriminant) if discriminant > 0.0 else 0.0
+    t = -0.5 * (c1 + root if c1 >= 0.0 else c1 - root)  # no cancellation
+    first = t / c2 if c2 != 0.0 else lo
+    second = c0 / t if t != 0.0 else first
+    miss1, miss2 = abs(first - clamp(first, lo, hi)), abs(second - clamp(second, lo, hi))
+    if c2 != 0.0 and miss1 <= miss2:
+        return clamp(first, lo, hi)
+    return clamp(second, lo, hi)

@@ -1,0 +1,93 @@
+"""A frictional point contact."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import atan, hypot
+
+from numpy.typing import ArrayLike
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, number, point
+from regrasp.mechanics.value import ArrayValue, numbers
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Contact(ArrayValue):
+    """A finger's point contact with Coulomb friction: it pushes along ``normal`` and never pulls.
+
+    position: (d,) [m], object frame, origin at the centre of mass; d is 2 or 3.
+    normal: (d,), points **into** the object; any non-zero vector, stored with unit length.
+    friction: Coulomb coefficient mu >= 0; the friction cone has half-angle atan(mu).
+    max_force: largest force magnitude the finger can make [N], or None for no limit.
+    name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
+
+    Raises ``InvalidInput`` for anything else.
+    """
+
+    position: Array
+    normal: Array
+    friction: float
+    max_force: float | None = field(default=None, kw_only=True)
+    name: str | None = field(default=None, kw_only=True)
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        normal: ArrayLike,
+        friction: float,
+        *,
+        max_force: float | None = None,
+        name: str | None = None,
+    ) -> None:
+        if name is not None and (not isinstance(name, str) or not name.strip()):
+            raise InvalidInput(f"a contact's name must be a non-empty string, got {name!r}")
+        label = "contact" if name is None else f"contact {name!r}"
+        where = point(position, f"{label}: position")
+        direction = point(normal, f"{label}: normal")
+        if where.size != direction.size:
+            raise InvalidInput(
+                f"{label}: position and normal must have the same dimension, "
+                f"got {where.size} and {direction.size}"
+            )
+        largest = float(abs(direction).max())
+        if largest == 0:
+            raise InvalidInput(
+                f"{label}: normal must not be zero; give the direction that points into the object"
+            )
+        direction = direction / largest  # first, so that squares neither overflow nor vanish
+        direction = direction / hypot(*direction)
+        direction.setflags(write=False)
+        object.__setattr__(self, "position", where)
+        object.__setattr__(self, "normal", direction)
+        object.__setattr__(self, "friction", number(friction, f"{label}: friction", least=0))
+        if max_force is not None:
+            max_force = number(max_force, f"{label}: max_force", above=0)
+        object.__setattr__(self, "max_force", max_force)
+        object.__setattr__(self, "name", name)
+
+    @property
+    def dimension(self) -> int:
+        """2 in the plane, 3 in space."""
+        return int(self.position.size)
+
+    @property
+    def half_angle(self) -> float:
+        """Half-angle of the friction cone, alpha = atan(mu) [rad]."""
+        return atan(self.friction)
+
+    @cached_property
+    def plain(self) -> tuple[float, ...]:
+        """(position, normal, friction) as plain floats, the way the closed forms take a contact."""
+        return (*self.position.tolist(), *self.normal.tolist(), self.friction)
+
+    def named(self, name: str) -> "Contact":
+        """The same contact under another name."""
+        return Contact(self.position, self.normal, self.friction, max_force=self.max_force, name=name)
+
+    def __repr__(self) -> str:
+        limit = "" if self.max_force is None else f", max_force={self.max_force:g}"
+        name = "" if self.name is None else f", name={self.name!r}"
+        return (
+            f"Contact({numbers(self.position)}, normal={numbers(self.normal)}, "
+            f"friction={self.friction:g}{limit}{name})"
+        )

@@ -1,0 +1,183 @@
+"""A set of contacts and its grasp matrix."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.value import ArrayValue
+
+# Contacts nearer than this fraction of the largest coordinate are one point in double precision.
+COINCIDENT = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Grasp(ArrayValue):
+    """Contacts on one object, addressed by name or by index.
+
+    Unnamed contacts are named P1, P2, ... by their place. Raises ``InvalidInput`` for an empty grasp,
+    contacts of different dimension, equal names and coincident contacts.
+    """
+
+    contacts: tuple[Contact, ...]
+
+    def __init__(self, contacts: Iterable[Contact]) -> None:
+        given = tuple(contacts)
+        if not given:
+            raise InvalidInput("a grasp needs at least one contact, got none")
+        for contact in given:
+            if not isinstance(contact, Contact):
+                raise InvalidInput(f"a grasp is made of Contacts, got {contact!r}")
+            if contact.dimension != given[0].dimension:
+                raise InvalidInput(
+                    f"contacts of one grasp must have one dimension, got {given[0].dimension} "
+                    f"and {contact.dimension}"
+                )
+        named = tuple(c if c.name is not None else c.named(f"P{i}") for i, c in enumerate(given, 1))
+        _refuse_equal_names(named)
+        _refuse_coincident(named)
+        object.__setattr__(self, "contacts", named)
+
+    # -- lookup ---------------------------------------------------------------------------------------
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The contacts' names, in order."""
+        return tuple(str(contact.name) for contact in self.contacts)
+
+    def index(self, contact: str | int) -> int:
+        """The place of a contact given by name or by index (negative counts from the end)."""
+        if isinstance(contact, str):
+            for i, known in enumerate(self.contacts):
+                if known.name == contact:
+                    return i
+            raise InvalidInput(f"no contact {contact!r} in this grasp; it has {', '.join(self.names)}")
+        if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
+            raise InvalidInput(f"a contact is addressed by name or index, got {contact!r}")
+        if not -len(self) <= contact < len(self):
+            raise InvalidInput(f"no contact {contact} in this grasp; it has {len(self)}, counted from 0")
+        return int(contact) % len(self)
+
+    def __getitem__(self, contact: str | int) -> Contact:
+        return self.contacts[self.index(contact)]
+
+    def __len__(self) -> int:
+        return len(self.contacts)
+
+    def __iter__(self) -> Iterator[Contact]:
+        return iter(self.contacts)
+
+    # -- other grasps ---------------------------------------------------------------------------------
+
+    def subset(self, contacts: Iterable[str | int]) -> "Grasp":
+        """The grasp of the contacts named, in the order named."""
+        return Grasp(self[contact] for contact in contacts)
+
+    def without(self, contact: str | int) -> "Grasp":
+        """The grasp after one finger left."""
+        gone = self.index(contact)
+        if len(self) == 1:
+            raise InvalidInput(f"the last contact, {self.names[0]!r}, cannot be taken from a grasp")
+        return self._of(self.contacts[:gone] + self.contacts[gone + 1 :])
+
+    def with_contact(self, contact: Contact) -> "Grasp":
+        """The grasp after one finger arrived; its contact comes last."""
+        return Grasp((*self.contacts, contact))
+
+    def replaced(self, contact: str | int, by: Contact) -> "Grasp":
+        """The grasp with one contact in the place of another."""
+        gone = self.index(contact)
+        return Grasp(by if i == gone else c for i, c in enumerate(self.contacts))
+
+    @classmethod
+    def _of(cls, contacts: tuple[Contact, ...]) -> "Grasp":
+        """A grasp of contacts known to be valid together."""
+        grasp = object.__new__(cls)
+        object.__setattr__(grasp, "contacts", contacts)
+        return grasp
+
+    # -- arrays ---------------------------------------------------------------------------------------
+
+    @property
+    def dimension(self) -> int:
+        """2 in the plane, 3 in space."""
+        return self.contacts[0].dimension
+
+    @cached_property
+    def positions(self) -> Array:
+        """(n, d) [m]."""
+        return _frozen(np.array([c.position for c in self.contacts]))
+
+    @cached_property
+    def normals(self) -> Array:
+        """(n, d), unit, into the object."""
+        return _frozen(np.array([c.normal for c in self.contacts]))
+
+    @cached_property
+    def frictions(self) -> Array:
+        """(n,) Coulomb coefficients."""
+        return _frozen(np.array([c.friction for c in self.contacts]))
+
+    @cached_property
+    def max_forces(self) -> Array:
+        """(n,) [N], infinite where a contact has no limit."""
+        return _frozen(np.array([np.inf if c.max_force is None else c.max_force for c in self.contacts]))
+
+    @cached_property
+    def size(self) -> float:
+        """The largest distance of a contact from the centre of mass [m]: a length to scale torques by."""
+        return float(np.sqrt((self.positions**2).sum(axis=1).max()))
+
+    @cached_property
+    def matrix(self) -> Array:
+        """Grasp matrix G, (3, 2n) or (6, 3n): stacked forces (f_1, ..., f_n) to total wrench."""
+        d = self.dimension
+        blocks = []
+        for r in self.positions:
+            arm = [[-r[1], r[0]]] if d == 2 else [[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]]
+            blocks.append(np.vstack([np.eye(d), arm]))
+        return _frozen(np.hstack(blocks))
+
+    @cached_property
+    def internal_forces(self) -> Array:
+        """(k, n, d): an orthonormal basis of the forces with G f = 0, those that squeeze the object only.
+
+        k = 2n - 3 in the plane, 3n - 6 in space (one more where all contacts lie on one line).
+        """
+        scaled = self.matrix.copy()
+        scaled[self.dimension :] /= self.size or 1.0  # so that the rank does not depend on the length unit
+        _, values, rows = np.linalg.svd(scaled)
+        rank = int((values > 1e-12 * values[0]).sum())
+        return _frozen(rows[rank:].reshape(-1, len(self), self.dimension))
+
+    def __repr__(self) -> str:
+        inside = "".join(f"\n  {contact!r}," for contact in self.contacts)
+        return f"Grasp([{inside}\n])"
+
+
+def _frozen(values: Array) -> Array:
+    values.setflags(write=False)
+    return values
+
+
+def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:
+    names = [contact.name for contact in contacts]
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidInput(f"contacts of one grasp must have different names, {name!r} came twice")
+
+
+def _refuse_coincident(contacts: tuple[Contact, ...]) -> None:
+    points = [contact.position.tolist() for contact in contacts]
+    near = COINCIDENT * max(abs(x) for p in points for x in p)
+    for j, p in enumerate(points):
+        for i, q in enumerate(points[:j]):
+            if all(abs(a - b) <= near for a, b in zip(p, q, strict=True)):
+                raise InvalidInput(
+                    f"contacts {contacts[i].name!r} and {contacts[j].name!r} coincide at "
+                    f"{contacts[i].position.tolist()}; place them at different points"
+                )

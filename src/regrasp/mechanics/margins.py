@@ -1,0 +1,66 @@
+"""How far forces are from the boundary of their friction cones."""
+
+from dataclasses import dataclass
+from math import inf, nan, pi
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+
+# A force below this fraction of the largest one is rounding: the contact carries no force.
+IDLE = 2.0**-40
+
+
+@dataclass(frozen=True, eq=False)
+class Margins:
+    """Margins of each contact, NaN where the contact carries no force and a margin has no meaning.
+
+    For one state each is (n,); for m instants each is (m, n).
+    """
+
+    angle: Array
+    """alpha_i minus the angle between f_i and n_i [rad]; at most alpha_i, positive inside the cone."""
+    force: Array
+    """Distance of f_i to the boundary of its cone [N]; positive inside, 0 for a contact without force."""
+    friction_use: Array
+    """|f_t| / (mu f_n) [-]; 0 along the normal, 1 on the boundary, smaller is safer. NaN for a frictionless
+    contact pushed along its normal, infinite for any force a cone cannot make at all."""
+
+    @property
+    def least_angle(self) -> float:
+        """The smallest angle margin over the contacts in use [rad]; NaN when none is."""
+        return _over_used(self.angle, np.fmin, inf)
+
+    @property
+    def least_force(self) -> float:
+        """The smallest force margin over the contacts in use [N]; NaN when none is."""
+        return _over_used(np.where(np.isnan(self.angle), nan, self.force), np.fmin, inf)
+
+    @property
+    def largest_friction_use(self) -> float:
+        """The largest friction use over the contacts in use [-]; NaN when none is."""
+        return _over_used(self.friction_use, np.fmax, -inf)
+
+
+def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
+    """Margins of ``forces`` (..., n, d) in the cones of unit ``normals`` (n, d) and ``frictions`` (n,)."""
+    normal = (forces * normals).sum(axis=-1)  # f_n
+    tangent = forces - normal[..., None] * normals
+    tangential = np.sqrt((tangent**2).sum(axis=-1))  # |f_t|
+    magnitude = np.sqrt((forces**2).sum(axis=-1))
+    idle = magnitude <= IDLE * magnitude.max(axis=-1, keepdims=True)
+
+    angle = np.arctan(frictions) - np.arctan2(tangential, normal)
+    # The nearest boundary point lies on the nearer edge, or at the apex for a force that points well out.
+    edge = (frictions * normal - tangential) / np.sqrt(1 + frictions**2)
+    force = np.where(angle >= -pi / 2, edge, -magnitude)
+    available = np.maximum(frictions * normal, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        use = np.where(normal < 0, inf, tangential / available)
+    return Margins(np.where(idle, nan, angle), np.where(idle, 0.0, force), np.where(idle, nan, use))
+
+
+def _over_used(values: Array, pick: np.ufunc, start: float) -> float:
+    if np.isnan(values).all():
+        return nan
+    return float(pick.reduce(values, axis=None, initial=start))

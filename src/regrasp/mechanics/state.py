@@ -1,0 +1,147 @@
+"""Forces of a grasp under a load."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
+from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.margins import IDLE, Margins, margins
+from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
+from regrasp.mechanics.value import ArrayValue, numbers
+from regrasp.mechanics.wrench import Wrench, torque
+
+# Rounding of a tangential force, as a fraction of the force.
+_ROUNDING = 2.0**-50
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GraspState(ArrayValue):
+    """A grasp, the load on the object and the finger forces, taken as they are.
+
+    forces: (n, d) [N], force of each finger **on the object**, object frame.
+
+    Nothing is corrected: ``residual`` says how far G f + w_ext is from zero and ``margins`` how far each
+    force is inside its cone; ``balanced()`` is the nearest state in equilibrium inside the cones.
+    """
+
+    grasp: Grasp
+    load: Wrench
+    forces: Array
+
+    def __init__(self, grasp: Grasp, load: Wrench, forces: ArrayLike) -> None:
+        if not isinstance(grasp, Grasp):
+            raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
+        check_load(grasp, load)
+        object.__setattr__(self, "grasp", grasp)
+        object.__setattr__(self, "load", load)
+        object.__setattr__(self, "forces", array(forces, "forces", (len(grasp), grasp.dimension)))
+
+    @cached_property
+    def wrenches(self) -> Array:
+        """w_i = (f_i, r_i x f_i), (n, 3) in the plane, (n, 6) in space [N, N m]."""
+        return np.hstack([self.forces, torque(self.grasp.positions, self.forces)])
+
+    @cached_property
+    def imbalance(self) -> Array:
+        """G f + w_ext, (3,) or (6,) [N, N m]; zero in equilibrium."""
+        total: Array = self.wrenches.sum(axis=0) + self.load.vector
+        return total
+
+    @property
+    def residual(self) -> float:
+        """Norm of G f + w_ext, force and torque in the units given."""
+        return float(np.linalg.norm(self.imbalance))
+
+    @cached_property
+    def margins(self) -> Margins:
+        """Margins of each contact, arrays of shape (n,)."""
+        return margins(self.forces, self.grasp.normals, self.grasp.frictions)
+
+    @property
+    def magnitudes(self) -> Array:
+        """|f_i|, (n,) [N]."""
+        result: Array = np.sqrt((self.forces**2).sum(axis=1))
+        return result
+
+    @property
+    def in_use(self) -> tuple[str, ...]:
+        """Names of the contacts that carry force."""
+        magnitudes = self.magnitudes
+        used = magnitudes > IDLE * magnitudes.max()
+        return tuple(name for name, yes in zip(self.grasp.names, used, strict=True) if yes)
+
+    def force(self, contact: str | int) -> Array:
+        """(d,) force of one finger, by name or index [N]."""
+        force: Array = self.forces[self.grasp.index(contact)]
+        return force
+
+    def without(self, contact: str | int) -> "GraspState":
+        """The state seen without one contact and its force."""
+        gone = self.grasp.index(contact)
+        return GraspState(self.grasp.without(gone), self.load, np.delete(self.forces, gone, axis=0))
+
+    def is_balanced(self, *, reserve: float = RESERVE) -> bool:
+        """Whether this is an equilibrium to rounding, inside the cones and limits less the reserve."""
+        d, contacts = self.grasp.dimension, self.grasp.contacts
+        rows, total = self.forces.tolist(), self.imbalance.tolist()
+        largest = max(hypot(*f) for f in (*rows, self.load.plain[:d]))
+        torques = max(largest * self.grasp.size, hypot(*self.load.plain[d:]))
+        if hypot(*total[:d]) > EQUILIBRIUM * largest or hypot(*total[d:]) > EQUILIBRIUM * torques:
+            return False
+        for contact, f in zip(contacts, rows, strict=True):
+            normal = sum(x * n for x, n in zip(f, contact.plain[d : 2 * d], strict=True))
+            magnitude = hypot(*f)
+            tangential = hypot(*(x - normal * n for x, n in zip(f, contact.plain[d : 2 * d], strict=True)))
+            if tangential > kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude:
+                return False
+            if contact.max_force is not None and magnitude > contact.max_force:
+                return False
+        return True
+
+    def balanced(self, *, reserve: float = RESERVE) -> "GraspState":
+        """The nearest state in equilibrium inside the cones and force limits.
+
+        Least change of all forces together, sum |f_i - f_i given|^2. ``reserve`` is the fraction of every
+        friction coefficient kept back. A state that is balanced already is returned as it is.
+        Raises ``Infeasible`` when this grasp has no such state.
+        """
+        reserve_fraction(reserve)
+        if self.is_balanced(reserve=reserve):
+            return self
+        grasp = self.grasp
+        forces = nearest_equilibrium(
+            self.forces,
+            grasp.matrix,
+            self.load.vector,
+            grasp.normals,
+            np.array([kept_friction(c.friction, reserve) for c in grasp]),
+            np.array([kept_force(limit, reserve) for limit in grasp.max_forces]),
+            grasp.size or 1.0,
+        )
+        if forces is None:
+            raise Infeasible(
+                f"no forces of {', '.join(grasp.names)} inside their friction cones and force limits "
+                f"balance {self.load!r}"
+            )
+        return GraspState(grasp, self.load, forces)
+
+    def __repr__(self) -> str:
+        rows = "".join(
+            f"\n  {name}: force {numbers(force)}"
+            for name, force in zip(self.grasp.names, self.forces, strict=True)
+        )
+        return f"GraspState under {self.load!r}, residual {self.residual:.2g}:{rows}"
+
+
+def check_load(grasp: Grasp, load: Wrench) -> None:
+    """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension."""
+    if not isinstance(load, Wrench):
+        raise InvalidInput(f"load must be a Wrench, got {load!r}; write Wrench(force=[...])")
+    if load.dimension != grasp.dimension:
+        raise InvalidInput(f"load must have the grasp's dimension {grasp.dimension}, got {load.dimension}")

@@ -1,0 +1,123 @@
+"""Wrenches: a force and its torque about the centre of mass."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, array, number, point
+from regrasp.mechanics.value import ArrayValue, numbers
+
+
+def torque(position: ArrayLike, force: ArrayLike) -> Array:
+    """Tau = r x f about the origin: r_x f_y - r_y f_x, shape (..., 1), in the plane; (..., 3) in space."""
+    r, f = np.asarray(position, dtype=float), np.asarray(force, dtype=float)
+    if r.shape[-1] == 2:
+        planar: Array = r[..., :1] * f[..., 1:] - r[..., 1:] * f[..., :1]
+        return planar
+    return np.cross(r, f)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Wrench(ArrayValue):
+    """A force and a torque on the object, about the centre of mass.
+
+    force: (d,) [N], object frame.
+    torque: [N m], a number in the plane, (3,) in space; zero unless given.
+
+    Wrenches add, subtract, negate and scale. As a load, equilibrium is G f + w_ext = 0.
+    Raises ``InvalidInput`` for wrong shapes and numbers that are not finite.
+    """
+
+    vector: Array
+    """(3,) in the plane, (6,) in space: force, then torque."""
+
+    def __init__(self, force: ArrayLike, torque: ArrayLike | None = None) -> None:
+        f = point(force, "force")
+        size = 1 if f.size == 2 else 3
+        if torque is None:
+            tau: Array = np.zeros(size)
+        elif size == 1:
+            tau = np.array([number(torque, "torque")])
+        else:
+            tau = array(torque, "torque", (3,))
+        vector = np.concatenate([f, tau])
+        vector.setflags(write=False)
+        object.__setattr__(self, "vector", vector)
+
+    @classmethod
+    def from_vector(cls, vector: ArrayLike) -> "Wrench":
+        """The wrench (force, torque) given as one vector, (3,) in the plane or (6,) in space."""
+        w = array(vector, "wrench", (None,))
+        if w.size not in (3, 6):
+            raise InvalidInput(f"a wrench must have 3 (plane) or 6 (space) numbers, got {w.size}")
+        return cls(w[:2], float(w[2])) if w.size == 3 else cls(w[:3], w[3:])
+
+    @property
+    def dimension(self) -> int:
+        """2 in the plane, 3 in space."""
+        return 2 if self.vector.size == 3 else 3
+
+    @property
+    def force(self) -> Array:
+        """(d,) [N]."""
+        return self.vector[: self.dimension]
+
+    @property
+    def torque(self) -> Array:
+        """(1,) in the plane, (3,) in space [N m]."""
+        return self.vector[self.dimension :]
+
+    @cached_property
+    def plain(self) -> tuple[float, ...]:
+        """(force, torque) as plain floats, the way the closed forms take a load."""
+        return tuple(self.vector.tolist())
+
+    def rotated(self, rotation: ArrayLike) -> "Wrench":
+        """The wrench turned about the centre of mass.
+
+        rotation: an angle [rad], counter-clockwise, in the plane; a (3, 3) rotation matrix in space.
+        """
+        if self.dimension == 2:
+            angle = number(rotation, "rotation")
+            c, s = cos(angle), sin(angle)
+            fx, fy = self.force
+            return Wrench([c * fx - s * fy, s * fx + c * fy], float(self.torque[0]))
+        matrix = array(rotation, "rotation", (3, 3))
+        if abs(matrix @ matrix.T - np.eye(3)).max() > 1e-9 or np.linalg.det(matrix) < 0:
+            raise InvalidInput(
+                f"rotation must be a rotation matrix (orthonormal, determinant 1), got {rotation!r}"
+            )
+        return Wrench(matrix @ self.force, matrix @ self.torque)
+
+    def _with(self, other: object, combine: Callable[[Array, Array], Array]) -> "Wrench":
+        if not isinstance(other, Wrench):
+            raise InvalidInput(f"a wrench combines with a wrench, got {other!r}")
+        if other.dimension != self.dimension:
+            raise InvalidInput("a planar wrench and a wrench in space cannot be combined")
+        return Wrench.from_vector(combine(self.vector, other.vector))
+
+    def __add__(self, other: object) -> "Wrench":
+        return self._with(other, np.add)
+
+    def __sub__(self, other: object) -> "Wrench":
+        return self._with(other, np.subtract)
+
+    def __neg__(self) -> "Wrench":
+        return Wrench.from_vector(-self.vector)
+
+    def __mul__(self, factor: float) -> "Wrench":
+        return Wrench.from_vector(number(factor, "factor") * self.vector)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: float) -> "Wrench":
+        return Wrench.from_vector(self.vector / number(divisor, "divisor"))
+
+    def __repr__(self) -> str:
+        shown = numbers(self.torque) if self.dimension == 3 else f"{self.torque[0]:.6g}"
+        return f"Wrench(force={numbers(self.force)}, torque={shown})"

@@ -1,0 +1,1 @@
+"""Choosing states and planning transitions between them."""

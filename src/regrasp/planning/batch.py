@@ -1,0 +1,130 @@
+"""Closed forms for millions of two-finger grasps at once."""
+
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.choice import OBJECTIVES
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, choice, number
+from regrasp.planning.criteria import PEAK_RATIO, UNBOUNDED
+
+# The arguments of a batch in order, each with the size of its last axis (1: a number).
+_SIZES = {
+    "r1": 2, "n1": 2, "mu1": 1, "r2": 2, "n2": 2, "mu2": 1, "force": 2, "torque": 1, "limit1": 1, "limit2": 1,
+}  # fmt: skip
+
+
+def locus_intervals(
+    r1: ArrayLike,
+    n1: ArrayLike,
+    mu1: ArrayLike,
+    r2: ArrayLike,
+    n2: ArrayLike,
+    mu2: ArrayLike,
+    force: ArrayLike,
+    torque: ArrayLike = 0.0,
+) -> tuple[Array, Array]:
+    """Ends (lo, hi) of the squeeze interval of many pairs of planar contacts [N].
+
+    r1, r2: (..., 2) positions; n1, n2: (..., 2) normals of any length; mu1, mu2: (...) frictions;
+    force (..., 2) and torque (...) of the load. Leading shapes broadcast; lo and hi have that shape.
+    An empty locus is lo = inf, hi = -inf. The same function as ``EquilibriumLocus.interval``, compiled by
+    Numba on the first call (seconds, then cached) and run on all cores.
+    Raises ``InvalidInput`` for wrong shapes, numbers that are not finite, zero normals, negative
+    frictions and coincident contacts.
+    """
+    arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque)
+    from regrasp.closed_form import compiled
+
+    lo, hi = np.empty(shape), np.empty(shape)
+    compiled.intervals(*_blocks(arrays, compiled.BLOCK), whole, lo.reshape(-1), hi.reshape(-1))
+    return lo, hi
+
+
+def best_squeezes(
+    r1: ArrayLike,
+    n1: ArrayLike,
+    mu1: ArrayLike,
+    r2: ArrayLike,
+    n2: ArrayLike,
+    mu2: ArrayLike,
+    force: ArrayLike,
+    torque: ArrayLike = 0.0,
+    *,
+    objective: str = "angle",
+    max_force: ArrayLike | None = None,
+    peak_ratio: float = PEAK_RATIO,
+) -> Array:
+    """The best squeeze of many pairs of planar contacts [N]; NaN where no state exists.
+
+    Arguments as for ``locus_intervals``. ``max_force`` (...) or None limits both forces; without it the
+    objectives ``angle`` and ``force`` limit them to ``peak_ratio`` times the least peak force of each
+    pair. The full friction is used: pass ``mu * (1 - reserve)`` to keep a reserve.
+    """
+    choice(objective, "objective", OBJECTIVES)
+    number(peak_ratio, "peak_ratio", least=1)
+    limit: ArrayLike = inf if max_force is None else max_force
+    arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque, limit, limit)
+    if max_force is None and objective in UNBOUNDED:
+        loads = np.asarray(force, dtype=float).any(axis=-1) | (np.asarray(torque, dtype=float) != 0)
+        if not loads.all():
+            raise InvalidInput(f"objective {objective!r} under a zero load needs max_force")
+    from regrasp.closed_form import compiled
+
+    x = np.empty(shape)
+    compiled.squeezes(
+        *_blocks(arrays, compiled.BLOCK), OBJECTIVES.index(objective), float(peak_ratio), whole, x.reshape(-1)
+    )
+    return x
+
+
+def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...]]:
+    """Checked arrays, flat: one value, or one for every grasp; which of them are whole; the common shape."""
+    arrays, leading = [], []
+    for (name, size), argument in zip(_SIZES.items(), arguments, strict=False):
+        try:
+            value = np.asarray(argument, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InvalidInput(f"{name} must be an array of numbers, got {type(argument).__name__}") from None
+        if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
+            raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
+        _check_values(name, value)
+        arrays.append(value)
+        leading.append(value.shape[:-1] if size == 2 else value.shape)
+    try:
+        shape = np.broadcast_shapes(*leading)
+    except ValueError:
+        shapes = ", ".join(f"{n} {s}" for n, s in zip(_SIZES, leading, strict=False))
+        raise InvalidInput(f"leading shapes must broadcast, got {shapes}") from None
+    if (np.abs(arrays[0] - arrays[3]).max(axis=-1) == 0).any():
+        raise InvalidInput("r1 and r2 coincide in at least one pair; place contacts at different points")
+    flat, whole = [], []
+    for value, lead, size in zip(arrays, leading, _SIZES.values(), strict=False):
+        single = int(np.prod(lead)) == 1 and shape != ()
+        if not single:
+            value = np.broadcast_to(value, (*shape, 2) if size == 2 else shape)
+        flat.append(np.ascontiguousarray(value).reshape(-1))
+        whole.append(0 if single else 1)
+    return flat, np.array(whole), shape
+
+
+def _check_values(name: str, value: Array) -> None:
+    if name.startswith("limit"):
+        if np.isnan(value).any() or (value <= 0).any():
+            raise InvalidInput("max_force must be greater than 0 everywhere")
+        return
+    if not np.isfinite(value).all():
+        raise InvalidInput(
+            f"{name} must be finite, got {int((~np.isfinite(value)).sum())} entries that are not"
+        )
+    if name in ("n1", "n2") and not value.any(axis=-1).all():
+        raise InvalidInput(f"{name} must not be zero; give the direction that points into the object")
+    if name in ("mu1", "mu2") and (value < 0).any():
+        raise InvalidInput(f"{name} must be at least 0 everywhere")
+
+
+def _blocks(arrays: list[Array], size: int) -> list[Array]:
+    """One value becomes a block of equal values, which serves every block of grasps."""
+    return [np.tile(v, size) if v.size == w else v for v, w in zip(arrays, _SIZES.values(), strict=False)]

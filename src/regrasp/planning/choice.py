@@ -1,0 +1,58 @@
+"""Choosing the forces of a grasp under a load."""
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.state import check_load
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.criteria import PEAK_RATIO, ChosenState, Criteria
+from regrasp.planning.locus import best_state
+from regrasp.programs import available_backends
+
+DEFAULT_BACKEND = "clarabel"
+
+
+def choose_state(
+    grasp: Grasp,
+    load: Wrench,
+    objective: str = "angle",
+    *,
+    method: str = "auto",
+    max_force: float | None = None,
+    peak_ratio: float = PEAK_RATIO,
+    reserve: float = RESERVE,
+) -> ChosenState:
+    """The best forces of a grasp under a load.
+
+    objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
+    ``peak``, the least largest force; ``peak_normal``, the least largest normal force.
+    method: ``closed-form`` (two planar contacts), a back end's name, or ``auto``: the closed form where it
+    exists, else Clarabel.
+    max_force, peak_ratio, reserve: limits of the choice, see ``Criteria``; what they came to is in the
+    result's ``force_limits``.
+
+    Returns a ``GraspState`` with the record of its choice. Raises ``Infeasible`` with the escape twist when
+    no forces exist, ``InvalidInput`` for arguments that are not what they must be.
+    """
+    check_load(grasp, load)
+    return chosen(grasp, load, Criteria(objective, max_force, peak_ratio, reserve), method)
+
+
+def chosen(grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto") -> ChosenState:
+    """``choose_state`` for checked criteria."""
+    planar_pair = len(grasp) == 2 and grasp.dimension == 2
+    if method == "closed-form" and not planar_pair:
+        raise InvalidInput(
+            f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
+            f"{grasp.dimension}; use method='auto'"
+        )
+    if len(grasp) < 2:
+        raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
+    if method == "closed-form" or (method == "auto" and planar_pair):
+        return best_state(grasp, load, criteria)
+    if method != "auto" and method not in available_backends():
+        known = ", ".join(("auto", "closed-form", *available_backends()))
+        raise InvalidInput(f"method must be one of {known}; got {method!r}")
+    from regrasp.planning.state_program import solved_state
+
+    return solved_state(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method)

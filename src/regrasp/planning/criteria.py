@@ -1,0 +1,117 @@
+"""What a state is chosen for, and under which limits."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import Literal
+
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.choice import OBJECTIVES
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import choice, number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+
+Objective = Literal["angle", "force", "effort", "peak", "peak_normal"]
+
+PEAK_RATIO = 3.0
+"""Default limit on every force, as a multiple of the least peak force that holds the load."""
+
+# Objectives whose best value may lie at infinite force.
+UNBOUNDED = ("angle", "force")
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """Objective and limits of a choice, checked.
+
+    objective: ``angle`` or ``force``, the widest least margin; ``effort`` (least sum of squares), ``peak``
+    (least largest force), ``peak_normal`` (least largest normal force).
+    max_force: a limit on every force [N] besides the contacts' own, or None.
+    peak_ratio: where a contact has no limit, ``angle`` and ``force`` limit it to this multiple (at least 1)
+    of the least peak force with which the grasp holds the load.
+    reserve: fraction of every friction coefficient kept back.
+    """
+
+    objective: str = "angle"
+    max_force: float | None = None
+    peak_ratio: float = PEAK_RATIO
+    reserve: float = RESERVE
+
+    def __post_init__(self) -> None:
+        choice(self.objective, "objective", OBJECTIVES)
+        if self.max_force is not None:
+            number(self.max_force, "max_force", above=0)
+        number(self.peak_ratio, "peak_ratio", least=1)
+        reserve_fraction(self.reserve)
+
+    @property
+    def maximises(self) -> bool:
+        """Whether a larger value of the objective is better."""
+        return self.objective in UNBOUNDED
+
+    def frictions(self, grasp: Grasp) -> list[float]:
+        """Friction coefficients that planning may use."""
+        return [kept_friction(c.friction, self.reserve) for c in grasp]
+
+    def limits(self, grasp: Grasp) -> list[float]:
+        """Force limits that planning may use, infinite where there is none [N]."""
+        general = inf if self.max_force is None else self.max_force
+        return [
+            kept_force(general if c.max_force is None else min(general, c.max_force), self.reserve)
+            for c in grasp
+        ]
+
+    def demand_limit(self, grasp: Grasp, load: Wrench) -> None:
+        """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero."""
+        if self.maximises and not load.vector.any() and inf in self.limits(grasp):
+            raise InvalidInput(
+                f"objective {self.objective!r} under a zero load needs max_force: any squeeze holds it, "
+                f"so no force follows from the load"
+            )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ChosenState(GraspState):
+    """A state with the record of its choice."""
+
+    criteria: Criteria
+    force_limits: tuple[float, ...]
+    """(n,) limits the choice was made under [N], those set by ``peak_ratio`` included."""
+    method: str
+    """``closed-form`` or the back end's name."""
+
+    def __init__(
+        self,
+        grasp: Grasp,
+        load: Wrench,
+        forces: ArrayLike,
+        criteria: Criteria,
+        force_limits: tuple[float, ...],
+        method: str,
+    ) -> None:
+        super().__init__(grasp, load, forces)
+        object.__setattr__(self, "criteria", criteria)
+        object.__setattr__(self, "force_limits", force_limits)
+        object.__setattr__(self, "method", method)
+
+    @cached_property
+    def value(self) -> float:
+        """The objective reached: rad for ``angle``, N^2 for ``effort``, N for the others."""
+        return objective_value(self, self.criteria.objective)
+
+
+def objective_value(state: GraspState, objective: str) -> float:
+    """The value of an objective at a state: rad for ``angle``, N^2 for ``effort``, N for the others."""
+    if objective == "angle":
+        return state.margins.least_angle
+    if objective == "force":
+        return float(state.margins.force.min())
+    if objective == "effort":
+        return float((state.forces**2).sum())
+    if objective == "peak":
+        return float(state.magnitudes.max())
+    return float((state.forces * state.grasp.normals).sum(axis=1).max())

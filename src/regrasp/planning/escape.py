@@ -1,0 +1,98 @@
+"""Finding the escape twist of a load that a grasp cannot hold.
+
+The finger wrenches nearest to balancing the load leave the gap rho = -w_ext - G f. Nothing the contacts can
+add points along rho, or it would bring them nearer; so -rho is the twist sought (separating hyperplane).
+"""
+
+from math import inf
+
+import numpy as np
+
+from regrasp.errors import Infeasible
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.criteria import Criteria
+from regrasp.programs import Cone, Rows, solve
+
+
+def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
+    """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
+    names = ", ".join(grasp.names)
+    full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
+    frictions, limits = full.frictions(grasp), full.limits(grasp)
+    twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
+    if twist is not None:
+        return Infeasible(
+            f"no forces of {names} inside their friction cones balance {load!r}: "
+            f"the object escapes by {twist}",
+            twist,
+        )
+    twist = escape_twist(grasp, load, frictions, limits) if min(limits) < inf else None
+    if twist is not None:
+        bounds = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, limits, strict=True) if f < inf)
+        return Infeasible(
+            f"no forces of {names} inside their friction cones and force limits ({bounds}) balance {load!r}: "
+            f"the object escapes by {twist}; the cones alone would hold it with larger forces",
+            twist,
+        )
+    return Infeasible(
+        f"forces of {names} balance {load!r} only at the limit of their friction cones, within the reserve "
+        f"of {criteria.reserve:g} of the friction that planning keeps back; choose a smaller reserve"
+    )
+
+
+def escape_twist(
+    grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]
+) -> EscapeTwist | None:
+    """The proven escape twist of a planar grasp, or None where none is found."""
+    weight = np.array([1.0, 1.0, 1 / grasp.size if grasp.size else 1.0])  # torques as forces
+    target = -load.vector * weight
+    unit = float(abs(target).max())
+    if unit == 0:
+        return None
+    if min(limits) < inf:
+        gap = _gap_with_limits(grasp, target / unit, weight, frictions, [f / unit for f in limits])
+    else:
+        gap = _gap(grasp, target / unit, weight, frictions)
+    if not gap.any():
+        return None
+    twist = EscapeTwist(grasp, load, -gap * weight / float(abs(gap).max()), tuple(frictions), tuple(limits))
+    return twist if twist.is_proof else None
+
+
+def _gap(grasp: Grasp, target: Array, weight: Array, frictions: list[float]) -> Array:
+    """Target - G f at the nearest f, a non-negative combination of the cones' edges."""
+    from scipy.optimize import nnls
+
+    edges = []
+    for contact, mu in zip(grasp, frictions, strict=True):
+        n = contact.normal
+        t = np.array([-n[1], n[0]])
+        for e in (n - mu * t, n + mu * t):
+            r = contact.position
+            edges.append(np.array([e[0], e[1], r[0] * e[1] - r[1] * e[0]]) * weight)
+    wrenches = np.array(edges).T
+    combination, _ = nnls(wrenches, target)
+    gap: Array = target - wrenches @ combination
+    return gap
+
+
+def _gap_with_limits(
+    grasp: Grasp, target: Array, weight: Array, frictions: list[float], limits: list[float]
+) -> Array:
+    """Target - G f at the nearest f inside cones and limits: a program in (f, gap)."""
+    n = 2 * len(grasp)
+    rows = Rows(n + 3)
+    g = np.hstack([grasp.matrix * weight[:, None], np.eye(3)])
+    rows.add(Cone.ZERO, g, -target)
+    for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
+        pick = np.zeros((2, n + 3))
+        pick[0, 2 * i] = pick[1, 2 * i + 1] = 1
+        along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
+        rows.add(Cone.NONNEGATIVE, [mu * along - across, mu * along + across, along], np.zeros(3))
+        if limit < inf:
+            rows.add(Cone.SECOND_ORDER, np.vstack([np.zeros(n + 3), pick]), [limit, 0, 0])
+    gap: Array = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3))).x[n:]
+    return gap

@@ -1,0 +1,140 @@
+"""The choice of a state as a convex program: the seam where mechanics becomes rows.
+
+Unknowns x = (f_1, ..., f_n, t), forces in units of ``unit`` [N] and torques divided by the grasp's size, so
+that the data are of order one whatever the units. In the plane two half-planes are the friction cone:
+
+    equilibrium   G f = -w_ext                                          zero cone
+    friction      mu f.n -+ f.t >= 0   and   f.n >= 0                   non-negative
+    limits        |f_i| <= limit_i                                      second order
+
+    effort        minimise sum |f_i|^2
+    peak          minimise t,  |f_i| <= t
+    peak_normal   minimise t,  f_i.n_i <= t
+    force         maximise t,  mu f.n -+ f.t >= t sqrt(1 + mu^2)
+
+``angle`` is quasi-convex: an angle margin m is reached when cones narrowed by m still hold the load.
+"""
+
+from math import atan, inf, sqrt, tan
+
+import numpy as np
+
+from regrasp.errors import InvalidInput, SolverFailed
+from regrasp.mechanics.balance import nearest_equilibrium
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.criteria import ChosenState, Criteria
+from regrasp.planning.escape import infeasible
+from regrasp.programs import Cone, Program, Rows, Status, solve
+
+ANGLE_TOLERANCE = 1e-8
+"""The chosen angle margin is within this of the best one [rad]."""
+
+# A solver's zero; whether forces exist is decided by finding them.
+_FEASIBLE = 1e-7
+
+
+def state_program(
+    grasp: Grasp, load: Wrench, objective: str, frictions: list[float], limits: list[float], unit: float
+) -> Program:
+    """The program of every objective but ``angle``; forces come out in units of ``unit`` [N]."""
+    if grasp.dimension != 2:
+        raise InvalidInput("states are chosen for planar grasps so far; this grasp is in space")
+    n = 2 * len(grasp)
+    t = np.eye(n + 1)[n]
+    rows = Rows(n + 1)
+    weight = np.array([1.0, 1.0, 1 / grasp.size if grasp.size else 1.0])
+    g = np.hstack([grasp.matrix * weight[:, None], np.zeros((3, 1))])
+    rows.add(Cone.ZERO, g, load.vector * weight / unit)
+    for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
+        pick = np.eye(n + 1)[2 * i : 2 * i + 2]
+        along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
+        margin = t * sqrt(1 + mu * mu) if objective == "force" else 0 * t
+        rows.add(Cone.NONNEGATIVE, [mu * along - across - margin, mu * along + across - margin], np.zeros(2))
+        if objective != "force":
+            rows.add(Cone.NONNEGATIVE, along, 0.0)
+        if objective == "peak":
+            rows.add(Cone.SECOND_ORDER, np.vstack([t, pick]), np.zeros(3))
+        if objective == "peak_normal":
+            rows.add(Cone.NONNEGATIVE, t - along, 0.0)
+        if limit < inf:
+            rows.add(Cone.SECOND_ORDER, np.vstack([0 * t, pick]), [limit / unit, 0, 0])
+    if objective == "effort":
+        return rows.program(0 * t, np.diag([2.0] * n + [0.0]))
+    return rows.program(-t if objective == "force" else t)
+
+
+class _Solver:
+    """Solves the programs of one choice and certifies every answer before it is used."""
+
+    def __init__(self, grasp: Grasp, load: Wrench, backend: str, limits: list[float]) -> None:
+        self.grasp, self.load, self.backend = grasp, load, backend
+        size = grasp.size or 1.0
+        self.unit = max(float(abs(load.force).max()), float(abs(load.torque).max()) / size) or min(limits)
+
+    def forces(self, objective: str, frictions: list[float], limits: list[float]) -> Array | None:
+        """The solver's forces (n, 2), moved into exact equilibrium inside the cones; None if there are none.
+
+        So a solver's tolerance never shows in a plan; an answer that this moves far raises ``SolverFailed``.
+        """
+        program = state_program(self.grasp, self.load, objective, frictions, limits, self.unit)
+        answer = solve(program, self.backend)
+        if answer.status is Status.INFEASIBLE:
+            return None
+        if answer.status is not Status.SOLVED:
+            raise SolverFailed(f"{self.backend}: {answer.status.value}", program, answer)
+        if objective == "force" and answer.x[-1] < -_FEASIBLE:
+            return None  # the least distance to the cones' boundaries is negative: some force is outside
+        wanted = answer.x[:-1].reshape(-1, 2) * self.unit
+        grasp = self.grasp
+        forces = nearest_equilibrium(
+            wanted,
+            grasp.matrix,
+            self.load.vector,
+            grasp.normals,
+            np.array(frictions),
+            np.array(limits),
+            grasp.size,
+        )
+        if forces is None:
+            return None
+        moved, largest = float(abs(forces - wanted).max()), max(self.unit, float(abs(forces).max()))
+        if moved > 1e-5 * largest:
+            raise SolverFailed(
+                f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
+                program,
+                answer,
+            )
+        return forces
+
+
+def solved_state(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenState:
+    """The best state of any number of planar contacts, by programs. Raises ``Infeasible``.
+
+    An angle margin within ``ANGLE_TOLERANCE`` of the best is found by bisection on cones that hold the load;
+    among such states the one of the widest force margin is taken.
+    """
+    criteria.demand_limit(grasp, load)
+    frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
+    solver = _Solver(grasp, load, backend, limits)
+    if criteria.maximises and inf in limits:
+        least = solver.forces("peak", frictions, limits)
+        if least is None:
+            raise infeasible(grasp, load, criteria)
+        peak = float(np.sqrt((least**2).sum(axis=1)).max())
+        limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
+    objective = "force" if criteria.objective == "angle" else criteria.objective
+    forces = solver.forces(objective, frictions, limits)
+    if forces is None:
+        raise infeasible(grasp, load, criteria)
+    if criteria.objective == "angle":
+        held, lost = 0.0, min(atan(mu) for mu in frictions)
+        while lost - held > ANGLE_TOLERANCE:
+            margin = (held + lost) / 2
+            narrowed = solver.forces("force", [tan(atan(mu) - margin) for mu in frictions], limits)
+            if narrowed is None:
+                lost = margin
+            else:
+                held, forces = margin, narrowed
+    return ChosenState(grasp, load, forces, criteria, tuple(limits), backend)

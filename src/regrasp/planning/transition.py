@@ -1,0 +1,174 @@
+"""A transition between two equilibria: Eq. 1-3 as a value."""
+
+from dataclasses import dataclass, replace
+from math import degrees
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.path import straight_path
+from regrasp.display import Pictured
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.margins import Margins, margins
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
+from regrasp.planning.timing import TimeScaling
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How one end of a plan was chosen.
+
+    end: which one. objective: what for. method: ``closed-form`` or the back end.
+    force_limits: one per contact in use [N], those set by ``peak_ratio`` included; infinite for none.
+    """
+
+    end: Literal["start", "end"]
+    objective: str
+    method: str
+    force_limits: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Record:
+    """What a plan decided by itself.
+
+    reserve: fraction of every friction coefficient kept back. choices: the ends that were not given.
+    balancing: largest change of a given force to reach exact equilibrium [N].
+    """
+
+    reserve: float
+    choices: tuple[Choice, ...] = ()
+    balancing: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Transition(ArrayValue, Pictured):
+    """Finger forces that carry a grasp from one equilibrium to another while one finger leaves or arrives.
+
+        f(t) = f_end + (f_start - f_end) T(t)
+
+    With fixed contacts and load the equilibrium forces inside the cones are a convex set, so both ends
+    being in it proves every instant (fact 1); ``regrasp.verify`` checks them in exact arithmetic.
+
+    kind: ``removal`` or ``addition``. contact: the finger that leaves or arrives, idle at that end.
+    start, end: states of one grasp, every contact in play, under one load.
+    """
+
+    kind: Literal["removal", "addition"]
+    contact: str
+    start: GraspState
+    end: GraspState
+    scaling: TimeScaling
+    record: Record
+
+    _drawn_by = "regrasp.plots.overview:transition_png"
+
+    def __post_init__(self) -> None:
+        if self.start.grasp != self.end.grasp or self.start.load != self.end.load:
+            raise InvalidInput("both ends of a transition must have the same grasp and the same load")
+        self.grasp.index(self.contact)
+
+    @property
+    def grasp(self) -> Grasp:
+        """Every contact in play."""
+        return self.start.grasp
+
+    @property
+    def duration(self) -> float:
+        """[s]."""
+        return self.scaling.duration
+
+    def forces(self, t: ArrayLike) -> Array:
+        """Finger forces (n, d) at a time, (m, n, d) at m times [N]; times in [0, duration] [s]."""
+        return self._along(t, self.start.forces, self.end.forces)
+
+    def wrenches(self, t: ArrayLike) -> Array:
+        """Finger wrenches (n, 3) or (m, n, 3), Eq. 1-3 [N, N m]; (…, 6) in space."""
+        return self._along(t, self.start.wrenches, self.end.wrenches)
+
+    def rates(self, t: ArrayLike) -> Array:
+        """Force rates f'(t) = (f_start - f_end) T'(t), (n, d) or (m, n, d) [N/s]."""
+        slope = self.scaling.velocity(t)
+        result: Array = slope[..., None, None] * (self.start.forces - self.end.forces)
+        return result
+
+    def load(self, t: ArrayLike) -> Array:
+        """The load (3,) or (m, 3) in the object frame, constant here [N, N m]; (…, 6) in space."""
+        times = self.scaling(t)  # checks the times
+        return np.broadcast_to(self.start.load.vector, (*times.shape, self.start.load.vector.size))
+
+    def margins(self, t: ArrayLike) -> Margins:
+        """Margins of every contact, (n,) or (m, n); NaN where a contact carries no force."""
+        return margins(self.forces(t), self.grasp.normals, self.grasp.frictions)
+
+    def times(self, rate: float) -> Array:
+        """Sampling times [s] at ``rate`` per second, both ends included."""
+        count = int(np.ceil(self.duration * number(rate, "rate", above=0) - 1e-9))
+        return np.minimum(np.arange(count + 1) / rate, self.duration)
+
+    def reversed(self) -> "Transition":
+        """The same path run backwards: a removal becomes an addition."""
+        return replace(
+            self,
+            kind="addition" if self.kind == "removal" else "removal",
+            start=self.end,
+            end=self.start,
+            scaling=self.scaling.reversed(),
+        )
+
+    def retimed(self, scaling: TimeScaling) -> "Transition":
+        """The same path under another time function."""
+        return replace(self, scaling=scaling)
+
+    def fastest(self, rate_limit: ArrayLike) -> "Transition":
+        """The same path and shape in the least time with |f_i'(t)| <= rate_limit, a number or (n,) [N/s]."""
+        change = self.start.forces - self.end.forces
+        return self.retimed(TimeScaling.fastest(change, rate_limit, self.scaling))
+
+    def to_dataframe(self, rate: float = 1000.0) -> "pandas.DataFrame":
+        """Set-points as a table: index t [s], a column ``<name>_fx`` ... per contact and axis [N]."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: pip install 'regrasp[pandas]'") from None
+        t = self.times(rate)
+        columns = setpoint_columns(self.grasp)
+        return pandas.DataFrame(
+            self.forces(t).reshape(t.size, -1), index=pandas.Index(t, name="t"), columns=columns
+        )
+
+    def _along(self, t: ArrayLike, start: Array, end: Array) -> Array:
+        result: Array = straight_path(start, end, self.scaling(t)[..., None, None])
+        return result
+
+    def __str__(self) -> str:
+        lines = [
+            f"{self.kind} of {self.contact} in {self.duration:g} s under {self.start.load!r}",
+            f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
+        ]
+        ends = np.array([self.start.margins.angle, self.end.margins.angle])
+        for i, name in enumerate(self.grasp.names):
+            start, end = (" ".join(f"{x:10.4f}" for x in s.forces[i]) for s in (self.start, self.end))
+            margin = np.fmin.reduce(ends[:, i])
+            shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
+            lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
+        for c in self.record.choices:
+            limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
+            lines.append(f"{c.end} chosen for {c.objective} by {c.method}, force limits {limits}")
+        if self.record.balancing:
+            lines.append(f"given forces were balanced; largest change {self.record.balancing:.2g}")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+
+def setpoint_columns(grasp: Grasp) -> list[str]:
+    """Column names of set-points: ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact."""
+    return [f"{name}_f{axis}" for name in grasp.names for axis in "xyz"[: grasp.dimension]]
