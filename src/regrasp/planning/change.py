@@ -167,9 +167,9 @@ def _balanced(state: GraspState, side: _Side) -> GraspState:
     change, largest = float(abs(balanced.forces - state.forces).max()), float(state.magnitudes.max())
     if change > side.balance_tolerance * largest:
         raise InvalidInput(
-            f"{side.label}: the forces are no equilibrium inside the friction cones and limits; the nearest one "
-            f"differs by {change:.3g}, more than {side.balance_tolerance:g} of the largest force {largest:.4g}. "
-            f"Correct them, or plan from state.balanced()"
+            f"{side.label}: the forces are no equilibrium inside the friction cones and limits; the nearest "
+            f"one differs by {change:.3g}, more than {side.balance_tolerance:g} of the largest force "
+            f"{largest:.4g}. Correct them, or plan from state.balanced()"
         )
     return balanced
 
