@@ -21,7 +21,11 @@ from fractions import Fraction
 from math import inf, sqrt
 from typing import Protocol
 
+import numpy as np
+
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import torque
 
 RESOLUTION = Fraction(1, 2**40)
 """eps above: largest residual relative to the forces, and the least friction told from none."""
@@ -88,8 +92,8 @@ class Verification:
     def __str__(self) -> str:
         if self.ok:
             return (
-                f"verified: equilibrium to {self.worst_residual:.1e} of the forces, "
-                f"every force inside its cone by {self.least_angle:.6g} rad or more"
+                f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
+                f"every force inside its cone, by {self.least_angle:.6g} rad or more"
             )
         return "\n".join(["not verified:", *(f"  {violation}" for violation in self.violations)])
 
@@ -105,15 +109,47 @@ def verify(plan: Plan) -> Verification:
     violations += _check_idle(plan)
     residuals, slacks, angles = [0.0], [inf], [inf]
     for label, state in (("start", plan.start), ("end", plan.end)):
-        residual, broken = _check_equilibrium(state, label)
+        residual, slack, broken = _check_state(state, label)
         residuals.append(residual)
+        slacks.append(slack)
         violations += broken
-        for i, name in enumerate(state.grasp.names):
-            slack, broken = _check_force(state, i, f"{label}: force of {name}")
-            slacks.append(slack)
-            violations += broken
         angles.append(state.margins.least_angle)
     return Verification(tuple(violations), max(residuals), min(angles), min(slacks))
+
+
+def verify_setpoints(plan: Plan, forces: Array) -> Verification:
+    """Check sampled forces (m, n, d) of a plan, the numbers that a controller will be given.
+
+    Rows that are inside by more than rounding are settled in floating point, whose error is bounded; the
+    others are decided exactly.
+    """
+    start, doubt = plan.start, float(RESOLUTION)
+    grasp, load, d = start.grasp, start.load.vector, start.grasp.dimension
+    if forces.ndim != 3 or forces.shape[1:] != start.forces.shape:
+        return Verification(
+            (f"set-points must have shape (m, {len(grasp)}, {d}), got {forces.shape}",), inf, 0, 0
+        )
+    normal = (forces * grasp.normals).sum(axis=-1)
+    tangential = np.linalg.norm(forces - normal[..., None] * grasp.normals, axis=-1)
+    magnitude = np.linalg.norm(forces, axis=-1)
+    inside = grasp.frictions * normal - tangential > doubt * magnitude
+    inside &= magnitude <= grasp.max_forces * (1 - doubt)
+    total = np.concatenate([forces, torque(grasp.positions, forces)], axis=-1).sum(axis=1) + load
+    arm = grasp.size or 1.0
+    scale = np.maximum(magnitude.max(axis=1), np.linalg.norm(load[:d]))
+    off = np.maximum(np.linalg.norm(total[:, :d], axis=1), np.linalg.norm(total[:, d:], axis=1) / arm)
+    settled = inside.all(axis=1) & (off <= doubt / 2 * scale)
+    violations, slacks, residuals = [], [inf], [0.0]
+    for row in np.flatnonzero(~settled):
+        state = GraspState(grasp, start.load, forces[row])
+        residual, slack, broken = _check_state(state, f"set-point {row}")
+        violations += broken
+        slacks.append(slack)
+        residuals.append(residual)
+    angles = np.where(
+        magnitude > doubt * scale[:, None], np.arctan(grasp.frictions) - np.arctan2(tangential, normal), inf
+    )
+    return Verification(tuple(violations), max(residuals), float(angles.min(initial=inf)), min(slacks))
 
 
 def _check_scaling(scaling: Scaling) -> list[str]:
@@ -140,6 +176,17 @@ def _check_idle(plan: Plan) -> list[str]:
     if any(force):
         return [f"{when}: {plan.contact} must carry no force, it carries {force}"]
     return []
+
+
+def _check_state(state: GraspState, label: str) -> tuple[float, float, list[str]]:
+    """(residual, least cone slack, violations) of one state."""
+    residual, violations = _check_equilibrium(state, label)
+    slacks = [inf]
+    for i, name in enumerate(state.grasp.names):
+        slack, broken = _check_force(state, i, f"{label}: force of {name}")
+        slacks.append(slack)
+        violations += broken
+    return residual, min(slacks), violations
 
 
 def _check_force(state: GraspState, i: int, what: str) -> tuple[float, list[str]]:

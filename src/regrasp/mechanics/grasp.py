@@ -65,6 +65,9 @@ class Grasp(ArrayValue):
     def __getitem__(self, contact: str | int) -> Contact:
         return self.contacts[self.index(contact)]
 
+    def __contains__(self, contact: object) -> bool:
+        return contact in self.names if isinstance(contact, str) else contact in self.contacts
+
     def __len__(self) -> int:
         return len(self.contacts)
 

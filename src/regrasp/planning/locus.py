@@ -17,7 +17,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState, check_load
-from regrasp.mechanics.value import ArrayValue, numbers
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench, torque
 from regrasp.planning.criteria import PEAK_RATIO, ChosenState, Criteria
 from regrasp.planning.escape import infeasible
@@ -116,7 +116,7 @@ class EquilibriumLocus(ArrayValue):
 
     def __repr__(self) -> str:
         names = ", ".join(self.grasp.names)
-        span = "empty" if self.is_empty else f"squeeze in {numbers(self.interval)}"
+        span = "empty" if self.is_empty else f"squeeze in [{self.interval[0]:.6g}, {self.interval[1]:.6g}]"
         return f"EquilibriumLocus of {names} under {self.load!r}: {span}"
 
 
