@@ -54,20 +54,23 @@ def best_squeezes(
     torque: ArrayLike = 0.0,
     *,
     objective: str = "angle",
-    max_force: ArrayLike | None = None,
+    max_force: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
     peak_ratio: float = PEAK_RATIO,
 ) -> Array:
     """The best squeeze of many pairs of planar contacts [N]; NaN where no state exists.
 
-    Arguments as for ``locus_intervals``. ``max_force`` (...) or None limits both forces; without it the
-    objectives ``angle`` and ``force`` limit them to ``peak_ratio`` times the least peak force of each
-    pair. The full friction is used: pass ``mu * (1 - reserve)`` to keep a reserve.
+    Arguments as for ``locus_intervals``. ``max_force`` limits the forces: (...) for both, or a tuple of two
+    (...), one for each contact; infinite for none. Without it the objectives ``angle`` and ``force`` limit
+    them to ``peak_ratio`` times the least peak force of each pair. The full friction is used: pass ``mu * (1 - reserve)`` to keep a reserve.
     """
     choice(objective, "objective", OBJECTIVES)
     number(peak_ratio, "peak_ratio", least=1)
-    limit: ArrayLike = inf if max_force is None else max_force
-    arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque, limit, limit)
-    if max_force is None and objective in UNBOUNDED:
+    limits: tuple[ArrayLike, ...] = max_force if isinstance(max_force, tuple) else (max_force, max_force)
+    if len(limits) != 2:
+        raise InvalidInput(f"max_force must be one limit or a tuple of two, got a tuple of {len(limits)}")
+    limit1, limit2 = (inf if limit is None else limit for limit in limits)
+    arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque, limit1, limit2)
+    if objective in UNBOUNDED and (np.isinf(arrays[8]).any() or np.isinf(arrays[9]).any()):
         loads = np.asarray(force, dtype=float).any(axis=-1) | (np.asarray(torque, dtype=float) != 0)
         if not loads.all():
             raise InvalidInput(f"objective {objective!r} under a zero load needs max_force")

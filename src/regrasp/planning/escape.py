@@ -20,6 +20,8 @@ from regrasp.programs import Cone, Rows, solve
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
     names = ", ".join(grasp.names)
+    if grasp.dimension == 3:
+        return Infeasible(f"no forces of {names} inside their friction cones and limits balance {load!r}")
     full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
     frictions, limits = full.frictions(grasp), full.limits(grasp)
     twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from regrasp.closed_form.choice import OBJECTIVES, best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -42,6 +42,18 @@ class EquilibriumLocus(ArrayValue):
                 f"{self.grasp.dimension}; use grasp.subset([...])"
             )
         check_load(self.grasp, self.load)
+
+    @classmethod
+    def given(cls, grasp: Grasp, load: Wrench, contact: str | int, force: ArrayLike) -> "EquilibriumLocus":
+        """LS_A: what two of three contacts can do when the third one's ``force`` (2,) is given (III-B).
+
+        The given wrench acts like a part of the load: the locus is that of the other two contacts under
+        ``load`` plus w = (f, r x f).
+        """
+        f = array(force, "force", (2,))
+        fixed = grasp[contact]
+        wrench = Wrench(f, torque=float(torque(fixed.position, f)[0]))
+        return cls(grasp.without(contact), load + wrench)
 
     @cached_property
     def interval(self) -> tuple[float, float]:
