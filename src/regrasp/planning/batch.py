@@ -61,7 +61,8 @@ def best_squeezes(
 
     Arguments as for ``locus_intervals``. ``max_force`` limits the forces: (...) for both, or a tuple of two
     (...), one for each contact; infinite for none. Without it the objectives ``angle`` and ``force`` limit
-    them to ``peak_ratio`` times the least peak force of each pair. The full friction is used: pass ``mu * (1 - reserve)`` to keep a reserve.
+    them to ``peak_ratio`` times the least peak force of each pair. The full friction is used: pass
+    ``mu * (1 - reserve)`` to keep a reserve.
     """
     choice(objective, "objective", OBJECTIVES)
     number(peak_ratio, "peak_ratio", least=1)
