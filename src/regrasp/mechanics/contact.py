@@ -10,6 +10,10 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number, point
 from regrasp.mechanics.value import ArrayValue, numbers
 
+# A normal whose length is this near to 1 is taken as it is, so that one normalised before (whose length is
+# within 3 2^-53 of 1) keeps its every bit.
+_UNIT = 2.0**-51
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Contact(ArrayValue):
@@ -54,8 +58,9 @@ class Contact(ArrayValue):
             raise InvalidInput(
                 f"{label}: normal must not be zero; give the direction that points into the object"
             )
-        direction = direction / largest  # first, so that squares neither overflow nor vanish
-        direction = direction / hypot(*direction)
+        if abs(hypot(*direction) - 1) > _UNIT:
+            direction = direction / largest  # first, so that squares neither overflow nor vanish
+            direction = direction / hypot(*direction)
         direction.setflags(write=False)
         object.__setattr__(self, "position", where)
         object.__setattr__(self, "normal", direction)

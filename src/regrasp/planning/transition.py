@@ -110,8 +110,11 @@ class Transition(ArrayValue, Pictured):
 
     def times(self, rate: float) -> Array:
         """Sampling times [s] at ``rate`` per second, both ends included."""
-        count = int(np.ceil(self.duration * number(rate, "rate", above=0) - 1e-9))
-        return np.minimum(np.arange(count + 1) / rate, self.duration)
+        # Less a little, so that rounding of the product adds no second sample at the end.
+        count = int(np.ceil(self.duration * number(rate, "rate", above=0) * (1 - 1e-12)))
+        times = np.arange(count + 1) / rate
+        times[-1] = self.duration
+        return times
 
     def reversed(self) -> "Transition":
         """The same path run backwards: a removal becomes an addition."""

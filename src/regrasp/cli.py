@@ -1,0 +1,191 @@
+"""The command line. Everything but click is imported inside the commands, when they need it."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from regrasp import __version__
+from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverUnavailable
+
+if TYPE_CHECKING:
+    from regrasp.files import Scenario
+    from regrasp.planning.transition import Transition
+    from regrasp.verification import Verification
+
+# Exit statuses; 0 only for a plan that verified.
+UNVERIFIED, BAD_INPUT, INFEASIBLE, INTERRUPTED = 1, 2, 3, 130
+
+# A plan with a thousand bad set-points says the same thing a thousand times.
+_SHOWN = 10
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="regrasp")
+def commands() -> None:
+    """Contact forces while a grasp changes: planned, proven and explained.
+
+    Exit status: 0 for a plan that verified, 1 for one that did not, 2 for bad input, 3 for an infeasible
+    task.
+    """
+
+
+@commands.command()
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    default="regrasp-demo",
+    show_default=True,
+    help="Folder for the files.",
+)
+def demo(output: Path) -> None:
+    """Work the paper's example.
+
+    Plans it, verifies the plan, and writes plan, set-points, figures and the scenario itself.
+    """
+    from importlib.resources import files
+
+    from regrasp.files import parse_scenario
+
+    name = "paper.toml"
+    text = (files("regrasp.files") / name).read_text(encoding="utf-8")
+    _work(parse_scenario(text, name), name, output, copy=text)
+    click.echo(f"\nNext: change {output / name}, then run  regrasp plan {output / name} -o {output}")
+
+
+@commands.command()
+@click.argument("scenario", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Folder for the files. Those of the same names in it are replaced, others left alone.",
+)
+@click.option("--no-figures", is_flag=True, help="Write plan.json and setpoints.csv only.")
+def plan(scenario: Path, output: Path, no_figures: bool) -> None:
+    """Plan the change of grasp in a SCENARIO.
+
+    SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
+    """
+    from regrasp.files import read_scenario
+
+    _work(read_scenario(scenario), scenario, output, draw=not no_figures)
+
+
+@commands.command()
+@click.argument("path", metavar="PLAN", type=click.Path(path_type=Path))
+def verify(path: Path) -> None:
+    """Check a PLAN in exact arithmetic.
+
+    PLAN is a plan.json or the folder that holds it.
+    """
+    from regrasp import verify as verdict_on
+    from regrasp.files import read_plan
+
+    path = path / "plan.json" if path.is_dir() else path
+    transition = read_plan(path)
+    click.echo(transition)
+    click.echo(_verified(verdict_on(transition), path))
+
+
+@commands.command()
+def schema() -> None:
+    """Print the JSON Schema of scenarios.
+
+    Editors use it to check and complete TOML.
+    """
+    import json
+
+    from regrasp.files import Scenario
+
+    click.echo(json.dumps(Scenario.model_json_schema(), indent=2))
+
+
+def main() -> None:
+    """Run the command line and exit with its status; an error is one message on stderr."""
+    try:
+        status = commands(standalone_mode=False, prog_name="regrasp")
+    except click.ClickException as error:
+        error.show()
+        status = error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("Interrupted.", err=True)
+        status = INTERRUPTED
+    except RegraspError as error:
+        click.echo(f"Error: {error}", err=True)
+        status = _status(error)
+    sys.exit(status)
+
+
+class _Unverified(RegraspError):
+    """A plan broke a condition."""
+
+
+def _status(error: RegraspError) -> int:
+    if isinstance(error, Infeasible):
+        return INFEASIBLE
+    return BAD_INPUT if isinstance(error, (InvalidInput, SolverUnavailable)) else UNVERIFIED
+
+
+def _work(
+    scenario: "Scenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
+) -> None:
+    """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
+    from regrasp.files import plan_scenario, write_plan, write_setpoints
+    from regrasp.files.setpoints import setpoint_blocks
+    from regrasp.files.source import naming
+    from regrasp.files.staging import whole_folder
+    from regrasp.verification import verify, verify_setpoints
+
+    with naming(name):
+        transition = plan_scenario(scenario)
+    click.echo(f"{scenario.title}\n\n{transition}" if scenario.title else transition)
+    click.echo(_verified(verify(transition), name))
+    rate, count = scenario.task.rate, 0
+    for times, forces in setpoint_blocks(transition, rate):
+        _verified(verify_setpoints(transition, forces), name)
+        count += times.size
+    click.echo(f"each of {count} set-points verified too")
+
+    with whole_folder(output) as folder:
+        write_plan(transition, folder / "plan.json")
+        write_setpoints(transition, folder / "setpoints.csv", rate)
+        if copy is not None:
+            (folder / name).write_text(copy, encoding="utf-8")
+        if draw:
+            _draw(transition, folder)
+        written = sorted(file.name for file in folder.iterdir())
+    click.echo("")
+    for file in written:
+        click.echo(f"wrote {output / file}")
+
+
+def _verified(verdict: "Verification", name: str | Path) -> "Verification":
+    """The verdict, if it is good; else an error that lists what is broken."""
+    if verdict.ok:
+        return verdict
+    shown, more = verdict.violations[:_SHOWN], len(verdict.violations) - _SHOWN
+    lines = [*shown, f"and {more} more"] if more > 0 else shown
+    raise _Unverified("\n  ".join([f"{name}: the plan does not verify:", *lines]))
+
+
+def _draw(transition: "Transition", folder: Path) -> None:
+    """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("drawing figures", total=None)
+        from regrasp.plots.overview import figures
+
+        drawn = figures(transition)
+        progress.update(task, total=len(drawn))
+        for stem, figure in drawn.items():
+            figure.savefig(folder / f"{stem}.png")
+            progress.advance(task)

@@ -1,0 +1,16 @@
+"""Scenarios in, plans and set-points out. Imports pydantic, so it is imported when it is used."""
+
+from regrasp.files.plan_file import read_plan, write_plan
+from regrasp.files.planned import plan_scenario
+from regrasp.files.scenario import Scenario, parse_scenario, read_scenario
+from regrasp.files.setpoints import write_setpoints
+
+__all__ = [
+    "Scenario",
+    "parse_scenario",
+    "plan_scenario",
+    "read_plan",
+    "read_scenario",
+    "write_plan",
+    "write_setpoints",
+]

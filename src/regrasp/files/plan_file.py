@@ -1,0 +1,163 @@
+"""A plan as a JSON file: self-contained, versioned, and read back as the equal plan, bit for bit."""
+
+import json
+from math import inf
+from pathlib import Path
+from typing import Any, Literal
+
+from regrasp.errors import InvalidInput
+from regrasp.files.source import naming, text_of
+from regrasp.files.staging import whole_file
+from regrasp.files.strict import Strict, validated
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.timing import TimeScaling
+from regrasp.planning.transition import Choice, Record, Transition
+
+FORMAT = "regrasp plan"
+VERSION = 1
+
+
+class _Contact(Strict):
+    name: str
+    position: list[float]
+    normal: list[float]
+    friction: float
+    max_force: float | None
+
+
+class _Scaling(Strict):
+    duration: float
+    control: list[float]
+    degree: int
+
+
+class _Choice(Strict):
+    end: Literal["start", "end"]
+    objective: str
+    method: str
+    force_limits: list[float | None]  # JSON has no infinity: None is no limit
+
+
+class _Record(Strict):
+    reserve: float
+    choices: list[_Choice]
+    balancing: float
+
+
+class _Plan(Strict):
+    format: Literal["regrasp plan"]
+    version: Literal[1]
+    kind: Literal["removal", "addition"]
+    contact: str
+    load: list[float]  # force, then torque
+    contacts: list[_Contact]
+    start: list[list[float]]
+    end: list[list[float]]
+    scaling: _Scaling
+    record: _Record
+
+
+def write_plan(plan: Transition, path: str | Path) -> None:
+    """Write a plan with everything needed to read it back and verify it.
+
+    Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
+    """
+    document = _document(plan)
+    validated(_Plan, document, path)
+    with whole_file(path) as file:
+        json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
+        file.write("\n")
+
+
+def read_plan(path: str | Path) -> Transition:
+    """The plan of a file that ``write_plan`` wrote; judge it with ``regrasp.verify``.
+
+    Raises one ``InvalidInput`` that names the file and what is wrong in it.
+    """
+    path = Path(path)
+    text = text_of(path, "a plan in JSON")
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise InvalidInput(f'{path}: expected a plan with "format": "{FORMAT}", found other JSON')
+    if data.get("version") != VERSION:
+        raise InvalidInput(
+            f"{path}: version: expected {VERSION}, got {data.get('version')!r}; "
+            f"a plan of a newer regrasp needs that regrasp to be read"
+        )
+    stored = validated(_Plan, data, path)
+    with naming(path):
+        return _plan(stored)
+
+
+def _document(plan: Transition) -> dict[str, Any]:
+    scaling, record = plan.scaling, plan.record
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "kind": plan.kind,
+        "contact": plan.contact,
+        "load": plan.start.load.vector.tolist(),
+        "contacts": [
+            {
+                "name": c.name,
+                "position": c.position.tolist(),
+                "normal": c.normal.tolist(),
+                "friction": c.friction,
+                "max_force": c.max_force,
+            }
+            for c in plan.grasp
+        ],
+        "start": plan.start.forces.tolist(),
+        "end": plan.end.forces.tolist(),
+        "scaling": {
+            "duration": scaling.duration,
+            "control": list(scaling.control),
+            "degree": scaling.degree,
+        },
+        "record": {
+            "reserve": record.reserve,
+            "choices": [
+                {
+                    "end": c.end,
+                    "objective": c.objective,
+                    "method": c.method,
+                    "force_limits": [None if limit == inf else limit for limit in c.force_limits],
+                }
+                for c in record.choices
+            ],
+            "balancing": record.balancing,
+        },
+    }
+
+
+def _plan(stored: _Plan) -> Transition:
+    grasp = Grasp(
+        Contact(c.position, c.normal, c.friction, max_force=c.max_force, name=c.name) for c in stored.contacts
+    )
+    load, scaling, record = Wrench.from_vector(stored.load), stored.scaling, stored.record
+    return Transition(
+        stored.kind,
+        stored.contact,
+        GraspState(grasp, load, stored.start),
+        GraspState(grasp, load, stored.end),
+        TimeScaling(scaling.duration, tuple(scaling.control), scaling.degree),
+        Record(
+            record.reserve,
+            tuple(
+                Choice(
+                    c.end,
+                    c.objective,
+                    c.method,
+                    tuple(inf if limit is None else limit for limit in c.force_limits),
+                )
+                for c in record.choices
+            ),
+            record.balancing,
+        ),
+    )

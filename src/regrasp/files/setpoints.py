@@ -1,0 +1,36 @@
+"""Set-points of a plan as a table in CSV."""
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from regrasp.files.staging import whole_file
+from regrasp.mechanics.checks import Array
+from regrasp.planning.transition import Transition, setpoint_columns
+
+# Rows computed at a time, so that memory does not grow with the duration.
+_BLOCK = 8192
+
+
+def setpoint_blocks(plan: Transition, rate: float) -> Iterator[tuple[Array, Array]]:
+    """Times (m,) [s] and forces (m, n, d) [N] of all set-points in order, some thousand at a time."""
+    times = plan.times(rate)
+    for first in range(0, times.size, _BLOCK):
+        t = times[first : first + _BLOCK]
+        yield t, plan.forces(t)
+
+
+def write_setpoints(plan: Transition, path: str | Path, rate: float = 1000.0) -> None:
+    """Write ``t`` [s] and the columns ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact [N].
+
+    rate: rows per second; both ends of the plan have a row. Every number reads back as the same double.
+    Raises ``InvalidInput`` for a rate of 0 or less, and where the file cannot be written.
+    """
+    blocks = setpoint_blocks(plan, rate)
+    with whole_file(path) as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["t", *setpoint_columns(plan.grasp)])
+        for t, forces in blocks:
+            rows.writerows(np.column_stack([t, forces.reshape(t.size, -1)]).tolist())

@@ -1,0 +1,34 @@
+"""The text of a file, and errors that name the file they are about."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from regrasp.errors import Infeasible, InvalidInput
+
+
+def text_of(path: Path, expected: str) -> str:
+    """The text of a UTF-8 file. Raises ``InvalidInput`` where there is none to read."""
+    if path.is_dir():
+        raise InvalidInput(f"{path}: expected {expected}, found a folder")
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InvalidInput(f"{path}: expected {expected}, found no such file") from None
+    except UnicodeDecodeError as error:
+        raise InvalidInput(
+            f"{path}: expected {expected}, found no UTF-8 text (at byte {error.start})"
+        ) from None
+    except OSError as error:
+        raise InvalidInput(f"{path}: cannot be read: {error.strerror}") from None
+
+
+@contextmanager
+def naming(file: str | Path) -> Iterator[None]:
+    """Put the file's name before the message of every ``InvalidInput`` and ``Infeasible`` raised inside."""
+    try:
+        yield
+    except InvalidInput as error:
+        raise InvalidInput(f"{file}: {error}") from None
+    except Infeasible as error:
+        raise Infeasible(f"{file}: {error}", error.certificate) from None
