@@ -39,7 +39,8 @@ def locus_intervals(
     from regrasp.closed_form import compiled
 
     lo, hi = np.empty(shape), np.empty(shape)
-    compiled.intervals(*_blocks(arrays, compiled.BLOCK), whole, lo.reshape(-1), hi.reshape(-1))
+    if compiled.intervals(*_blocks(arrays, compiled.BLOCK), whole, lo.reshape(-1), hi.reshape(-1)):
+        _refuse_bad_values(arrays)
     return lo, hi
 
 
@@ -71,21 +72,19 @@ def best_squeezes(
         raise InvalidInput(f"max_force must be one limit or a tuple of two, got a tuple of {len(limits)}")
     limit1, limit2 = (inf if limit is None else limit for limit in limits)
     arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque, limit1, limit2)
-    if objective in UNBOUNDED and (np.isinf(arrays[8]).any() or np.isinf(arrays[9]).any()):
-        loads = np.asarray(force, dtype=float).any(axis=-1) | (np.asarray(torque, dtype=float) != 0)
-        if not loads.all():
-            raise InvalidInput(f"objective {objective!r} under a zero load needs max_force")
     from regrasp.closed_form import compiled
 
     x = np.empty(shape)
-    compiled.squeezes(
-        *_blocks(arrays, compiled.BLOCK), OBJECTIVES.index(objective), float(peak_ratio), whole, x.reshape(-1)
-    )
+    blocks = _blocks(arrays, compiled.BLOCK)
+    if compiled.squeezes(*blocks, OBJECTIVES.index(objective), float(peak_ratio), whole, x.reshape(-1)):
+        _refuse_bad_values(arrays)
+        if objective in UNBOUNDED:
+            _refuse_endless(objective, *arrays[6:])
     return x
 
 
 def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...]]:
-    """Checked arrays, flat: one value, or one for every grasp; which of them are whole; the common shape."""
+    """Flat arrays of one value, or one for every grasp; which of them are whole; the common shape."""
     arrays, leading = [], []
     for (name, size), argument in zip(_SIZES.items(), arguments, strict=False):
         try:
@@ -94,7 +93,6 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
             raise InvalidInput(f"{name} must be an array of numbers, got {type(argument).__name__}") from None
         if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
             raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
-        _check_values(name, value)
         arrays.append(value)
         leading.append(value.shape[:-1] if size == 2 else value.shape)
     try:
@@ -102,8 +100,6 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
     except ValueError:
         shapes = ", ".join(f"{n} {s}" for n, s in zip(_SIZES, leading, strict=False))
         raise InvalidInput(f"leading shapes must broadcast, got {shapes}") from None
-    if (np.abs(arrays[0] - arrays[3]).max(axis=-1) == 0).any():
-        raise InvalidInput("r1 and r2 coincide in at least one pair; place contacts at different points")
     flat, whole = [], []
     for value, lead, size in zip(arrays, leading, _SIZES.values(), strict=False):
         single = int(np.prod(lead)) == 1 and shape != ()
@@ -114,19 +110,30 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
     return flat, np.array(whole), shape
 
 
-def _check_values(name: str, value: Array) -> None:
-    if name.startswith("limit"):
-        if np.isnan(value).any() or (value <= 0).any():
-            raise InvalidInput("max_force must be greater than 0 everywhere")
-        return
-    if not np.isfinite(value).all():
-        raise InvalidInput(
-            f"{name} must be finite, got {int((~np.isfinite(value)).sum())} entries that are not"
-        )
-    if name in ("n1", "n2") and not value.any(axis=-1).all():
-        raise InvalidInput(f"{name} must not be zero; give the direction that points into the object")
-    if name in ("mu1", "mu2") and (value < 0).any():
-        raise InvalidInput(f"{name} must be at least 0 everywhere")
+def _refuse_bad_values(arrays: list[Array]) -> None:
+    """Name what is wrong with the numbers; the compiled loops say only that something may be."""
+    for (name, size), flat in zip(_SIZES.items(), arrays, strict=False):
+        value = flat.reshape(-1, size)
+        if name.startswith("limit"):
+            if not (value > 0).all():
+                raise InvalidInput("max_force must be greater than 0 everywhere")
+            continue
+        if not np.isfinite(value).all():
+            raise InvalidInput(
+                f"{name} must be finite, got {int((~np.isfinite(value)).sum())} entries that are not"
+            )
+        if name in ("n1", "n2") and not value.any(axis=-1).all():
+            raise InvalidInput(f"{name} must not be zero; give the direction that points into the object")
+        if name in ("mu1", "mu2") and (value < 0).any():
+            raise InvalidInput(f"{name} must be at least 0 everywhere")
+    if (arrays[0].reshape(-1, 2) == arrays[3].reshape(-1, 2)).all(axis=-1).any():
+        raise InvalidInput("r1 and r2 coincide in at least one pair; place contacts at different points")
+
+
+def _refuse_endless(objective: str, force: Array, torque: Array, limit1: Array, limit2: Array) -> None:
+    idle = ~force.reshape(-1, 2).any(axis=-1) & (torque == 0)
+    if (idle & (np.isinf(limit1) | np.isinf(limit2))).any():
+        raise InvalidInput(f"objective {objective!r} under a zero load needs max_force")
 
 
 def _blocks(arrays: list[Array], size: int) -> list[Array]:
