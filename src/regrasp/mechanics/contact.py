@@ -70,7 +70,7 @@ class Contact(ArrayValue):
         object.__setattr__(self, "max_force", max_force)
         object.__setattr__(self, "name", name)
 
-    @property
+    @cached_property
     def dimension(self) -> int:
         """2 in the plane, 3 in space."""
         return int(self.position.size)

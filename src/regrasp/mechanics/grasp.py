@@ -10,6 +10,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.wrench import torque
 
 # Contacts nearer than this fraction of the largest coordinate are one point in double precision.
 COINCIDENT = 1e-12
@@ -44,7 +45,7 @@ class Grasp(ArrayValue):
 
     # -- lookup ---------------------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """The contacts' names, in order."""
         return tuple(str(contact.name) for contact in self.contacts)
@@ -138,12 +139,11 @@ class Grasp(ArrayValue):
     @cached_property
     def matrix(self) -> Array:
         """Grasp matrix G, (3, 2n) or (6, 3n): stacked forces (f_1, ..., f_n) to total wrench."""
-        d = self.dimension
-        blocks = []
-        for r in self.positions:
-            arm = [[-r[1], r[0]]] if d == 2 else [[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]]
-            blocks.append(np.vstack([np.eye(d), arm]))
-        return _frozen(np.hstack(blocks))
+        n, d = self.positions.shape
+        axes = np.eye(d)  # a unit force along each axis, at each contact
+        arms = torque(self.positions[:, None], axes)  # (n, d, 1) or (n, d, 3)
+        blocks = np.concatenate([np.broadcast_to(axes[:, None], (d, n, d)), np.moveaxis(arms, -1, 0)])
+        return _frozen(blocks.reshape(-1, n * d))
 
     @cached_property
     def internal_forces(self) -> Array:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import hypot
+from operator import mul
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -50,7 +51,7 @@ class GraspState(ArrayValue):
     @cached_property
     def imbalance(self) -> Array:
         """G f + w_ext, (3,) or (6,) [N, N m]; zero in equilibrium."""
-        total: Array = self.wrenches.sum(axis=0) + self.load.vector
+        total: Array = self.grasp.matrix @ self.forces.ravel() + self.load.vector
         return total
 
     @property
@@ -88,16 +89,17 @@ class GraspState(ArrayValue):
 
     def is_balanced(self, *, reserve: float = RESERVE) -> bool:
         """Whether this is an equilibrium to rounding, inside the cones and limits less the reserve."""
-        d, contacts = self.grasp.dimension, self.grasp.contacts
+        d, contacts, load = self.grasp.dimension, self.grasp.contacts, self.load.plain
         rows, total = self.forces.tolist(), self.imbalance.tolist()
-        largest = max(hypot(*f) for f in (*rows, self.load.plain[:d]))
-        torques = max(largest * self.grasp.size, hypot(*self.load.plain[d:]))
+        magnitudes = [hypot(*f) for f in rows]
+        largest = max(*magnitudes, hypot(*load[:d]))
+        torques = max(largest * self.grasp.size, hypot(*load[d:]))
         if hypot(*total[:d]) > EQUILIBRIUM * largest or hypot(*total[d:]) > EQUILIBRIUM * torques:
             return False
-        for contact, f in zip(contacts, rows, strict=True):
-            normal = sum(x * n for x, n in zip(f, contact.plain[d : 2 * d], strict=True))
-            magnitude = hypot(*f)
-            tangential = hypot(*(x - normal * n for x, n in zip(f, contact.plain[d : 2 * d], strict=True)))
+        for contact, f, magnitude in zip(contacts, rows, magnitudes, strict=True):
+            n = contact.plain[d : 2 * d]
+            normal = sum(map(mul, f, n))
+            tangential = hypot(*[x - normal * along for x, along in zip(f, n, strict=True)])
             if tangential > kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude:
                 return False
             if contact.max_force is not None and magnitude > contact.max_force:

@@ -67,7 +67,7 @@ class Criteria:
 
     def demand_limit(self, grasp: Grasp, load: Wrench) -> None:
         """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero."""
-        if self.maximises and not load.vector.any() and inf in self.limits(grasp):
+        if self.maximises and not any(load.plain) and inf in self.limits(grasp):
             raise InvalidInput(
                 f"objective {self.objective!r} under a zero load needs max_force: any squeeze holds it, "
                 f"so no force follows from the load"
