@@ -1,7 +1,10 @@
 """Planning the removal and the addition of a finger."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
+
+import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import number
@@ -52,7 +55,7 @@ def plan_removal(
     ``InvalidInput`` for given states that are no equilibrium inside the cones.
     """
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
-    whole_criteria = replace(criteria, objective=whole_objective)
+    whole_criteria = Criteria(whole_objective, max_force, peak_ratio, reserve)
     number(balance_tolerance, "balance_tolerance", least=0)
     scaling = _scaling(duration, scaling)
     grasp, load = _grasp_and_load(start, load)
@@ -95,7 +98,7 @@ def plan_addition(
     if not isinstance(contact, Contact):
         raise InvalidInput(f"contact must be the Contact that arrives, got {contact!r}")
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
-    whole_criteria = replace(criteria, objective=whole_objective)
+    whole_criteria = Criteria(whole_objective, max_force, peak_ratio, reserve)
     number(balance_tolerance, "balance_tolerance", least=0)
     scaling = _scaling(duration, scaling)
     before, load = _grasp_and_load(start, load)
@@ -131,7 +134,7 @@ class _Side:
         if self.given is None:
             best = chosen(grasp, load, self.criteria, self.method)
             choice = Choice(self.label, self.criteria.objective, best.method, best.force_limits)
-            return GraspState(grasp, load, best.forces), choice, 0.0
+            return best, choice, 0.0
         given = self.given if self.given.grasp is grasp else GraspState(grasp, load, self.given.forces)
         state = _balanced(given, self)
         return state, None, 0.0 if state is given else float(abs(state.forces - given.forces).max())
@@ -144,11 +147,11 @@ def _ends(
     # The state of fewer fingers first: it is the one that may not exist.
     fewer, choice, change = rest.state(grasp.without(gone), load)
     more, other_choice, other_change = whole.state(grasp, load)
-    idle = fewer.forces.tolist()
-    idle.insert(gone, [0.0] * grasp.dimension)
+    forces = np.zeros((len(grasp), grasp.dimension))  # the finger that is gone stays idle
+    forces[:gone], forces[gone + 1 :] = fewer.forces[:gone], fewer.forces[gone:]
     return (
-        more,
-        GraspState(grasp, load, idle),
+        more if whole.given is not None else GraspState(grasp, load, more.forces),
+        GraspState(grasp, load, forces),
         Record(
             reserve=rest.criteria.reserve,
             choices=tuple(c for c in (choice, other_choice) if c is not None),
@@ -220,7 +223,13 @@ def _with_limit(contact: Contact, limit: float) -> Contact:
 
 def _scaling(duration: float, scaling: TimeScaling | None) -> TimeScaling:
     if scaling is None:
-        return TimeScaling.spline(number(duration, "duration", above=0))
+        return _spline(number(duration, "duration", above=0))
     if not isinstance(scaling, TimeScaling):
         raise InvalidInput(f"scaling must be a TimeScaling, got {scaling!r}")
     return scaling
+
+
+@lru_cache
+def _spline(duration: float) -> TimeScaling:
+    """One value for one duration, so that its polynomials are worked out once."""
+    return TimeScaling.spline(duration)
