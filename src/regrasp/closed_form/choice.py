@@ -45,7 +45,8 @@ def best_squeeze(
     lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)
     lo2, hi2 = cone_interval(nx2 * ux + ny2 * uy, ny2 * ux - nx2 * uy, mu2, b, parallel)
     lo, hi = common_interval(lo1, hi1, lo2, hi2, phi, a, b)
-    lo, hi = limited_interval(lo, hi, phi, a, b, limit1, limit2)
+    if limit1 < inf or limit2 < inf:
+        lo, hi = limited_interval(lo, hi, phi, a, b, limit1, limit2)
     if lo > hi:
         return nan, limit1, limit2
     if objective == EFFORT:
