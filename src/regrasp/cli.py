@@ -142,15 +142,15 @@ def _work(
     from regrasp.files.staging import whole_folder
     from regrasp.verification import verify, verify_setpoints
 
+    rate, count = scenario.task.rate, 0
     with naming(name):
         transition = plan_scenario(scenario)
+        verdict = _verified(verify(transition), name)
+        for times, forces in setpoint_blocks(transition, rate):
+            _verified(verify_setpoints(transition, forces), name)
+            count += times.size
     click.echo(f"{scenario.title}\n\n{transition}" if scenario.title else transition)
-    click.echo(_verified(verify(transition), name))
-    rate, count = scenario.task.rate, 0
-    for times, forces in setpoint_blocks(transition, rate):
-        _verified(verify_setpoints(transition, forces), name)
-        count += times.size
-    click.echo(f"each of {count} set-points verified too")
+    click.echo(f"{verdict}\neach of {count} set-points verified too")
 
     with whole_folder(output) as folder:
         write_plan(transition, folder / "plan.json")

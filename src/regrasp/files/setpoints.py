@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from regrasp.errors import InvalidInput
 from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import Array
 from regrasp.planning.transition import Transition, setpoint_columns
@@ -13,9 +14,20 @@ from regrasp.planning.transition import Transition, setpoint_columns
 # Rows computed at a time, so that memory does not grow with the duration.
 _BLOCK = 8192
 
+# More than a day at 1000 per second; a file of that many rows is a slip of the pen.
+_MOST = 1e8
+
 
 def setpoint_blocks(plan: Transition, rate: float) -> Iterator[tuple[Array, Array]]:
-    """Times (m,) [s] and forces (m, n, d) [N] of all set-points in order, some thousand at a time."""
+    """Times (m,) [s] and forces (m, n, d) [N] of all set-points in order, some thousand at a time.
+
+    Raises ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points.
+    """
+    if plan.duration * rate > _MOST:
+        raise InvalidInput(
+            f"rate {rate:g} for {plan.duration:g} s makes {plan.duration * rate:.3g} set-points; "
+            f"at most {_MOST:g} are made"
+        )
     times = plan.times(rate)
     for first in range(0, times.size, _BLOCK):
         t = times[first : first + _BLOCK]
@@ -26,7 +38,7 @@ def write_setpoints(plan: Transition, path: str | Path, rate: float = 1000.0) ->
     """Write ``t`` [s] and the columns ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact [N].
 
     rate: rows per second; both ends of the plan have a row. Every number reads back as the same double.
-    Raises ``InvalidInput`` for a rate of 0 or less, and where the file cannot be written.
+    Raises ``InvalidInput`` as ``setpoint_blocks`` does, and where the file cannot be written.
     """
     blocks = setpoint_blocks(plan, rate)
     with whole_file(path) as file:

@@ -79,9 +79,9 @@ class EscapeTwist(ArrayValue):
         if self.grasp.dimension == 3:
             return None
         vx, vy, omega = self.twist
-        if abs(omega) * self.grasp.size <= 1e-9 * hypot(vx, vy):
+        if omega == 0 or abs(omega) * self.grasp.size < 1e-9 * hypot(vx, vy):
             return None
-        return np.array([-vy / omega, vx / omega])
+        return np.array([-vy / omega, vx / omega]) + 0.0  # -0 reads as 0
 
     def __str__(self) -> str:
         d = self.grasp.dimension

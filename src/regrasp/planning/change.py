@@ -172,7 +172,7 @@ def _balanced(state: GraspState, side: _Side) -> GraspState:
         raise InvalidInput(
             f"{side.label}: the forces are no equilibrium inside the friction cones and limits; the nearest "
             f"one differs by {change:.3g}, more than {side.balance_tolerance:g} of the largest force "
-            f"{largest:.4g}. Correct them, or plan from state.balanced()"
+            f"{largest:.4g}; correct them, or allow more by balance_tolerance"
         )
     return balanced
 

@@ -71,12 +71,17 @@ class _Solver:
     def __init__(self, grasp: Grasp, load: Wrench, backend: str, limits: list[float]) -> None:
         self.grasp, self.load, self.backend = grasp, load, backend
         size = grasp.size or 1.0
-        self.unit = max(float(abs(load.force).max()), float(abs(load.torque).max()) / size) or min(limits)
+        self.unit = max(float(abs(load.force).max()), float(abs(load.torque).max()) / size)
+        if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
+            self.unit = min(limits) if min(limits) < inf else 1.0
 
-    def forces(self, objective: str, frictions: list[float], limits: list[float]) -> Array | None:
+    def forces(
+        self, objective: str, frictions: list[float], limits: list[float], *, any_will_do: bool = False
+    ) -> Array | None:
         """The solver's forces (n, 2), moved into exact equilibrium inside the cones; None if there are none.
 
-        So a solver's tolerance never shows in a plan; an answer that this moves far raises ``SolverFailed``.
+        So a solver's tolerance never shows in a plan. An answer that this moves far is not the best one and
+        raises ``SolverFailed``, unless any forces will do.
         """
         program = state_program(self.grasp, self.load, objective, frictions, limits, self.unit)
         answer = solve(program, self.backend)
@@ -100,7 +105,7 @@ class _Solver:
         if forces is None:
             return None
         moved, largest = float(abs(forces - wanted).max()), max(self.unit, float(abs(forces).max()))
-        if moved > 1e-5 * largest:
+        if moved > 1e-5 * largest and not any_will_do:
             raise SolverFailed(
                 f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
                 program,
@@ -132,7 +137,8 @@ def solved_state(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -
         held, lost = 0.0, min(atan(mu) for mu in frictions)
         while lost - held > ANGLE_TOLERANCE:
             margin = (held + lost) / 2
-            narrowed = solver.forces("force", [tan(atan(mu) - margin) for mu in frictions], limits)
+            cones = [tan(atan(mu) - margin) for mu in frictions]
+            narrowed = solver.forces("force", cones, limits, any_will_do=True)
             if narrowed is None:
                 lost = margin
             else:

@@ -76,7 +76,12 @@ class TimeScaling(ArrayValue):
         """
         shape = cls.spline(1.0) if shape is None else shape
         moved = np.linalg.norm(array(change, "change", (None, None)), axis=1)
-        rates = np.broadcast_to(np.asarray(rate_limit, dtype=float), moved.shape)
+        try:
+            rates = np.broadcast_to(np.asarray(rate_limit, dtype=float), moved.shape)
+        except (TypeError, ValueError):
+            raise InvalidInput(
+                f"rate_limit must be a number or have shape {moved.shape}, got {rate_limit!r}"
+            ) from None
         if not (rates > 0).all():
             raise InvalidInput(f"rate_limit must be greater than 0, got {rate_limit!r}")
         duration = fastest_duration(moved.tolist(), rates.tolist(), shape.steepest * shape.duration)
@@ -132,7 +137,10 @@ class TimeScaling(ArrayValue):
         return spline, first, second
 
     def _evaluate(self, derivative: int, t: ArrayLike) -> Array:
-        times = np.asarray(t, dtype=float)
+        try:
+            times = np.asarray(t, dtype=float)
+        except (TypeError, ValueError):
+            raise InvalidInput(f"t must be numbers, got {t!r}") from None
         if not ((times >= 0) & (times <= self.duration)).all():
             raise InvalidInput(f"t must lie in [0, {self.duration:g}] s, got {t!r}")
         values: Array = self._splines[derivative](times / self.duration)

@@ -111,7 +111,7 @@ class Transition(ArrayValue, Pictured):
     def times(self, rate: float) -> Array:
         """Sampling times [s] at ``rate`` per second, both ends included."""
         # Less a little, so that rounding of the product adds no second sample at the end.
-        count = int(np.ceil(self.duration * number(rate, "rate", above=0) * (1 - 1e-12)))
+        count = max(1, int(np.ceil(self.duration * number(rate, "rate", above=0) * (1 - 1e-12))))
         times = np.arange(count + 1) / rate
         times[-1] = self.duration
         return times

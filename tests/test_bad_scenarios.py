@@ -1,0 +1,750 @@
+"""What is wrong is said in one message: its exact type and text, its exit status, and no file left behind."""
+
+import re
+from collections.abc import Callable
+from math import inf, nan
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from scenarios import edited, regrasp
+
+# name -> (scenario, exit status, message); every line of a message starts with the file's name.
+P2 = edited().split("\n\n")[5]
+NO_EQUILIBRIUM = (
+    "start: the forces are no equilibrium inside the friction cones and limits; the nearest one differs "
+    "by {}, more than 0.001 of the largest force {}; correct them, or allow more by balance_tolerance"
+)
+NO_FORCES = (
+    ("force = [3.7897, 3.0034]", ""),
+    ("force = [-3.0096, 4.4156]", ""),
+    ("force = [0.7199, -3.9190]", ""),
+)
+SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
+    # -- the file -----------------------------------------------------------------------------------------
+    "not TOML": (
+        "[load\nforce = [1, 2]",
+        2,
+        ["not TOML: Expected ']' at the end of a table declaration (at line 1, column 6)"],
+    ),
+    "empty": (
+        "",
+        2,
+        [
+            "load: a required key is missing",
+            "contacts: a required key is missing",
+            "task: a required key is missing",
+        ],
+    ),
+    "key given twice": (
+        edited(("torque = 0.0 ", "torque = 0.0\ntorque = 1.0 ")),
+        2,
+        ["not TOML: Cannot overwrite a value (at line 16, column 13)"],
+    ),
+    # -- numbers ------------------------------------------------------------------------------------------
+    "NaN in the load": (
+        edited(("force = [-1.5, -3.5]", "force = [nan, -3.5]")),
+        2,
+        ["load.force[0]: expected a finite number, got nan"],
+    ),
+    "infinite torque": (
+        edited(("torque = 0.0", "torque = inf")),
+        2,
+        ["load.torque: expected a finite number, got inf"],
+    ),
+    "infinite position": (
+        edited(("position = [4.0, -5.0]", "position = [4.0, -inf]")),
+        2,
+        ["contacts[1].position[1]: expected a finite number, got -inf"],
+    ),
+    "NaN friction": (
+        edited(("friction = 0.3", "friction = nan")),
+        2,
+        ["contacts[0].friction: expected a finite number, got nan"],
+    ),
+    "negative friction": (
+        edited(("friction = 0.3", "friction = -0.3")),
+        2,
+        ["contacts[0].friction: expected a number of at least 0, got -0.3"],
+    ),
+    "friction as text": (
+        edited(("friction = 0.3", 'friction = "0.3"')),
+        2,
+        ["contacts[0].friction: expected a number, got '0.3'"],
+    ),
+    "friction as truth value": (
+        edited(("friction = 0.3", "friction = true")),
+        2,
+        ["contacts[0].friction: expected a number, got True"],
+    ),
+    "a number no double holds": (
+        edited(("friction = 0.3", f"friction = 1{'0' * 400}")),
+        2,
+        [f"contacts[0].friction: expected a number, got 1{'0' * 56}..."],
+    ),
+    "zero force limit": (
+        edited(("friction = 0.3", "friction = 0.3\nmax_force = 0.0")),
+        2,
+        ["contacts[0].max_force: expected a number greater than 0, got 0.0"],
+    ),
+    # -- contacts -----------------------------------------------------------------------------------------
+    "zero normal": (
+        edited(("normal = [-1.0, 2.0]", "normal = [0.0, 0.0]")),
+        2,
+        [
+            "contacts[1]: contact 'P2': normal must not be zero; "
+            "give the direction that points into the object"
+        ],
+    ),
+    "blank name": (
+        edited(('name = "P2"', 'name = " "')),
+        2,
+        ["contacts[1]: a contact's name must be a non-empty string, got ' '"],
+    ),
+    "empty name": (
+        edited(('name = "P2"', 'name = ""')),
+        2,
+        ["contacts[1].name: expected some text, got ''"],
+    ),
+    "name that is a number": (
+        edited(('name = "P2"', "name = 2")),
+        2,
+        ["contacts[1].name: expected text, got 2"],
+    ),
+    "same name twice": (
+        edited(('name = "P2"', 'name = "P1"')),
+        2,
+        ["contacts: contacts of one grasp must have different names, 'P1' came twice"],
+    ),
+    "coincident contacts": (
+        edited(("position = [4.0, -5.0]", "position = [-4.0, -4.0]")),
+        2,
+        ["contacts: contacts 'P1' and 'P2' coincide at [-4.0, -4.0]; place them at different points"],
+    ),
+    "contact in space": (
+        edited(("position = [4.0, -5.0]", "position = [4.0, -5.0, 0.0]")),
+        2,
+        ["contacts[1].position: expected at most 2 entries, got [4.0, -5.0, 0.0]"],
+    ),
+    "one coordinate": (
+        edited(("position = [4.0, -5.0]", "position = [4.0]")),
+        2,
+        ["contacts[1].position: expected at least 2 entries, got [4.0]"],
+    ),
+    "position as a number": (
+        edited(("position = [4.0, -5.0]", "position = 4.0")),
+        2,
+        ["contacts[1].position: expected a list, got 4.0"],
+    ),
+    "position missing": (
+        edited(("position = [4.0, -5.0]", "")),
+        2,
+        ["contacts[1].position: a required key is missing"],
+    ),
+    "unknown key of a contact": (
+        edited(("friction = 0.3", "friktion = 0.3")),
+        2,
+        [
+            "contacts[0].friction: a required key is missing",
+            "contacts[0].friktion: unknown key; known here: "
+            "name, position, normal, friction, max_force, force, end_force",
+        ],
+    ),
+    "contacts as one table": (
+        "[contacts]\nname = 'P1'\n[load]\nforce = [0, -1]\n[task]\nkind = 'removal'\ncontact = 'P1'",
+        2,
+        ["contacts: expected a list, got {'name': 'P1'}"],
+    ),
+    "one contact only": (
+        "[load]\nforce = [0, -1]\n[task]\nkind = 'removal'\ncontact = 'P1'\n"
+        "[[contacts]]\nname = 'P1'\nposition = [0, 0]\nnormal = [0, 1]\nfriction = 1",
+        2,
+        [
+            "contacts: expected at least 2 entries, "
+            "got [{'name': 'P1', 'position': [0, 0], 'normal': [0, 1], 'fr..."
+        ],
+    ),
+    # -- forces -------------------------------------------------------------------------------------------
+    "force of one contact missing": (
+        edited(("force = [-3.0096, 4.4156]", "")),
+        2,
+        ["contacts[1].force: a required key is missing; others have it, so give it to all or none"],
+    ),
+    "end force of one contact missing": (
+        edited(("force = [-3.0096, 4.4156]", "force = [-3.0096, 4.4156]\nend_force = [-0.3557, 1.0445]")),
+        2,
+        ["contacts[0].end_force: a required key is missing; others have it, so give it to all or none"],
+    ),
+    "end force of the finger that leaves": (
+        edited(("force = [0.7199, -3.9190]", "end_force = [0.0, 0.0]")),
+        2,
+        [
+            "contacts[2].force: a required key is missing; others have it, so give it to all or none",
+            "contacts[2].end_force: P3 leaves, so it ends without force; leave it out",
+        ],
+    ),
+    "starting force of the finger that arrives": (
+        edited(('kind = "removal"', 'kind = "addition"')),
+        2,
+        ["contacts[2].force: P3 arrives, so it starts without force; leave it out"],
+    ),
+    "forces far from equilibrium": (
+        edited(("force = [3.7897, 3.0034]", "force = [3.9, 3.0034]")),
+        2,
+        [NO_EQUILIBRIUM.format("0.0506", "5.344")],
+    ),
+    "starting force outside its cone": (
+        edited(("force = [0.7199, -3.9190]", "force = [0.7199, 3.9190]")),
+        2,
+        [NO_EQUILIBRIUM.format("4.61", "5.344")],
+    ),
+    # -- the task -----------------------------------------------------------------------------------------
+    "task missing": (
+        edited().split("[task]")[0],
+        2,
+        ["task: a required key is missing"],
+    ),
+    "kind missing": (
+        edited(('kind = "removal"', "")),
+        2,
+        ["task.kind: expected 'removal' or 'addition', found no such key"],
+    ),
+    "kind not planned yet": (
+        edited(('kind = "removal"', 'kind = "rotation"')),
+        2,
+        ["task.kind: expected 'removal' or 'addition', got 'rotation'"],
+    ),
+    "unknown contact": (
+        edited(('contact = "P3"', 'contact = "P4"')),
+        2,
+        ["task.contact: expected one of P1, P2, P3, got 'P4'"],
+    ),
+    "unknown objective": (
+        edited(('objective = "angle"', 'objective = "safest"')),
+        2,
+        ["task.objective: expected 'angle', 'force', 'effort', 'peak' or 'peak_normal', got 'safest'"],
+    ),
+    "unknown method": (
+        edited(('objective = "angle"', 'method = "magic"')),
+        2,
+        ["task.method: method must be one of auto, closed-form, clarabel; got 'magic'"],
+    ),
+    "unknown key of the task": (
+        edited(("duration = 1.0", "time = 1.0")),
+        2,
+        [
+            "task.time: unknown key; known here: contact, objective, whole_objective, method, duration, "
+            "rate_limit, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, kind"
+        ],
+    ),
+    "no duration": (
+        edited(("duration = 1.0", "duration = 0.0")),
+        2,
+        ["task.duration: expected a number greater than 0, got 0.0"],
+    ),
+    "negative rate": (
+        edited(("rate = 1000.0", "rate = -1000.0")),
+        2,
+        ["task.rate: expected a number greater than 0, got -1000.0"],
+    ),
+    "more set-points than anybody wants": (
+        edited(("rate = 1000.0", "rate = 1e12")),
+        2,
+        ["rate 1e+12 for 1 s makes 1e+12 set-points; at most 1e+08 are made"],
+    ),
+    "duration and rate limit": (
+        edited(("duration = 1.0", "duration = 1.0\nrate_limit = 5.0")),
+        2,
+        ["task: rate_limit sets the duration; give one of rate_limit and duration"],
+    ),
+    "control values that rise": (
+        edited(("control = [1.0, 1.0, 0.5, 0.0, 0.0]", "control = [1.0, 0.5, 0.6, 0.0]")),
+        2,
+        ["task.control: control values must fall from 1 to 0, got (1.0, 0.5, 0.6, 0.0)"],
+    ),
+    "control values of no spline": (
+        edited(('scaling = "spline"', 'scaling = "linear"')),
+        2,
+        ["task: control belongs to scaling 'spline', got scaling 'linear'"],
+    ),
+    "peak ratio below 1": (
+        edited(("duration = 1.0", "peak_ratio = 0.9")),
+        2,
+        ["task.peak_ratio: expected a number of at least 1, got 0.9"],
+    ),
+    "the whole friction in reserve": (
+        edited(("duration = 1.0", "reserve = 1.0")),
+        2,
+        ["task.reserve: expected a number less than 1, got 1.0"],
+    ),
+    "zero load": (
+        edited(
+            ("force = [-1.5, -3.5]", "force = [0, 0]"),
+            *NO_FORCES,
+        ),
+        2,
+        [
+            "objective 'angle' under a zero load needs max_force: any squeeze holds it, so no force follows "
+            "from the load"
+        ],
+    ),
+    "everything at once": (
+        edited(
+            ("torque = 0.0", "torque = '0'"),
+            ("normal = [1.0, 1.0]", "normal = [1.0, nan]"),
+            ("friction = 0.3", "friction = -1"),
+            ('kind = "removal"', 'kind = "addition"\nkin = 1'),
+            ("rate = 1000.0", "rate = 0"),
+        ),
+        2,
+        [
+            "load.torque: expected a number, got '0'",
+            "contacts[0].normal[1]: expected a finite number, got nan",
+            "contacts[0].friction: expected a number of at least 0, got -1",
+            "task.rate: expected a number greater than 0, got 0",
+            "task.kin: unknown key; known here: contact, objective, whole_objective, method, duration, "
+            "rate_limit, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, kind",
+        ],
+    ),
+    # -- infeasible ---------------------------------------------------------------------------------------
+    "infeasible removal": (
+        edited(('contact = "P3"', 'contact = "P1"')),
+        3,
+        [
+            "no forces of P2, P3 inside their friction cones balance Wrench(force=(-1.5, -3.5), torque=0): "
+            "the object escapes by turning counter-clockwise about (4.13793, -5.7931)"
+        ],
+    ),
+    "force limit too low": (
+        edited(("duration = 1.0", "max_force = 1.0"), *NO_FORCES),
+        3,
+        [
+            re.compile(
+                r"no forces of P1, P2 inside their friction cones and force limits \(P1 1, P2 1\) balance "
+                r"Wrench\(force=\(-1\.5, -3\.5\), torque=0\): the object escapes by turning "
+                r"counter-clockwise about \(42\.6\d*, -30\.4\d*\); the cones alone would hold it with "
+                r"larger forces"
+            )
+        ],
+    ),
+    "reserve too large": (
+        edited(("duration = 1.0", "reserve = 0.9")),
+        3,
+        [
+            "forces of P1, P2 balance Wrench(force=(-1.5, -3.5), torque=0) only at the limit of their "
+            "friction cones, within the reserve of 0.9 of the friction that planning keeps back; "
+            "choose a smaller reserve"
+        ],
+    ),
+    "infeasible start of an addition": (
+        edited(('kind = "removal"', 'kind = "addition"'), ('contact = "P3"', 'contact = "P2"'), *NO_FORCES),
+        3,
+        [
+            "no forces of P1, P3 inside their friction cones balance Wrench(force=(-1.5, -3.5), torque=0): "
+            "the object escapes by turning clockwise about (-4, -4)"
+        ],
+    ),
+    "two fingers, one leaves": (
+        edited((P2, ""), NO_FORCES[0], NO_FORCES[2]),
+        2,
+        ["a grasp needs two contacts or more to hold a load, got 1"],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_bad_scenario(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, expected_status, lines = SCENARIOS[name]
+    patterns = (line.pattern if isinstance(line, re.Pattern) else re.escape(line) for line in lines)
+    monkeypatch.chdir(tmp_path)
+    Path("bad.toml").write_text(text)
+    status, out, err = regrasp(capsys, "plan", "bad.toml", "-o", "out")
+    assert re.fullmatch("Error: " + "".join(rf"bad\.toml: {pattern}\n" for pattern in patterns), err), err
+    assert status == expected_status
+    assert out == ""
+    assert [file.name for file in tmp_path.iterdir()] == ["bad.toml"]
+
+
+# -- the same care in Python --------------------------------------------------------------------------------
+
+P1 = rg.Contact([-4, -4], [1, 1], 0.3, name="P1")
+P2 = rg.Contact([4, -5], [-1, 2], 0.3, name="P2")
+P3 = rg.Contact([0, 8], [0, -1], 0.3, name="P3")
+GRASP, LOAD = rg.Grasp([P1, P2, P3]), rg.Wrench([-1.5, -3.5])
+STATE = rg.GraspState(GRASP, LOAD, [[3.7897, 3.0034], [-3.0096, 4.4156], [0.7199, -3.9190]])
+TWO, REMOVAL = GRASP.without("P3"), rg.plan_removal(STATE, "P3")
+LOCUS = rg.EquilibriumLocus(TWO, LOAD)
+SPACE = rg.Grasp([rg.Contact([np.cos(a), np.sin(a), 0], [-np.cos(a), -np.sin(a), 0], 1) for a in (0, 2, 4)])
+PAIRS = ([0.0, 0.0], [1.0, 0.0], 0.5, [1.0, 0.0], [-1.0, 0.0], 0.5, [0.0, -1.0])
+
+Call = Callable[[], object]
+CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
+    # -- Contact, Wrench, Grasp, GraspState ----------------------------------------------------------------
+    "Contact: words": (
+        lambda: rg.Contact("here", [1, 0], 0.3),
+        rg.InvalidInput,
+        "contact: position must be numbers of shape (any,), got 'here'",
+    ),
+    "Contact: one coordinate": (
+        lambda: rg.Contact([1], [1, 0], 0.3),
+        rg.InvalidInput,
+        "contact: position must be 2 or 3 numbers, got 1: [1]",
+    ),
+    "Contact: NaN": (
+        lambda: rg.Contact([nan, 0], [1, 0], 0.3, name="A"),
+        rg.InvalidInput,
+        "contact 'A': position must be finite, got [nan, 0]",
+    ),
+    "Contact: mixed dimensions": (
+        lambda: rg.Contact([0, 0], [1, 0, 0], 0.3),
+        rg.InvalidInput,
+        "contact: position and normal must have the same dimension, got 2 and 3",
+    ),
+    "Contact: zero normal": (
+        lambda: rg.Contact([0, 0], [0, 0], 0.3),
+        rg.InvalidInput,
+        "contact: normal must not be zero; give the direction that points into the object",
+    ),
+    "Contact: negative friction": (
+        lambda: rg.Contact([0, 0], [1, 0], -0.1),
+        rg.InvalidInput,
+        "contact: friction must be at least 0, got -0.1",
+    ),
+    "Contact: friction as text": (
+        lambda: rg.Contact([0, 0], [1, 0], "0.3"),
+        rg.InvalidInput,
+        "contact: friction must be a number, got '0.3'",
+    ),
+    "Contact: infinite limit": (
+        lambda: rg.Contact([0, 0], [1, 0], 0.3, max_force=inf),
+        rg.InvalidInput,
+        "contact: max_force must be finite, got inf",
+    ),
+    "Contact: zero limit": (
+        lambda: rg.Contact([0, 0], [1, 0], 0.3, max_force=0),
+        rg.InvalidInput,
+        "contact: max_force must be greater than 0, got 0",
+    ),
+    "Contact: name of no text": (
+        lambda: rg.Contact([0, 0], [1, 0], 0.3, name=3),
+        rg.InvalidInput,
+        "a contact's name must be a non-empty string, got 3",
+    ),
+    "Wrench: infinite": (
+        lambda: rg.Wrench([inf, 0]),
+        rg.InvalidInput,
+        "force must be finite, got [inf, 0]",
+    ),
+    "Wrench: planar torque of three": (
+        lambda: rg.Wrench([1, 0], [1, 2, 3]),
+        rg.InvalidInput,
+        "torque must be a number, got [1, 2, 3]",
+    ),
+    "Wrench: torque in space of one": (
+        lambda: rg.Wrench([1, 0, 0], 2),
+        rg.InvalidInput,
+        "torque must have shape (3,), got (): 2",
+    ),
+    "Wrench: plus a number": (
+        lambda: LOAD + 1,
+        rg.InvalidInput,
+        "a wrench combines with a wrench, got 1",
+    ),
+    "Grasp: empty": (
+        lambda: rg.Grasp([]),
+        rg.InvalidInput,
+        "a grasp needs at least one contact, got none",
+    ),
+    "Grasp: of points": (
+        lambda: rg.Grasp([[0, 0], [1, 0]]),
+        rg.InvalidInput,
+        "a grasp is made of Contacts, got [0, 0]",
+    ),
+    "Grasp: plane and space": (
+        lambda: rg.Grasp([P1, SPACE[0]]),
+        rg.InvalidInput,
+        "contacts of one grasp must have one dimension, got 2 and 3",
+    ),
+    "Grasp: same name twice": (
+        lambda: rg.Grasp([P1, P2.named("P1")]),
+        rg.InvalidInput,
+        "contacts of one grasp must have different names, 'P1' came twice",
+    ),
+    "Grasp: coincident": (
+        lambda: rg.Grasp([P1, rg.Contact([-4, -4], [0, 1], 0.3, name="Q")]),
+        rg.InvalidInput,
+        "contacts 'P1' and 'Q' coincide at [-4.0, -4.0]; place them at different points",
+    ),
+    "Grasp: unknown name": (
+        lambda: GRASP["P4"],
+        rg.InvalidInput,
+        "no contact 'P4' in this grasp; it has P1, P2, P3",
+    ),
+    "Grasp: index too large": (
+        lambda: GRASP[3],
+        rg.InvalidInput,
+        "no contact 3 in this grasp; it has 3, counted from 0",
+    ),
+    "Grasp: index of no kind": (
+        lambda: GRASP[1.0],
+        rg.InvalidInput,
+        "a contact is addressed by name or index, got 1.0",
+    ),
+    "GraspState: forces of two": (
+        lambda: rg.GraspState(GRASP, LOAD, [[1, 0], [0, 1]]),
+        rg.InvalidInput,
+        "forces must have shape (3, 2), got (2, 2): [[1, 0], [0, 1]]",
+    ),
+    "GraspState: NaN": (
+        lambda: rg.GraspState(TWO, LOAD, [[1, 0], [0, nan]]),
+        rg.InvalidInput,
+        "forces must be finite, got [[1, 0], [0, nan]]",
+    ),
+    "GraspState: load as a list": (
+        lambda: rg.GraspState(TWO, [0, -1], [[1, 0], [0, 1]]),
+        rg.InvalidInput,
+        "load must be a Wrench, got [0, -1]; write Wrench(force=[...])",
+    ),
+    "GraspState: load in space": (
+        lambda: rg.GraspState(TWO, rg.Wrench([0, 0, -1]), [[1, 0], [0, 1]]),
+        rg.InvalidInput,
+        "load must have the grasp's dimension 2, got 3",
+    ),
+    # -- choosing -------------------------------------------------------------------------------------------
+    "choose_state: unknown objective": (
+        lambda: rg.choose_state(TWO, LOAD, "safest"),
+        rg.InvalidInput,
+        "objective must be one of angle, force, effort, peak, peak_normal; got 'safest'",
+    ),
+    "choose_state: unknown method": (
+        lambda: rg.choose_state(TWO, LOAD, method="magic"),
+        rg.InvalidInput,
+        "method must be one of auto, closed-form, clarabel; got 'magic'",
+    ),
+    "choose_state: closed form of three": (
+        lambda: rg.choose_state(GRASP, LOAD, method="closed-form"),
+        rg.InvalidInput,
+        "the closed form chooses for two planar contacts, got 3 of dimension 2; use method='auto'",
+    ),
+    "choose_state: in space": (
+        lambda: rg.choose_state(SPACE, rg.Wrench([0, 0, -1]), "effort"),
+        rg.InvalidInput,
+        "states are chosen for planar grasps so far; this grasp is in space",
+    ),
+    "choose_state: one contact": (
+        lambda: rg.choose_state(rg.Grasp([P1]), LOAD),
+        rg.InvalidInput,
+        "a grasp needs two contacts or more to hold a load, got 1",
+    ),
+    "choose_state: peak ratio below 1": (
+        lambda: rg.choose_state(TWO, LOAD, peak_ratio=0.5),
+        rg.InvalidInput,
+        "peak_ratio must be at least 1, got 0.5",
+    ),
+    "choose_state: reserve of everything": (
+        lambda: rg.choose_state(TWO, LOAD, reserve=1),
+        rg.InvalidInput,
+        "reserve must be less than 1, a fraction of the friction, got 1",
+    ),
+    "choose_state: zero load": (
+        lambda: rg.choose_state(TWO, rg.Wrench([0, 0])),
+        rg.InvalidInput,
+        "objective 'angle' under a zero load needs max_force: any squeeze holds it, so no force follows from "
+        "the load",
+    ),
+    "choose_state: cannot hold": (
+        lambda: rg.choose_state(TWO, rg.Wrench([0, 4])),
+        rg.Infeasible,
+        "no forces of P1, P2 inside their friction cones balance Wrench(force=(0, 4), torque=0): "
+        "the object escapes by sliding along (0, 1)",
+    ),
+    "EquilibriumLocus: three contacts": (
+        lambda: rg.EquilibriumLocus(GRASP, LOAD),
+        rg.InvalidInput,
+        "an equilibrium locus needs two planar contacts, got 3 of dimension 2; use grasp.subset([...])",
+    ),
+    "EquilibriumLocus: squeeze outside": (
+        lambda: LOCUS.state(9.0),
+        rg.InvalidInput,
+        "squeeze 9.0 is not on the locus; the locus is [1.35749126, 2.25329768]",
+    ),
+    "locus_intervals: zero normal": (
+        lambda: rg.locus_intervals([0, 0], [0, 0], *PAIRS[2:]),
+        rg.InvalidInput,
+        "n1 must not be zero; give the direction that points into the object",
+    ),
+    "locus_intervals: coincident": (
+        lambda: rg.locus_intervals([1, 0], *PAIRS[1:]),
+        rg.InvalidInput,
+        "r1 and r2 coincide in at least one pair; place contacts at different points",
+    ),
+    "locus_intervals: NaN": (
+        lambda: rg.locus_intervals([[0, 0], [nan, 1]], *PAIRS[1:]),
+        rg.InvalidInput,
+        "r1 must be finite, got 1 entries that are not",
+    ),
+    "locus_intervals: wrong shape": (
+        lambda: rg.locus_intervals([0, 0, 0], *PAIRS[1:]),
+        rg.InvalidInput,
+        "r1 must have shape (..., 2), got (3,)",
+    ),
+    "locus_intervals: shapes that do not broadcast": (
+        lambda: rg.locus_intervals(np.zeros((3, 2)), np.ones((4, 2)), *PAIRS[2:]),
+        rg.InvalidInput,
+        "leading shapes must broadcast, got r1 (3,), n1 (4,), mu1 (), r2 (), n2 (), mu2 (), force (), "
+        "torque ()",
+    ),
+    "best_squeezes: negative friction": (
+        lambda: rg.best_squeezes(*PAIRS[:2], [0.5, -0.5], *PAIRS[3:]),
+        rg.InvalidInput,
+        "mu1 must be at least 0 everywhere",
+    ),
+    "best_squeezes: zero load": (
+        lambda: rg.best_squeezes(*PAIRS[:6], [0, 0]),
+        rg.InvalidInput,
+        "objective 'angle' under a zero load needs max_force",
+    ),
+    "best_squeezes: zero limit": (
+        lambda: rg.best_squeezes(*PAIRS, max_force=0),
+        rg.InvalidInput,
+        "max_force must be greater than 0 everywhere",
+    ),
+    # -- planning -------------------------------------------------------------------------------------------
+    "plan_removal: no load": (
+        lambda: rg.plan_removal(GRASP, "P3"),
+        rg.InvalidInput,
+        "a plan from a grasp needs the load: load=Wrench(force=[...])",
+    ),
+    "plan_removal: two loads": (
+        lambda: rg.plan_removal(STATE, "P3", load=rg.Wrench([0, -1])),
+        rg.InvalidInput,
+        "the start state has the load Wrench(force=(-1.5, -3.5), torque=0); leave load out, "
+        "got Wrench(force=(0, -1), torque=0)",
+    ),
+    "plan_removal: of nothing": (
+        lambda: rg.plan_removal(None, "P3"),
+        rg.InvalidInput,
+        "start must be a GraspState or a Grasp, got None",
+    ),
+    "plan_removal: unknown contact": (
+        lambda: rg.plan_removal(STATE, "P4"),
+        rg.InvalidInput,
+        "no contact 'P4' in this grasp; it has P1, P2, P3",
+    ),
+    "plan_removal: no duration": (
+        lambda: rg.plan_removal(STATE, "P3", duration=0),
+        rg.InvalidInput,
+        "duration must be greater than 0, got 0",
+    ),
+    "plan_removal: scaling of no kind": (
+        lambda: rg.plan_removal(STATE, "P3", scaling="spline"),
+        rg.InvalidInput,
+        "scaling must be a TimeScaling, got 'spline'",
+    ),
+    "plan_removal: end with the finger": (
+        lambda: rg.plan_removal(STATE, "P3", end=STATE),
+        rg.InvalidInput,
+        "end: P3 must carry no force, got [0.7199, -3.919]",
+    ),
+    "plan_removal: end of other contacts": (
+        lambda: rg.plan_removal(STATE, "P3", end=STATE.without("P1")),
+        rg.InvalidInput,
+        re.compile(
+            r"end must be a GraspState of P1, P2, or of the whole grasp with P3 idle, under the start's "
+            r"load; got GraspState under .*"
+        ),
+    ),
+    "plan_removal: escape": (
+        lambda: rg.plan_removal(STATE, "P1"),
+        rg.Infeasible,
+        "no forces of P2, P3 inside their friction cones balance Wrench(force=(-1.5, -3.5), torque=0): "
+        "the object escapes by turning counter-clockwise about (4.13793, -5.7931)",
+    ),
+    "plan_removal: the last finger": (
+        lambda: rg.plan_removal(rg.Grasp([P1]), "P1", load=LOAD),
+        rg.InvalidInput,
+        "the last contact, 'P1', cannot be taken from a grasp",
+    ),
+    "plan_addition: name for a contact": (
+        lambda: rg.plan_addition(STATE.without("P3"), "P3"),
+        rg.InvalidInput,
+        "contact must be the Contact that arrives, got 'P3'",
+    ),
+    "plan_addition: where a finger is": (
+        lambda: rg.plan_addition(TWO, rg.Contact([-4, -4], [1, 0], 0.3, name="Q"), load=LOAD),
+        rg.InvalidInput,
+        "contacts 'P1' and 'Q' coincide at [-4.0, -4.0]; place them at different points",
+    ),
+    "plan_addition: start far from equilibrium": (
+        lambda: rg.plan_addition(rg.GraspState(TWO, LOAD, [[1, 1], [0, 1]]), P3),
+        rg.InvalidInput,
+        NO_EQUILIBRIUM.format("1.48", "1.414"),
+    ),
+    # -- time -----------------------------------------------------------------------------------------------
+    "TimeScaling: no duration": (
+        lambda: rg.TimeScaling.linear(-1),
+        rg.InvalidInput,
+        "duration must be greater than 0, got -1",
+    ),
+    "TimeScaling: rising": (
+        lambda: rg.TimeScaling.spline(1, (1, 0.2, 0.4, 0)),
+        rg.InvalidInput,
+        "control values must fall from 1 to 0, got (1.0, 0.2, 0.4, 0.0)",
+    ),
+    "TimeScaling: degree too high": (
+        lambda: rg.TimeScaling(1, (1, 0), 2),
+        rg.InvalidInput,
+        "degree must be from 1 to 1, got 2",
+    ),
+    "TimeScaling: no rate": (
+        lambda: rg.TimeScaling.fastest([[1, 0]], 0),
+        rg.InvalidInput,
+        "rate_limit must be greater than 0, got 0",
+    ),
+    "TimeScaling: nothing limited": (
+        lambda: rg.TimeScaling.fastest([[1, 0]], inf),
+        rg.InvalidInput,
+        "no force that changes has a rate limit, so no shortest duration follows",
+    ),
+    "TimeScaling: rates of other fingers": (
+        lambda: rg.TimeScaling.fastest([[1, 0], [0, 1]], [1, 2, 3]),
+        rg.InvalidInput,
+        "rate_limit must be a number or have shape (2,), got [1, 2, 3]",
+    ),
+    "Transition: after the end": (
+        lambda: REMOVAL.forces(1.5),
+        rg.InvalidInput,
+        "t must lie in [0, 1] s, got 1.5",
+    ),
+    "Transition: NaN": (
+        lambda: REMOVAL.forces([0.0, nan]),
+        rg.InvalidInput,
+        "t must lie in [0, 1] s, got [0.0, nan]",
+    ),
+    "Transition: words": (
+        lambda: REMOVAL.forces("now"),
+        rg.InvalidInput,
+        "t must be numbers, got 'now'",
+    ),
+    "Transition: no rate": (
+        lambda: REMOVAL.times(0),
+        rg.InvalidInput,
+        "rate must be greater than 0, got 0",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_bad_call(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    call, error, message = CALLS[name]
+    monkeypatch.chdir(tmp_path)
+    pattern = message.pattern if isinstance(message, re.Pattern) else re.escape(message)
+    with pytest.raises(error) as raised:
+        call()
+    assert type(raised.value) is error
+    assert re.fullmatch(pattern, str(raised.value), re.DOTALL), str(raised.value)
+    assert list(tmp_path.iterdir()) == []
