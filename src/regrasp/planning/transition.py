@@ -148,8 +148,7 @@ class Transition(ArrayValue, Pictured):
         )
 
     def _along(self, t: ArrayLike, start: Array, end: Array) -> Array:
-        result: Array = straight_path(start, end, self.scaling(t)[..., None, None])
-        return result
+        return straight_path(start, end, self.scaling(t))
 
     def __str__(self) -> str:
         lines = [
