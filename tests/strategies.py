@@ -103,6 +103,16 @@ def random_pair(rng: np.random.Generator, *, facing: float = 0.7, far: float = 0
     )
 
 
+def comfortable_pair(rng: np.random.Generator) -> tuple[rg.Grasp, rg.Wrench]:
+    """Two contacts that hold a load with room to spare: a solver's tolerance stays in the seventh digit."""
+    while True:
+        pair = random_pair(rng, facing=1.0)
+        locus = rg.EquilibriumLocus(pair.grasp, pair.load)
+        lo, hi = locus.interval
+        if min(pair.mu1, pair.mu2) >= 0.1 and hi - lo > 0.1 and min(abs(lo), abs(hi)) < 10:
+            return pair.grasp, pair.load
+
+
 LATTICE_FRICTIONS = (0.0, 0.25, 0.5, 1.0, 2.0, 3.0)
 
 

@@ -14,6 +14,9 @@ are bounded by themselves.
 
 from math import atan, atan2, sqrt
 
+# A force below this fraction of the other one is rounding: the contact carries no force.
+IDLE = 2.0**-40
+
 
 def contact_lines(
     ux: float, uy: float, phi: float, a: float, b: float, nx1: float, ny1: float, nx2: float, ny2: float
@@ -43,6 +46,9 @@ def force_margin(n: float, t: float, mu: float) -> float:
 def best_angle(
     lo: float,
     hi: float,
+    phi: float,
+    a: float,
+    b: float,
     p1: float,
     q1: float,
     g1: float,
@@ -54,12 +60,48 @@ def best_angle(
     h2: float,
     mu2: float,
 ) -> float:
-    """The x of the widest least angle margin; a plateau is decided by the force margin.
+    """The x of the widest least angle margin of the contacts that carry force.
 
-    The force direction atan2(T, N) turns one way only as x grows, with the sign of the constant
-    g q - p h; where that is zero it does not turn at all.
+    A contact without force has no angle, so the best state may leave one idle. Where neither force turns
+    with x, the force margin decides.
     """
-    turn1, turn2 = g1 * q1 - p1 * h1, g2 * q2 - p2 * h2
+    x = _best_angle_of_both(lo, hi, a, b, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+    x1, x2 = clamp(0.0, lo, hi), clamp(-phi, lo, hi)  # where each carries least
+    idle1 = x1 * x1 + a * a < IDLE * IDLE * ((x1 + phi) * (x1 + phi) + b * b)
+    idle2 = (x2 + phi) * (x2 + phi) + b * b < IDLE * IDLE * (x2 * x2 + a * a)
+    if idle1 or idle2:
+        least = min(angle_margin(p1 * x + q1, g1 * x + h1, mu1), angle_margin(p2 * x + q2, g2 * x + h2, mu2))
+        if idle1:
+            alone = angle_margin(p2 * x1 + q2, g2 * x1 + h2, mu2)
+            if alone > least:
+                x, least = x1, alone
+        if idle2 and angle_margin(p1 * x2 + q1, g1 * x2 + h1, mu1) > least:
+            x = x2
+    return x
+
+
+def _best_angle_of_both(
+    lo: float,
+    hi: float,
+    a: float,
+    b: float,
+    p1: float,
+    q1: float,
+    g1: float,
+    h1: float,
+    mu1: float,
+    p2: float,
+    q2: float,
+    g2: float,
+    h2: float,
+    mu2: float,
+) -> float:
+    """The x of the widest least angle margin of both contacts.
+
+    The force direction atan2(T, N) turns one way only as x grows, with the sign of g q - p h: that is -a
+    for contact 1 and b for contact 2. Where it is zero the force does not turn at all.
+    """
+    turn1, turn2 = -a, b
     if turn1 == 0.0 and turn2 == 0.0:
         return best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
     if turn1 == 0.0:

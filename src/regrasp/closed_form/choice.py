@@ -64,5 +64,5 @@ def best_squeeze(
         if lo > hi:  # a ratio of 1 leaves the point itself, up to rounding
             lo = hi = x
     if objective == ANGLE:
-        return best_angle(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2), limit1, limit2
+        return best_angle(lo, hi, phi, a, b, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2), limit1, limit2
     return best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2), limit1, limit2

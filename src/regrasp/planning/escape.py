@@ -8,7 +8,7 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import Infeasible
+from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
@@ -96,5 +96,9 @@ def _gap_with_limits(
         rows.add(Cone.NONNEGATIVE, [mu * along - across, mu * along + across, along], np.zeros(3))
         if limit < inf:
             rows.add(Cone.SECOND_ORDER, np.vstack([np.zeros(n + 3), pick]), [limit, 0, 0])
-    gap: Array = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3))).x[n:]
+    try:
+        answer = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3)))
+    except SolverFailed as failed:  # a direction short of the solver's tolerances may prove as much
+        answer = failed.solution
+    gap: Array = answer.x[n:]
     return gap

@@ -84,12 +84,17 @@ class _Solver:
         raises ``SolverFailed``, unless any forces will do.
         """
         program = state_program(self.grasp, self.load, objective, frictions, limits, self.unit)
-        answer = solve(program, self.backend)
+        try:
+            answer = solve(program, self.backend)
+        except SolverFailed as failed:
+            if not any_will_do:
+                raise
+            answer = failed.solution  # whether it is near enough is seen below
         if answer.status is Status.INFEASIBLE:
             return None
-        if answer.status is not Status.SOLVED:
+        if answer.status is Status.UNBOUNDED:
             raise SolverFailed(f"{self.backend}: {answer.status.value}", program, answer)
-        if objective == "force" and answer.x[-1] < -_FEASIBLE:
+        if objective == "force" and answer.status is Status.SOLVED and answer.x[-1] < -_FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
         wanted = answer.x[:-1].reshape(-1, 2) * self.unit
         grasp = self.grasp
