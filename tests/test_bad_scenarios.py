@@ -23,7 +23,7 @@ NO_FORCES = (
     ("force = [0.7199, -3.9190]", ""),
 )
 SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
-    # -- the file -----------------------------------------------------------------------------------------
+    # -- the file ---------------------------------------------------------------------------------------
     "not TOML": (
         "[load\nforce = [1, 2]",
         2,
@@ -43,7 +43,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         ["not TOML: Cannot overwrite a value (at line 16, column 13)"],
     ),
-    # -- numbers ------------------------------------------------------------------------------------------
+    # -- numbers ----------------------------------------------------------------------------------------
     "NaN in the load": (
         edited(("force = [-1.5, -3.5]", "force = [nan, -3.5]")),
         2,
@@ -89,7 +89,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         ["contacts[0].max_force: expected a number greater than 0, got 0.0"],
     ),
-    # -- contacts -----------------------------------------------------------------------------------------
+    # -- contacts ---------------------------------------------------------------------------------------
     "zero normal": (
         edited(("normal = [-1.0, 2.0]", "normal = [0.0, 0.0]")),
         2,
@@ -166,7 +166,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "got [{'name': 'P1', 'position': [0, 0], 'normal': [0, 1], 'fr..."
         ],
     ),
-    # -- forces -------------------------------------------------------------------------------------------
+    # -- forces -----------------------------------------------------------------------------------------
     "force of one contact missing": (
         edited(("force = [-3.0096, 4.4156]", "")),
         2,
@@ -200,7 +200,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         [NO_EQUILIBRIUM.format("4.61", "5.344")],
     ),
-    # -- the task -----------------------------------------------------------------------------------------
+    # -- the task ---------------------------------------------------------------------------------------
     "task missing": (
         edited().split("[task]")[0],
         2,
@@ -308,7 +308,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "rate_limit, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, kind",
         ],
     ),
-    # -- infeasible ---------------------------------------------------------------------------------------
+    # -- infeasible -------------------------------------------------------------------------------------
     "infeasible removal": (
         edited(('contact = "P3"', 'contact = "P1"')),
         3,
@@ -369,7 +369,7 @@ def test_bad_scenario(
     assert [file.name for file in tmp_path.iterdir()] == ["bad.toml"]
 
 
-# -- the same care in Python --------------------------------------------------------------------------------
+# -- the same care in Python ----------------------------------------------------------------------------
 
 P1 = rg.Contact([-4, -4], [1, 1], 0.3, name="P1")
 P2 = rg.Contact([4, -5], [-1, 2], 0.3, name="P2")
@@ -383,7 +383,7 @@ PAIRS = ([0.0, 0.0], [1.0, 0.0], 0.5, [1.0, 0.0], [-1.0, 0.0], 0.5, [0.0, -1.0])
 
 Call = Callable[[], object]
 CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
-    # -- Contact, Wrench, Grasp, GraspState ----------------------------------------------------------------
+    # -- Contact, Wrench, Grasp, GraspState -------------------------------------------------------------
     "Contact: words": (
         lambda: rg.Contact("here", [1, 0], 0.3),
         rg.InvalidInput,
@@ -514,7 +514,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         rg.InvalidInput,
         "load must have the grasp's dimension 2, got 3",
     ),
-    # -- choosing -------------------------------------------------------------------------------------------
+    # -- choosing ---------------------------------------------------------------------------------------
     "choose_state: unknown objective": (
         lambda: rg.choose_state(TWO, LOAD, "safest"),
         rg.InvalidInput,
@@ -613,7 +613,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         rg.InvalidInput,
         "max_force must be greater than 0 everywhere",
     ),
-    # -- planning -------------------------------------------------------------------------------------------
+    # -- planning ---------------------------------------------------------------------------------------
     "plan_removal: no load": (
         lambda: rg.plan_removal(GRASP, "P3"),
         rg.InvalidInput,
@@ -684,7 +684,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         rg.InvalidInput,
         NO_EQUILIBRIUM.format("1.48", "1.414"),
     ),
-    # -- time -----------------------------------------------------------------------------------------------
+    # -- time -------------------------------------------------------------------------------------------
     "TimeScaling: no duration": (
         lambda: rg.TimeScaling.linear(-1),
         rg.InvalidInput,
