@@ -46,6 +46,22 @@ _best_squeeze = _names["best_squeeze"]
 _digest = sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in _MODULES)).hexdigest()
 
 
+@njit(error_model="numpy", forceinline=True)
+def _is_doubtful(x1, y1, nx1, ny1, mu1, x2, y2, nx2, ny2, mu2, fx, fy, tau):  # type: ignore[no-untyped-def]
+    """Whether numbers may not be finite, a normal zero, a friction negative or the contacts at one point."""
+    dx, dy = x2 - x1, y2 - y1
+    squares = (dx * dx + dy * dy) * (nx1 * nx1 + ny1 * ny1) * (nx2 * nx2 + ny2 * ny2)
+    total = squares + mu1 + mu2 + fx + fy + tau
+    return not ((squares > 0.0) & (total - total == 0.0) & (mu1 >= 0.0) & (mu2 >= 0.0))
+
+
+@njit(error_model="numpy", forceinline=True)
+def _is_doubtful_limit(fx, fy, tau, limit1, limit2):  # type: ignore[no-untyped-def]
+    """Whether a limit is not above zero, or there is neither a load nor a limit on both forces."""
+    idle = (fx == 0.0) & (fy == 0.0) & (tau == 0.0)
+    return not ((limit1 > 0.0) & (limit2 > 0.0)) or (idle & ((limit1 == inf) | (limit2 == inf)))
+
+
 def _loops(digest: str) -> tuple[Any, Any]:
     @njit(error_model="numpy", parallel=True, cache=True)
     def intervals(r1, n1, mu1, r2, n2, mu2, f, tau, whole, lo, hi):  # type: ignore[no-untyped-def]
@@ -55,13 +71,12 @@ def _loops(digest: str) -> tuple[Any, Any]:
             first = block * BLOCK
             start = first * whole
             size = min(BLOCK, lo.size - first)
-            numbers = (
+            doubtful += _intervals(
                 r1[2 * start[0] :], n1[2 * start[1] :], mu1[start[2] :],
                 r2[2 * start[3] :], n2[2 * start[4] :], mu2[start[5] :],
                 f[2 * start[6] :], tau[start[7] :],
+                lo[first : first + size], hi[first : first + size],
             )  # fmt: skip
-            _intervals(*numbers, lo[first : first + size], hi[first : first + size])
-            doubtful += _doubtful(*numbers, size)
         return doubtful
 
     @njit(error_model="numpy", parallel=True, cache=True)
@@ -74,21 +89,12 @@ def _loops(digest: str) -> tuple[Any, Any]:
             first = block * BLOCK
             start = first * whole
             size = min(BLOCK, x.size - first)
-            doubtful += _doubtful(
+            doubtful += _squeezes(
                 r1[2 * start[0] :], n1[2 * start[1] :], mu1[start[2] :],
                 r2[2 * start[3] :], n2[2 * start[4] :], mu2[start[5] :],
-                f[2 * start[6] :], tau[start[7] :], size,
-            ) + _doubtful_limits(
-                f[2 * start[6] :], tau[start[7] :], limit1[start[8] :], limit2[start[9] :], size
+                f[2 * start[6] :], tau[start[7] :], limit1[start[8] :], limit2[start[9] :],
+                objective, peak_ratio, x[first : first + size],
             )  # fmt: skip
-            for j in range(size):
-                a, b, c, d, e = start[0] + j, start[1] + j, start[3] + j, start[4] + j, start[6] + j
-                x[first + j] = _best_squeeze(
-                    r1[2 * a], r1[2 * a + 1], n1[2 * b], n1[2 * b + 1], mu1[start[2] + j],
-                    r2[2 * c], r2[2 * c + 1], n2[2 * d], n2[2 * d + 1], mu2[start[5] + j],
-                    f[2 * e], f[2 * e + 1], tau[start[7] + j],
-                    objective, limit1[start[8] + j], limit2[start[9] + j], peak_ratio,
-                )[0]  # fmt: skip
         return doubtful
 
     return intervals, squeezes
@@ -96,44 +102,34 @@ def _loops(digest: str) -> tuple[Any, Any]:
 
 @njit(error_model="numpy")
 def _intervals(r1, n1, mu1, r2, n2, mu2, f, tau, lo, hi):  # type: ignore[no-untyped-def]
+    doubtful = 0
     for j in range(lo.size):
         i = 2 * j
-        lo[j], hi[j] = _squeeze_interval(
+        pair = (  # all read before anything is written, so that nothing is read twice
             r1[i], r1[i + 1], n1[i], n1[i + 1], mu1[j],
             r2[i], r2[i + 1], n2[i], n2[i + 1], mu2[j],
             f[i], f[i + 1], tau[j],
         )  # fmt: skip
+        doubtful += _is_doubtful(*pair)
+        lo[j], hi[j] = _squeeze_interval(*pair)
+    return doubtful
 
 
 @njit(error_model="numpy")
-def _doubtful(r1, n1, mu1, r2, n2, mu2, f, tau, size):  # type: ignore[no-untyped-def]
-    """How many grasps have numbers that are not finite, no normal, a negative friction or one point only."""
-    count = 0
-    for j in range(size):
-        x, y = 2 * j, 2 * j + 1
-        total = r1[x] + r1[y] + n1[x] + n1[y] + mu1[j] + r2[x] + r2[y] + n2[x] + n2[y] + mu2[j]
-        total += f[x] + f[y] + tau[j]
-        dx, dy = r2[x] - r1[x], r2[y] - r1[y]
-        count += not (
-            (total - total == 0.0)  # neither NaN nor infinite
-            & (n1[x] * n1[x] + n1[y] * n1[y] > 0.0)
-            & (n2[x] * n2[x] + n2[y] * n2[y] > 0.0)
-            & (mu1[j] >= 0.0)
-            & (mu2[j] >= 0.0)
-            & (dx * dx + dy * dy > 0.0)
-        )
-    return count
-
-
-@njit(error_model="numpy")
-def _doubtful_limits(f, tau, limit1, limit2, size):  # type: ignore[no-untyped-def]
-    """How many grasps have a limit that is not above zero, or neither a load nor both limits."""
-    count = 0
-    for j in range(size):
-        idle = (f[2 * j] == 0.0) & (f[2 * j + 1] == 0.0) & (tau[j] == 0.0)
-        endless = (limit1[j] == inf) | (limit2[j] == inf)
-        count += not ((limit1[j] > 0.0) & (limit2[j] > 0.0)) or (idle & endless)
-    return count
+def _squeezes(  # type: ignore[no-untyped-def]
+    r1, n1, mu1, r2, n2, mu2, f, tau, limit1, limit2, objective, peak_ratio, x
+):
+    doubtful = 0
+    for j in range(x.size):
+        i = 2 * j
+        pair = (
+            r1[i], r1[i + 1], n1[i], n1[i + 1], mu1[j],
+            r2[i], r2[i + 1], n2[i], n2[i + 1], mu2[j],
+            f[i], f[i + 1], tau[j],
+        )  # fmt: skip
+        doubtful += _is_doubtful(*pair) | _is_doubtful_limit(*pair[10:], limit1[j], limit2[j])
+        x[j] = _best_squeeze(*pair, objective, limit1[j], limit2[j], peak_ratio)[0]
+    return doubtful
 
 
 intervals, squeezes = _loops(_digest)
