@@ -1,0 +1,46 @@
+"""Pictures of planar grasps and transitions. The only package that imports matplotlib.
+
+Every function takes a value and, if wanted, the axes to draw on, and returns the axes; it asks the value for
+what it draws. New axes belong to a figure of their own (``ax.figure``), as wide as a column. Units are named
+N, m and s; any consistent units may be meant by them.
+"""
+
+from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
+from regrasp.plots.iso_torque import plot_iso_torque
+from regrasp.plots.locus import plot_locus
+from regrasp.plots.object import plot_state, plot_transition
+from regrasp.plots.overview import (
+    figures,
+    iso_torque_figure,
+    png,
+    states_figure,
+    transition_figure,
+    transition_png,
+)
+from regrasp.plots.style import contact_colours
+from regrasp.plots.timing import plot_scaling
+from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
+from regrasp.plots.wrench_space import plot_locus_segment, plot_wrench_cone, plot_wrench_plane
+
+__all__ = [
+    "contact_colours",
+    "figures",
+    "iso_torque_figure",
+    "plot_angles",
+    "plot_iso_torque",
+    "plot_locus",
+    "plot_locus_segment",
+    "plot_magnitudes",
+    "plot_margins",
+    "plot_scaling",
+    "plot_state",
+    "plot_transition",
+    "plot_wrench_cone",
+    "plot_wrench_loop",
+    "plot_wrench_paths",
+    "plot_wrench_plane",
+    "png",
+    "states_figure",
+    "transition_figure",
+    "transition_png",
+]

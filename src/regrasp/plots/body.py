@@ -1,0 +1,60 @@
+"""The object in the plane: its surface at the contacts, normals, friction cones and centre of mass."""
+
+from math import atan2, degrees
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Polygon, Wedge
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.plots.style import GREY, INK, PALE, Colours, note
+
+
+def extent(grasp: Grasp) -> float:
+    """The larger side of the box around the contacts and the centre of mass [m]; 1 if that is a point."""
+    points = np.vstack([grasp.positions, np.zeros(2)])
+    return float(np.ptp(points, axis=0).max()) or 1.0
+
+
+def draw_body(ax: Axes, grasp: Grasp, colours: Colours, cone_length: float) -> None:
+    """Surface, normals and cones of length ``cone_length`` [m] at the contacts, and the centre of mass."""
+    size = extent(grasp)
+    surface = _surface(grasp, 0.09 * size)
+    if _convex(surface.reshape(-1, 2)):
+        ax.add_patch(Polygon(surface.reshape(-1, 2), facecolor=PALE, edgecolor="none", zorder=0, gid="body"))
+    ax.update_datalim(surface.reshape(-1, 2))
+    for ends in surface:
+        ax.plot(*ends.T, color=INK, linewidth=1.2, solid_capstyle="butt", zorder=2)
+    for name, contact in zip(grasp.names, grasp, strict=True):
+        r, n, colour = contact.position, contact.normal, colours[name]
+        middle, half = degrees(atan2(n[1], n[0])), degrees(contact.half_angle)
+        cone = Wedge(tuple(r), cone_length, middle - half, middle + half, zorder=1, gid=f"cone {name}")
+        cone.set(facecolor=colour, edgecolor=colour, alpha=0.2, linewidth=0.6)
+        ax.add_patch(cone)
+        ax.update_datalim([r + cone_length * n])
+        ax.plot(*np.array([r, r + cone_length * n]).T, color=GREY, linewidth=0.8, linestyle=":", zorder=2)
+        ax.plot(*r, "o", color=colour, markersize=3.5, zorder=4)
+        note(ax, name, r, -n, color=colour)
+        room = np.array([0.06 + 0.025 * len(name), 0.12]) * size  # for the name
+        ax.update_datalim([r - room * n])
+    ax.plot(0, 0, marker="o", color="white", markeredgecolor=INK, markersize=5, zorder=4)
+    ax.plot(0, 0, marker="+", color=INK, markersize=5, markeredgewidth=0.7, zorder=5)
+
+
+def _surface(grasp: Grasp, half: float) -> Array:
+    """(n, 2, 2): a short piece of the tangent at each contact, counter-clockwise around the contacts."""
+    middle = grasp.positions.mean(axis=0)
+    x, y = (grasp.positions - middle).T
+    order = np.argsort(np.arctan2(y, x))
+    r, n = grasp.positions[order], grasp.normals[order]
+    tangent = np.column_stack([n[:, 1], -n[:, 0]])  # the object lies on its left
+    return np.stack([r - half * tangent, r + half * tangent], axis=1)
+
+
+def _convex(corners: Array) -> bool:
+    """Whether a polygon turns left at every corner, so that joining the tangents suggests a true body."""
+    sides = np.roll(corners, -1, axis=0) - corners
+    following = np.roll(sides, -1, axis=0)
+    turns = sides[:, 0] * following[:, 1] - sides[:, 1] * following[:, 0]
+    return bool((turns > 0).all())

@@ -1,0 +1,169 @@
+"""The object with its contacts, friction cones and forces (Fig. 1 and 10)."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.font_manager import FontProperties
+from matplotlib.lines import Line2D
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
+
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.transition import Transition
+from regrasp.plots.arrows import arrow
+from regrasp.plots.body import draw_body, extent
+from regrasp.plots.style import (
+    INK,
+    SMALL,
+    Colours,
+    axes_or_new,
+    contact_colours,
+    label_axis,
+    legend,
+    note,
+    quantity,
+    refuse_space,
+    round_below,
+)
+
+# Lengths of the longest force and of the friction cones, as fractions of the object's extent.
+_LONGEST, _CONE = 0.45, 0.36
+
+
+def plot_state(
+    state: GraspState,
+    ax: Axes | None = None,
+    *,
+    force_scale: float | None = None,
+    colours: Colours | None = None,
+) -> Axes:
+    """The object with the finger forces and the load of one state (Fig. 1).
+
+    Forces are those of the fingers on the object, drawn with their tails at the contacts, so that a force
+    in equilibrium stands inside its friction cone; the load starts at the centre of mass, and a load torque
+    is a turning arrow around it. The grey body only suggests the object: its surface is known at the
+    contacts, where its tangents are drawn, and nowhere else.
+
+    force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's extent.
+    colours: of the contacts by name; by their place in the grasp if not given.
+    Raises ``InvalidInput`` for a grasp in space.
+    """
+    refuse_space(state.grasp.dimension)
+    ax = axes_or_new(ax, height=3.4)
+    colours = contact_colours(state.grasp) if colours is None else colours
+    scale = force_scale_of(state) if force_scale is None else force_scale
+    _scene(ax, state, scale, colours)
+    _forces(ax, state, scale, colours, "force")
+    return ax
+
+
+def plot_transition(
+    transition: Transition, ax: Axes | None = None, *, force_scale: float | None = None
+) -> Axes:
+    """The forces at both states of a transition and the path of each force head between them (Fig. 10).
+
+    Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
+    """
+    refuse_space(transition.grasp.dimension)
+    ax = axes_or_new(ax, height=3.4)
+    colours = contact_colours(transition.grasp)
+    scale = force_scale_of(transition.start, transition.end) if force_scale is None else force_scale
+    _scene(ax, transition.start, scale, colours)
+    _forces(ax, transition.start, scale, colours, "start force")
+    _forces(
+        ax,
+        transition.end,
+        scale,
+        colours,
+        "end force",
+        linestyle=(0, (2, 1)),
+        linewidth=1.0,
+        facecolor="white",
+    )
+    for name, r, a, b in zip(
+        transition.grasp.names,
+        transition.grasp.positions,
+        transition.start.forces,
+        transition.end.forces,
+        strict=True,
+    ):
+        heads = np.array([r + scale * a, r + scale * b])
+        ax.plot(*heads.T, color=colours[name], linewidth=2.6, alpha=0.45, gid=f"path {name}", zorder=3)
+    legend(
+        ax,
+        [
+            Line2D([], [], color=INK, linewidth=1.4, label="start"),
+            Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (2, 1)), label="end"),
+            Line2D([], [], color=INK, linewidth=2.6, alpha=0.45, label="path"),
+        ],
+    )
+    return ax
+
+
+def force_scale_of(*states: GraspState) -> float:
+    """Length of a unit force [m/N] at which the longest force of the states spans 0.45 of the extent."""
+    longest = max(max(s.magnitudes.max(), float(np.hypot(*s.load.force))) for s in states)
+    return _LONGEST * extent(states[0].grasp) / (longest or 1.0)
+
+
+def _scene(ax: Axes, state: GraspState, scale: float, colours: Colours) -> None:
+    """Everything but the finger forces."""
+    size = extent(state.grasp)
+    draw_body(ax, state.grasp, colours, _CONE * size)
+    if state.load.force.any():
+        head = scale * state.load.force
+        arrow(ax, (0, 0), head, gid="load", color=INK, zorder=3)
+        note(ax, r"$f_\mathrm{ext}$", head, head)
+    if state.load.torque[0]:
+        _turn(ax, state.load, 0.1 * size)
+    _scale_key(ax, scale, size)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    label_axis(ax.xaxis, "$x$", "m", size)
+    label_axis(ax.yaxis, "$y$", "m", size)
+
+
+def _forces(ax: Axes, state: GraspState, scale: float, colours: Colours, what: str, **look: object) -> None:
+    used = state.in_use
+    for name, r, f in zip(state.grasp.names, state.grasp.positions, state.forces, strict=True):
+        if name in used:
+            arrow(
+                ax,
+                r,
+                r + scale * f,
+                gid=f"{what} {name}",
+                **({"facecolor": colours[name], "edgecolor": colours[name], "zorder": 3} | look),
+            )
+
+
+def _turn(ax: Axes, load: Wrench, radius: float) -> None:
+    """A load torque: an arrow around the centre of mass in its sense, open towards the load's force."""
+    towards = np.arctan2(load.force[1], load.force[0])
+    sense = 1 if load.torque[0] > 0 else -1
+    angles = towards + sense * np.linspace(np.pi / 3, 5 * np.pi / 3, 40)
+    x, y = radius * np.cos(angles), radius * np.sin(angles)
+    ax.plot(x[:-3], y[:-3], color=INK, linewidth=1.2, zorder=3)
+    arrow(ax, (x[-4], y[-4]), (x[-1], y[-1]), gid="load torque", color=INK, zorder=3)
+    opposite = -np.array([np.cos(towards), np.sin(towards)])
+    note(ax, r"$\tau_\mathrm{ext}$", radius * opposite, opposite)
+
+
+def _scale_key(ax: Axes, scale: float, size: float) -> None:
+    """A bar above the axes, at the right, as long as a round force."""
+    force = round_below(0.3 * size / scale)
+    ax.add_artist(
+        AnchoredSizeBar(
+            ax.transData,
+            scale * force,
+            quantity(force, "N"),
+            "lower right",
+            pad=0,
+            borderpad=0.2,
+            sep=2,
+            label_top=True,
+            frameon=False,
+            color=INK,
+            bbox_to_anchor=(1, 1),
+            bbox_transform=ax.transAxes,
+            fontproperties=FontProperties(size=SMALL),
+        )
+    )
