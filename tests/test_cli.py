@@ -323,3 +323,10 @@ def test_installed_command_is_this_one() -> None:
 
     (entry,) = entry_points(group="console_scripts", name="regrasp")
     assert entry.value == "regrasp.cli:main"
+
+
+def test_printed_plan_shows_digits_in_any_unit() -> None:
+    grasp, load = PLAN.grasp, PLAN.start.load
+    micro = rg.plan_removal(rg.GraspState(grasp, load * 1e-6, PLAN.start.forces * 1e-6), "P3")
+    assert "P1          3.790e-06   3.003e-06" in str(micro)
+    assert "P1             3.7897     3.0034" in str(PLAN)

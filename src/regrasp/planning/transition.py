@@ -156,8 +156,12 @@ class Transition(ArrayValue, Pictured):
             f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
         ]
         ends = np.array([self.start.margins.angle, self.end.margins.angle])
+        largest = max(self.start.magnitudes.max(), self.end.magnitudes.max())
+        form = "10.4f" if 0.1 <= largest < 1e5 or largest == 0 else "11.3e"  # any units, readable in newtons
         for i, name in enumerate(self.grasp.names):
-            start, end = (" ".join(f"{x:10.4f}" for x in s.forces[i]) for s in (self.start, self.end))
+            start, end = (
+                " ".join(format(x + 0.0, form) for x in s.forces[i]) for s in (self.start, self.end)
+            )
             margin = np.fmin.reduce(ends[:, i])
             shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
             lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
