@@ -55,19 +55,41 @@ def escape_twist(
     if unit == 0:
         return None
     if min(limits) < inf:
-        gap = _gap_with_limits(grasp, target / unit, weight, frictions, [f / unit for f in limits])
+        gaps = [_gap_with_limits(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
     else:
-        gap = _gap(grasp, target / unit, weight, frictions)
-    if not gap.any():
-        return None
-    twist = EscapeTwist(grasp, load, -gap * weight / float(abs(gap).max()), tuple(frictions), tuple(limits))
-    return twist if twist.is_proof else None
+        gaps = _gaps(_edge_wrenches(grasp, weight, frictions), target / unit)
+    twists = [
+        EscapeTwist(grasp, load, -gap * weight / float(abs(gap).max()), tuple(frictions), tuple(limits))
+        for gap in gaps
+        if gap.any()
+    ]
+    best = max(twists, key=lambda twist: twist.least_force, default=None)
+    return best if best is not None and best.is_proof else None
 
 
-def _gap(grasp: Grasp, target: Array, weight: Array, frictions: list[float]) -> Array:
-    """Target - G f at the nearest f, a non-negative combination of the cones' edges."""
+def _gaps(wrenches: Array, target: Array) -> list[Array]:
+    """Target - G f at the nearest f, a non-negative combination of the edges; then the same, tilted a hair.
+
+    The twist touches the edges of the cones next to it, where rounding lets a contact oppose by 1e-16 of its
+    force. If the wrenches leave a half-space free, 2^-40 of a twist that all edges push along clears them.
+    """
     from scipy.optimize import nnls
 
+    combination, _ = nnls(wrenches, target)
+    gap: Array = target - wrenches @ combination
+    # Least distance programming (Lawson and Hanson 1974, ch. 23): min |v| subject to W'v >= 1.
+    equations = np.vstack([wrenches, np.ones(wrenches.shape[1])])
+    goal = np.append(np.zeros(len(target)), 1.0)
+    combination, miss = nnls(equations, goal)
+    if miss < 1e-9:
+        return [gap]  # W'v >= 1 has no solution: the wrenches leave no half-space free
+    residual = equations @ combination - goal
+    clear = residual[:-1] / residual[-1]
+    return [gap, gap + clear * (2.0**-40 * float(np.linalg.norm(gap) / np.linalg.norm(clear)))]
+
+
+def _edge_wrenches(grasp: Grasp, weight: Array, frictions: list[float]) -> Array:
+    """(3, 2n) wrenches of both edges of every cone, torques divided by the grasp's size."""
     edges = []
     for contact, mu in zip(grasp, frictions, strict=True):
         n = contact.normal
@@ -75,10 +97,7 @@ def _gap(grasp: Grasp, target: Array, weight: Array, frictions: list[float]) -> 
         for e in (n - mu * t, n + mu * t):
             r = contact.position
             edges.append(np.array([e[0], e[1], r[0] * e[1] - r[1] * e[0]]) * weight)
-    wrenches = np.array(edges).T
-    combination, _ = nnls(wrenches, target)
-    gap: Array = target - wrenches @ combination
-    return gap
+    return np.array(edges).T
 
 
 def _gap_with_limits(

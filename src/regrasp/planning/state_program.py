@@ -4,13 +4,14 @@ Unknowns x = (f_1, ..., f_n, t), forces in units of ``unit`` [N] and torques div
 that the data are of order one whatever the units. In the plane two half-planes are the friction cone:
 
     equilibrium   G f = -w_ext                                          zero cone
-    friction      mu f.n -+ f.t >= 0   and   f.n >= 0                   non-negative
+    friction      mu f.n -+ f.t >= 0                                    non-negative
+                  f.t = 0 and f.n >= 0 without friction                 zero, non-negative
     limits        |f_i| <= limit_i                                      second order
 
     effort        minimise sum |f_i|^2
     peak          minimise t,  |f_i| <= t
     peak_normal   minimise t,  f_i.n_i <= t
-    force         maximise t,  mu f.n -+ f.t >= t sqrt(1 + mu^2)
+    force         maximise t,  mu f.n -+ f.t >= t sqrt(1 + mu^2)   (contacts with friction)
 
 ``angle`` is quasi-convex: an angle margin m is reached when cones narrowed by m still hold the load.
 """
@@ -50,16 +51,21 @@ def state_program(
     for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
         pick = np.eye(n + 1)[2 * i : 2 * i + 2]
         along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
-        margin = t * sqrt(1 + mu * mu) if objective == "force" else 0 * t
-        rows.add(Cone.NONNEGATIVE, [mu * along - across - margin, mu * along + across - margin], np.zeros(2))
-        if objective != "force":
+        if mu == 0:  # a ray, which no margin narrows; as inequalities it would leave solvers no interior
+            rows.add(Cone.ZERO, across, 0.0)
             rows.add(Cone.NONNEGATIVE, along, 0.0)
+        else:
+            margin = t * sqrt(1 + mu * mu) if objective == "force" else 0 * t
+            edges = [mu * along - across - margin, mu * along + across - margin]
+            rows.add(Cone.NONNEGATIVE, edges, np.zeros(2))
         if objective == "peak":
             rows.add(Cone.SECOND_ORDER, np.vstack([t, pick]), np.zeros(3))
         if objective == "peak_normal":
             rows.add(Cone.NONNEGATIVE, t - along, 0.0)
         if limit < inf:
             rows.add(Cone.SECOND_ORDER, np.vstack([0 * t, pick]), [limit / unit, 0, 0])
+    if objective == "force" and not any(frictions):
+        rows.add(Cone.NONNEGATIVE, -t, 0.0)  # no cone bounds the margin of rays: it is zero
     if objective == "effort":
         return rows.program(0 * t, np.diag([2.0] * n + [0.0]))
     return rows.program(-t if objective == "force" else t)
@@ -126,6 +132,17 @@ def solved_state(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -
     among such states the one of the widest force margin is taken.
     """
     criteria.demand_limit(grasp, load)
+    try:
+        return _solved(grasp, load, criteria, backend)
+    except SolverFailed:
+        # Solvers fail at the limit of what can be held. That is no verdict; a proof is.
+        reason = infeasible(grasp, load, criteria)
+        if reason.certificate is None:
+            raise
+        raise reason from None
+
+
+def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenState:
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     solver = _Solver(grasp, load, backend, limits)
     if criteria.maximises and inf in limits:

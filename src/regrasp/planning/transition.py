@@ -118,12 +118,14 @@ class Transition(ArrayValue, Pictured):
 
     def reversed(self) -> "Transition":
         """The same path run backwards: a removal becomes an addition."""
+        choices = tuple(replace(c, end="end" if c.end == "start" else "start") for c in self.record.choices)
         return replace(
             self,
             kind="addition" if self.kind == "removal" else "removal",
             start=self.end,
             end=self.start,
             scaling=self.scaling.reversed(),
+            record=replace(self.record, choices=choices),
         )
 
     def retimed(self, scaling: TimeScaling) -> "Transition":
