@@ -137,7 +137,7 @@ def best_state(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenState:
     criteria.demand_limit(grasp, load)
     mu1, mu2 = criteria.frictions(grasp)
     bound1, bound2 = criteria.limits(grasp)
-    x, limit1, limit2 = best_squeeze(
+    x, y, limit1, limit2 = best_squeeze(
         *_plain(grasp.contacts[0])[:4],
         mu1,
         *_plain(grasp.contacts[1])[:4],
@@ -150,8 +150,7 @@ def best_state(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenState:
     )
     if isnan(x):
         raise infeasible(grasp, load, criteria)
-    ux, uy, phi, a, b, _ = _pair_frame(grasp, load)
-    y = -(x + phi)
+    ux, uy, _, a, b, _ = _pair_frame(grasp, load)
     forces = [[x * ux - a * uy, x * uy + a * ux], [y * ux - b * uy, y * uy + b * ux]]
     return ChosenState(grasp, load, forces, criteria, (limit1, limit2), "closed-form")
 
