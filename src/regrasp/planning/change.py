@@ -1,8 +1,7 @@
 """Planning the removal and the addition of a finger."""
 
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -119,8 +118,7 @@ def plan_addition(
     return Transition("addition", grasp.names[-1], rest, whole, scaling, record)
 
 
-@dataclass(frozen=True)
-class _Side:
+class _Side(NamedTuple):
     """One end of a transition: its name, the state given for it, and what to choose it for if none is."""
 
     label: Literal["start", "end"]
