@@ -1,4 +1,4 @@
-"""The best two-finger state of one grasp, from contact numbers to squeeze, in one call."""
+"""The best two-finger state of one grasp, from contact numbers to forces, in one call."""
 
 from math import inf, nan, sqrt
 
@@ -36,10 +36,10 @@ def best_squeeze(
     limit1: float,
     limit2: float,
     peak_ratio: float,
-) -> tuple[float, float, float, float]:
-    """(x, y, limit1, limit2): the best f_1 . u and f_2 . u, and the force limits they were chosen under.
+) -> tuple[float, tuple[float, float, float, float], tuple[float, float]]:
+    """The best squeeze, the forces (f_1x, f_1y, f_2x, f_2y) and the limits they were chosen under.
 
-    x and y are NaN where no state exists. The widest angle or force margin may lie at infinite force, so for
+    Squeeze and forces are NaN where no state exists. The widest angle or force margin may lie at infinite force, so for
     these objectives a contact without a limit (infinite) is limited to ``peak_ratio`` (at least 1) times the
     least peak force of the grasp.
     """
@@ -52,7 +52,7 @@ def best_squeeze(
         lo2, hi2 = within_limit(lo2, hi2, b, limit2)
     lo, hi = common_interval(lo1, hi1, lo2, hi2, phi, a, b)
     if lo > hi:
-        return nan, nan, limit1, limit2
+        return nan, (nan, nan, nan, nan), (limit1, limit2)
     if objective == EFFORT:
         x = best_effort(lo, hi, phi)
     elif objective == PEAK:
@@ -79,4 +79,5 @@ def best_squeeze(
                 x = best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
     # Each force by its own bounds: rounding of a large force would carry a small one out of its cone.
     x = clamp(x, lo1, hi1)
-    return x, clamp(-(x + phi), lo2, hi2), limit1, limit2
+    y = clamp(-(x + phi), lo2, hi2)
+    return x, (x * ux - a * uy, x * uy + a * ux, y * ux - b * uy, y * uy + b * ux), (limit1, limit2)

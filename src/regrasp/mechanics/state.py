@@ -88,7 +88,19 @@ class GraspState(ArrayValue):
         return GraspState(self.grasp.without(gone), self.load, np.delete(self.forces, gone, axis=0))
 
     def is_balanced(self, *, reserve: float = RESERVE) -> bool:
-        """Whether this is an equilibrium to rounding, inside the cones and limits less the reserve."""
+        """Whether this is an equilibrium to rounding, inside the cones and limits less the reserve.
+
+        Judged once for each reserve, so that many plans may start from one state.
+        """
+        if reserve not in self._verdicts:
+            self._verdicts[reserve] = self._judged(reserve)
+        return self._verdicts[reserve]
+
+    @cached_property
+    def _verdicts(self) -> dict[float, bool]:
+        return {}
+
+    def _judged(self, reserve: float) -> bool:
         d, contacts, load = self.grasp.dimension, self.grasp.contacts, self.load.plain
         rows, total = self.forces.tolist(), self.imbalance.tolist()
         magnitudes = [hypot(*f) for f in rows]

@@ -125,7 +125,8 @@ class EquilibriumLocus(ArrayValue):
 
     @cached_property
     def _frame(self) -> tuple[float, float, float, float, float, float]:
-        return _pair_frame(self.grasp, self.load)
+        first, second = self.grasp.contacts
+        return pair_frame(*_plain(first)[:2], *_plain(second)[:2], *_load(self.load))
 
     def __repr__(self) -> str:
         names = ", ".join(self.grasp.names)
@@ -138,7 +139,7 @@ def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     criteria.demand_limit(grasp, load)
     mu1, mu2 = criteria.frictions(grasp)
     bound1, bound2 = criteria.limits(grasp)
-    x, y, limit1, limit2 = best_squeeze(
+    x, (f1x, f1y, f2x, f2y), limits = best_squeeze(
         *_plain(grasp.contacts[0])[:4],
         mu1,
         *_plain(grasp.contacts[1])[:4],
@@ -151,9 +152,7 @@ def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     )
     if isnan(x):
         raise infeasible(grasp, load, criteria)
-    ux, uy, _, a, b, _ = _pair_frame(grasp, load)
-    forces = [[x * ux - a * uy, x * uy + a * ux], [y * ux - b * uy, y * uy + b * ux]]
-    return ChosenForces(forces, (limit1, limit2), "closed-form")
+    return ChosenForces([[f1x, f1y], [f2x, f2y]], limits, "closed-form")
 
 
 def _plain(contact: Contact) -> tuple[float, float, float, float, float]:
@@ -162,8 +161,3 @@ def _plain(contact: Contact) -> tuple[float, float, float, float, float]:
 
 def _load(load: Wrench) -> tuple[float, float, float]:
     return cast(tuple[float, float, float], load.plain)
-
-
-def _pair_frame(grasp: Grasp, load: Wrench) -> tuple[float, float, float, float, float, float]:
-    first, second = grasp.contacts
-    return pair_frame(*_plain(first)[:2], *_plain(second)[:2], *_load(load))
