@@ -27,7 +27,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import ChosenState, Criteria
 from regrasp.planning.escape import infeasible
-from regrasp.programs import Cone, Program, Rows, Status, solve
+from regrasp.programs import Program, Rows, Status, solve
 
 ANGLE_TOLERANCE = 1e-8
 """The chosen angle margin is within this of the best one [rad]."""
@@ -47,25 +47,25 @@ def state_program(
     rows = Rows(n + 1)
     weight = np.array([1.0, 1.0, 1 / grasp.size if grasp.size else 1.0])
     g = np.hstack([grasp.matrix * weight[:, None], np.zeros((3, 1))])
-    rows.add(Cone.ZERO, g, load.vector * weight / unit)
+    rows.equal(g, load.vector * weight / unit)
     for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
         pick = np.eye(n + 1)[2 * i : 2 * i + 2]
         along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
         if mu == 0:  # a ray, which no margin narrows; as inequalities it would leave solvers no interior
-            rows.add(Cone.ZERO, across, 0.0)
-            rows.add(Cone.NONNEGATIVE, along, 0.0)
+            rows.equal(across)
+            rows.at_least_zero(along)
         else:
             margin = t * sqrt(1 + mu * mu) if objective == "force" else 0 * t
             edges = [mu * along - across - margin, mu * along + across - margin]
-            rows.add(Cone.NONNEGATIVE, edges, np.zeros(2))
+            rows.at_least_zero(edges)
         if objective == "peak":
-            rows.add(Cone.SECOND_ORDER, np.vstack([t, pick]), np.zeros(3))
+            rows.second_order(np.vstack([t, pick]))
         if objective == "peak_normal":
-            rows.add(Cone.NONNEGATIVE, t - along, 0.0)
+            rows.at_least_zero(t - along)
         if limit < inf:
-            rows.add(Cone.SECOND_ORDER, np.vstack([0 * t, pick]), [limit / unit, 0, 0])
+            rows.second_order(np.vstack([0 * t, pick]), [limit / unit, 0, 0])
     if objective == "force" and not any(frictions):
-        rows.add(Cone.NONNEGATIVE, -t, 0.0)  # no cone bounds the margin of rays: it is zero
+        rows.at_least_zero(-t)  # no cone bounds the margin of rays: it is zero
     if objective == "effort":
         return rows.program(0 * t, np.diag([2.0] * n + [0.0]))
     return rows.program(-t if objective == "force" else t)
@@ -99,10 +99,10 @@ class _Solver:
         if answer.status is Status.INFEASIBLE:
             return None
         if answer.status is Status.UNBOUNDED:
-            raise SolverFailed(f"{self.backend}: {answer.status.value}", program, answer)
-        if objective == "force" and answer.status is Status.SOLVED and answer.x[-1] < -_FEASIBLE:
+            raise SolverFailed(f"{self.backend}: {answer.status.advice}", program, answer)
+        if objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -_FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
-        wanted = answer.x[:-1].reshape(-1, 2) * self.unit
+        wanted = answer.value[:-1].reshape(-1, 2) * self.unit
         grasp = self.grasp
         forces = nearest_equilibrium(
             wanted,
