@@ -31,13 +31,17 @@ class Bound:
 
 @dataclass(frozen=True)
 class ExactLocus:
-    """The interval of X; an end without bound is None. ``empty`` may be true with both ends given."""
+    """The interval of X; an end without bound is None. ``empty`` may be true with both ends given.
+
+    ``miss`` is how far [force] an edge parallel to the line of contacts excludes every X; 0 if none does.
+    """
 
     lo: Bound | None
     hi: Bound | None
     empty: bool
     length: float
     """|P_1 P_2|."""
+    miss: float
     terms: float
     """Size of the terms the ends are made of, in force: |F| + (|tau| + |r| |F|) / |P_1 P_2|."""
 
@@ -119,22 +123,21 @@ def locus(
     dd = dot(d, d)
     lo: Bound | None = None
     hi: Bound | None = None
-    empty = False
-    for slope, offset, sine2 in _bounds(d, p, A, F, (n1, mu1), (n2, mu2)):
+    miss = 0.0
+    for slope, offset, size, sine2 in _bounds(d, p, A, F, (n1, mu1), (n2, mu2)):
         if sine2 <= parallel**2:
-            empty = empty or offset < 0
+            miss = max(miss, float(-offset) / size)
             continue
         bound = Bound(-offset / slope, sqrt(sine2))
         if slope > 0 and (lo is None or bound.value > lo.value):
             lo = bound
         if slope < 0 and (hi is None or bound.value < hi.value):
             hi = bound
-    if lo is not None and hi is not None and lo.value > hi.value:
-        empty = True
+    empty = miss > 0 or (lo is not None and hi is not None and lo.value > hi.value)
     length = sqrt(dd)
     weight = sqrt(dot(F, F))
     reach = max(sqrt(dot(p1, p1)), sqrt(dot(p2, p2)))
-    return ExactLocus(lo, hi, empty, length, weight + (abs(float(torque)) + reach * weight) / length)
+    return ExactLocus(lo, hi, empty, length, miss, weight + (abs(float(torque)) + reach * weight) / length)
 
 
 def sines(
@@ -162,8 +165,8 @@ def _frame(r1: Vector, r2: Vector, F: Vector, tau: Fraction) -> tuple[Vector, Ve
 
 def _bounds(
     d: Vector, p: Vector, A: Fraction, F: Vector, *cones: tuple[Sequence[float], float]
-) -> Iterator[tuple[Fraction, Fraction, Fraction]]:
-    """(slope, offset, sine^2) of every row slope X + offset >= 0."""
+) -> Iterator[tuple[Fraction, Fraction, float, Fraction]]:
+    """(slope, offset, length of the row, sine^2) of every row slope X + offset >= 0."""
     for i, (normal, friction) in enumerate(cones):
         n, mu = exact(normal), Fraction(float(friction))
         edges = rows_of_cone(n, mu)
@@ -171,4 +174,4 @@ def _bounds(
             slope, offset = dot(m, d), A * dot(m, p)
             if i == 1:
                 slope, offset = -slope, -offset - dot(m, F)
-            yield slope, offset, slope * slope / (dot(m, m) * dot(d, d))
+            yield slope, offset, sqrt(dot(m, m)), slope * slope / (dot(m, m) * dot(d, d))

@@ -8,9 +8,10 @@ from regrasp.closed_form.best import (
     best_force,
     best_peak,
     best_peak_normal,
+    clamp,
     contact_lines,
 )
-from regrasp.closed_form.locus import common_interval, cone_interval, limited_interval, pair_frame
+from regrasp.closed_form.locus import common_interval, cone_interval, pair_frame, within_limit
 
 ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL = range(5)
 OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal")
@@ -35,34 +36,47 @@ def best_squeeze(
     limit1: float,
     limit2: float,
     peak_ratio: float,
-) -> tuple[float, float, float]:
-    """(x, limit1, limit2): the best squeeze and the force limits it was chosen under; x is NaN if none is.
+) -> tuple[float, float, float, float]:
+    """(x, y, limit1, limit2): the best f_1 . u and f_2 . u, and the force limits they were chosen under.
 
-    The widest angle or force margin may lie at infinite force, so for these objectives a contact without a
-    limit (infinite) is limited to ``peak_ratio`` (at least 1) times the least peak force of the grasp.
+    x and y are NaN where no state exists. The widest angle or force margin may lie at infinite force, so for
+    these objectives a contact without a limit (infinite) is limited to ``peak_ratio`` (at least 1) times the
+    least peak force of the grasp.
     """
     ux, uy, phi, a, b, parallel = pair_frame(x1, y1, x2, y2, fx, fy, tau)
     lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)
     lo2, hi2 = cone_interval(nx2 * ux + ny2 * uy, ny2 * ux - nx2 * uy, mu2, b, parallel)
+    if limit1 < inf:
+        lo1, hi1 = within_limit(lo1, hi1, a, limit1)
+    if limit2 < inf:
+        lo2, hi2 = within_limit(lo2, hi2, b, limit2)
     lo, hi = common_interval(lo1, hi1, lo2, hi2, phi, a, b)
-    if limit1 < inf or limit2 < inf:
-        lo, hi = limited_interval(lo, hi, phi, a, b, limit1, limit2)
     if lo > hi:
-        return nan, limit1, limit2
+        return nan, nan, limit1, limit2
     if objective == EFFORT:
-        return best_effort(lo, hi, phi), limit1, limit2
-    if objective == PEAK:
-        return best_peak(lo, hi, phi, a, b), limit1, limit2
-    p1, q1, g1, h1, p2, q2, g2, h2 = contact_lines(ux, uy, phi, a, b, nx1, ny1, nx2, ny2)
-    if objective == PEAK_NORMAL:
-        return best_peak_normal(lo, hi, phi, p1, q1, p2, q2), limit1, limit2
-    if limit1 == inf or limit2 == inf:
+        x = best_effort(lo, hi, phi)
+    elif objective == PEAK:
         x = best_peak(lo, hi, phi, a, b)
-        limit = peak_ratio * sqrt(max(x * x + a * a, (x + phi) * (x + phi) + b * b))
-        limit1, limit2 = min(limit1, limit), min(limit2, limit)
-        lo, hi = limited_interval(lo, hi, phi, a, b, limit1, limit2)
-        if lo > hi:  # a ratio of 1 leaves the point itself, up to rounding
-            lo = hi = x
-    if objective == ANGLE:
-        return best_angle(lo, hi, phi, a, b, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2), limit1, limit2
-    return best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2), limit1, limit2
+    else:
+        p1, q1, g1, h1, p2, q2, g2, h2 = contact_lines(ux, uy, phi, a, b, nx1, ny1, nx2, ny2)
+        if objective == PEAK_NORMAL:
+            x = best_peak_normal(lo, hi, phi, p1, q1, p2, q2)
+        else:
+            if limit1 == inf or limit2 == inf:
+                x = best_peak(lo, hi, phi, a, b)
+                square1, square2 = x * x + a * a, (x + phi) * (x + phi) + b * b
+                limit = peak_ratio * sqrt(square1 if square1 > square2 else square2)
+                limit1 = limit if limit < limit1 else limit1
+                limit2 = limit if limit < limit2 else limit2
+                left1, right1 = within_limit(lo1, hi1, a, limit1)
+                left2, right2 = within_limit(lo2, hi2, b, limit2)
+                lo, hi = common_interval(left1, right1, left2, right2, phi, a, b)
+                if lo > hi:  # a ratio of 1 leaves the point itself, up to rounding
+                    lo = hi = x
+            if objective == ANGLE:
+                x = best_angle(lo, hi, phi, a, b, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+            else:
+                x = best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+    # Each force by its own bounds: rounding of a large force would carry a small one out of its cone.
+    x = clamp(x, lo1, hi1)
+    return x, clamp(-(x + phi), lo2, hi2), limit1, limit2

@@ -26,14 +26,24 @@ def pair_frame(
     dx, dy = x2 - x1, y2 - y1
     per_length = 1.0 / sqrt(dx * dx + dy * dy)
     ux, uy = dx * per_length, dy * per_length
-    about2, about1 = tau - (x2 * fy - y2 * fx), tau - (x1 * fy - y1 * fx)
-    if abs(about2) <= _CANCELLED * (abs(tau) + abs(x2 * fy) + abs(y2 * fx)):
-        about2 = 0.0
-    if abs(about1) <= _CANCELLED * (abs(tau) + abs(x1 * fy) + abs(y1 * fx)):
-        about1 = 0.0
+    across = fy * ux - fx * uy
+    # The torque about each contact and the size of its terms. Only one of a and b is made from its torque,
+    # the one with smaller terms; a + b + F . p = 0 gives the other, so that forces balance to their rounding.
+    about1, terms1 = tau - (x1 * fy - y1 * fx), abs(tau) + abs(x1 * fy) + abs(y1 * fx)
+    about2, terms2 = tau - (x2 * fy - y2 * fx), abs(tau) + abs(x2 * fy) + abs(y2 * fx)
+    through1, through2 = abs(about1) <= _CANCELLED * terms1, abs(about2) <= _CANCELLED * terms2
+    if through1 or through2:
+        a = 0.0 if through2 else -across
+        b = 0.0 if through1 else -across
+    elif terms2 <= terms1:
+        a = about2 * per_length
+        b = -(a + across)
+    else:
+        b = -about1 * per_length
+        a = -(b + across)
     # Coordinates far from the origin place the line less exactly.
     parallel = PARALLEL + _EPS * (abs(x1) + abs(y1) + abs(x2) + abs(y2)) * per_length
-    return ux, uy, fx * ux + fy * uy, about2 * per_length, -about1 * per_length, parallel
+    return ux, uy, fx * ux + fy * uy, a, b, parallel
 
 
 def cone_interval(c: float, s: float, mu: float, a: float, parallel: float) -> tuple[float, float]:
@@ -114,18 +124,10 @@ def squeeze_interval(
     return common_interval(lo1, hi1, lo2, hi2, phi, a, b)
 
 
-def limited_interval(
-    lo: float, hi: float, phi: float, a: float, b: float, limit1: float, limit2: float
-) -> tuple[float, float]:
-    """The part of (lo, hi) with |f_1| <= limit1 and |f_2| <= limit2; empty as (inf, -inf)."""
-    room1, room2 = limit1 * limit1 - a * a, limit2 * limit2 - b * b
-    if room1 < 0.0 or room2 < 0.0:
+def within_limit(lo: float, hi: float, across: float, limit: float) -> tuple[float, float]:
+    """The part of (lo, hi) where a force (x, across) is no larger than ``limit``; empty as lo > hi."""
+    room = limit * limit - across * across
+    if room < 0.0:
         return inf, -inf
-    reach1, reach2 = sqrt(room1), sqrt(room2)
-    lo = lo if lo > -reach1 else -reach1
-    hi = hi if hi < reach1 else reach1
-    lo = lo if lo > -phi - reach2 else -phi - reach2
-    hi = hi if hi < reach2 - phi else reach2 - phi
-    if lo <= hi:
-        return lo, hi
-    return inf, -inf
+    reach = sqrt(room)
+    return (lo if lo > -reach else -reach), (hi if hi < reach else reach)

@@ -23,7 +23,7 @@ def array(value: ArrayLike, what: str, shape: tuple[int | None, ...]) -> Array:
         or any(want not in (None, got) for want, got in zip(shape, result.shape, strict=True))
     ):
         raise InvalidInput(f"{what} must have shape {_shape(shape)}, got {_shape(result.shape)}: {value!r}")
-    if not np.isfinite(result).all():
+    if np.count_nonzero(np.isfinite(result)) < result.size:
         raise InvalidInput(f"{what} must be finite, got {value!r}")
     result.setflags(write=False)
     return result

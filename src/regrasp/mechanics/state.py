@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import hypot
+from math import dist, hypot
 from operator import mul
 
 import numpy as np
@@ -99,7 +99,7 @@ class GraspState(ArrayValue):
         for contact, f, magnitude in zip(contacts, rows, magnitudes, strict=True):
             n = contact.plain[d : 2 * d]
             normal = sum(map(mul, f, n))
-            tangential = hypot(*[x - normal * along for x, along in zip(f, n, strict=True)])
+            tangential = dist(f, [normal * along for along in n])
             if tangential > kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude:
                 return False
             if contact.max_force is not None and magnitude > contact.max_force:

@@ -1,10 +1,7 @@
 """Planning the removal and the addition of a finger."""
 
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
-
-import numpy as np
+from typing import Literal, NamedTuple
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import number
@@ -13,8 +10,8 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.choice import chosen
-from regrasp.planning.criteria import PEAK_RATIO, Criteria
+from regrasp.planning.choice import choose_forces
+from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria
 from regrasp.planning.escape import infeasible
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record, Transition
@@ -119,8 +116,7 @@ def plan_addition(
     return Transition("addition", grasp.names[-1], rest, whole, scaling, record)
 
 
-@dataclass(frozen=True)
-class _Side:
+class _Side(NamedTuple):
     """One end of a transition: its name, the state given for it, and what to choose it for if none is."""
 
     label: Literal["start", "end"]
@@ -129,10 +125,10 @@ class _Side:
     method: str
     balance_tolerance: float
 
-    def state(self, grasp: Grasp, load: Wrench) -> tuple[GraspState, Choice | None, float]:
-        """The state of ``grasp``, the record of its choice and the change of given forces [N]."""
+    def found(self, grasp: Grasp, load: Wrench) -> tuple[GraspState | ChosenForces, Choice | None, float]:
+        """The forces of ``grasp``, the record of their choice and the change of given ones [N]."""
         if self.given is None:
-            best = chosen(grasp, load, self.criteria, self.method)
+            best = choose_forces(grasp, load, self.criteria, self.method)
             choice = Choice(self.label, self.criteria.objective, best.method, best.force_limits)
             return best, choice, 0.0
         given = self.given if self.given.grasp is grasp else GraspState(grasp, load, self.given.forces)
@@ -145,13 +141,12 @@ def _ends(
 ) -> tuple[GraspState, GraspState, Record]:
     """The states with and without finger ``gone``, both of ``grasp``."""
     # The state of fewer fingers first: it is the one that may not exist.
-    fewer, choice, change = rest.state(grasp.without(gone), load)
-    more, other_choice, other_change = whole.state(grasp, load)
-    forces = np.zeros((len(grasp), grasp.dimension))  # the finger that is gone stays idle
-    forces[:gone], forces[gone + 1 :] = fewer.forces[:gone], fewer.forces[gone:]
+    fewer, choice, change = rest.found(grasp.without(gone), load)
+    more, other_choice, other_change = whole.found(grasp, load)
+    idle = [0.0] * grasp.dimension
     return (
-        more if whole.given is not None else GraspState(grasp, load, more.forces),
-        GraspState(grasp, load, forces),
+        more if isinstance(more, GraspState) else GraspState(grasp, load, more.forces),
+        GraspState(grasp, load, [*fewer.forces[:gone], idle, *fewer.forces[gone:]]),
         Record(
             reserve=rest.criteria.reserve,
             choices=tuple(c for c in (choice, other_choice) if c is not None),

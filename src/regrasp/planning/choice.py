@@ -5,8 +5,8 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.criteria import PEAK_RATIO, ChosenState, Criteria
-from regrasp.planning.locus import best_state
+from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria
+from regrasp.planning.locus import best_forces
 from regrasp.programs import available_backends
 
 DEFAULT_BACKEND = "clarabel"
@@ -35,11 +35,12 @@ def choose_state(
     no forces exist, ``InvalidInput`` for arguments that are not what they must be.
     """
     check_load(grasp, load)
-    return chosen(grasp, load, Criteria(objective, max_force, peak_ratio, reserve), method)
+    criteria = Criteria(objective, max_force, peak_ratio, reserve)
+    return ChosenState(grasp, load, criteria, choose_forces(grasp, load, criteria, method))
 
 
-def chosen(grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto") -> ChosenState:
-    """``choose_state`` for checked criteria."""
+def choose_forces(grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto") -> ChosenForces:
+    """``choose_state`` for checked criteria, before a state is made of the forces."""
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     if method == "closed-form" and not planar_pair:
         raise InvalidInput(
@@ -49,10 +50,10 @@ def chosen(grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto")
     if len(grasp) < 2:
         raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
     if method == "closed-form" or (method == "auto" and planar_pair):
-        return best_state(grasp, load, criteria)
+        return best_forces(grasp, load, criteria)
     if method != "auto" and method not in available_backends():
         known = ", ".join(("auto", "closed-form", *available_backends()))
         raise InvalidInput(f"method must be one of {known}; got {method!r}")
-    from regrasp.planning.state_program import solved_state
+    from regrasp.planning.state_program import solved_forces
 
-    return solved_state(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method)
+    return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method)

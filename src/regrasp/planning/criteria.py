@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Literal
-
-from numpy.typing import ArrayLike
+from typing import Literal, NamedTuple
 
 from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import choice, number
+from regrasp.mechanics.checks import Array, choice, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.state import GraspState
@@ -74,6 +72,14 @@ class Criteria:
             )
 
 
+class ChosenForces(NamedTuple):
+    """Forces (n, d) of a choice [N], the limits it was made under and its method, as in ``ChosenState``."""
+
+    forces: Array | list[list[float]]
+    force_limits: tuple[float, ...]
+    method: str
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class ChosenState(GraspState):
     """A state with the record of its choice."""
@@ -88,15 +94,13 @@ class ChosenState(GraspState):
         self,
         grasp: Grasp,
         load: Wrench,
-        forces: ArrayLike,
         criteria: Criteria,
-        force_limits: tuple[float, ...],
-        method: str,
+        chosen: ChosenForces,
     ) -> None:
-        super().__init__(grasp, load, forces)
+        super().__init__(grasp, load, chosen.forces)
         object.__setattr__(self, "criteria", criteria)
-        object.__setattr__(self, "force_limits", force_limits)
-        object.__setattr__(self, "method", method)
+        object.__setattr__(self, "force_limits", chosen.force_limits)
+        object.__setattr__(self, "method", chosen.method)
 
     @cached_property
     def value(self) -> float:

@@ -19,7 +19,7 @@ from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench, torque
-from regrasp.planning.criteria import PEAK_RATIO, ChosenState, Criteria
+from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria
 from regrasp.planning.escape import infeasible
 
 
@@ -120,7 +120,8 @@ class EquilibriumLocus(ArrayValue):
         reserve: float = RESERVE,
     ) -> ChosenState:
         """The best state on the locus for an objective, in closed form; see ``choose_state``."""
-        return best_state(self.grasp, self.load, Criteria(objective, max_force, peak_ratio, reserve))
+        criteria = Criteria(objective, max_force, peak_ratio, reserve)
+        return ChosenState(self.grasp, self.load, criteria, best_forces(self.grasp, self.load, criteria))
 
     @cached_property
     def _frame(self) -> tuple[float, float, float, float, float, float]:
@@ -132,12 +133,12 @@ class EquilibriumLocus(ArrayValue):
         return f"EquilibriumLocus of {names} under {self.load!r}: {span}"
 
 
-def best_state(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenState:
-    """The best state of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
+def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
+    """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
     criteria.demand_limit(grasp, load)
     mu1, mu2 = criteria.frictions(grasp)
     bound1, bound2 = criteria.limits(grasp)
-    x, limit1, limit2 = best_squeeze(
+    x, y, limit1, limit2 = best_squeeze(
         *_plain(grasp.contacts[0])[:4],
         mu1,
         *_plain(grasp.contacts[1])[:4],
@@ -150,10 +151,9 @@ def best_state(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenState:
     )
     if isnan(x):
         raise infeasible(grasp, load, criteria)
-    ux, uy, phi, a, b, _ = _pair_frame(grasp, load)
-    y = -(x + phi)
+    ux, uy, _, a, b, _ = _pair_frame(grasp, load)
     forces = [[x * ux - a * uy, x * uy + a * ux], [y * ux - b * uy, y * uy + b * ux]]
-    return ChosenState(grasp, load, forces, criteria, (limit1, limit2), "closed-form")
+    return ChosenForces(forces, (limit1, limit2), "closed-form")
 
 
 def _plain(contact: Contact) -> tuple[float, float, float, float, float]:

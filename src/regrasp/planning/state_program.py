@@ -25,7 +25,7 @@ from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.criteria import ChosenState, Criteria
+from regrasp.planning.criteria import ChosenForces, Criteria
 from regrasp.planning.escape import infeasible
 from regrasp.programs import Program, Rows, Status, solve
 
@@ -125,8 +125,8 @@ class _Solver:
         return forces
 
 
-def solved_state(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenState:
-    """The best state of any number of planar contacts, by programs. Raises ``Infeasible``.
+def solved_forces(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenForces:
+    """The best forces of any number of planar contacts, by programs. Raises ``Infeasible``.
 
     An angle margin within ``ANGLE_TOLERANCE`` of the best is found by bisection on cones that hold the load;
     among such states the one of the widest force margin is taken.
@@ -142,7 +142,7 @@ def solved_state(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -
         raise reason from None
 
 
-def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenState:
+def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenForces:
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     solver = _Solver(grasp, load, backend, limits)
     if criteria.maximises and inf in limits:
@@ -165,4 +165,4 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> Cho
                 lost = margin
             else:
                 held, forces = margin, narrowed
-    return ChosenState(grasp, load, forces, criteria, tuple(limits), backend)
+    return ChosenForces(forces, tuple(limits), backend)
