@@ -110,10 +110,14 @@ def test_clarabel_proves_infeasibility_and_unboundedness():
     assert unbounded.value[0] > 0
 
 
+def test_a_back_end_that_refuses_a_program_is_no_verdict():
+    pytest.importorskip("quadprog")
+    with pytest.raises(SolverFailed, match="P is not positive definite"):
+        solve(falling(), "quadprog")
+
+
 @pytest.mark.parametrize("backend", QP_ONLY)
 def test_a_qp_back_end_without_an_answer_gives_no_numbers(backend):
-    if backend == "quadprog":
-        pytest.importorskip("quadprog")
     solution = solve(contradiction(), backend, throw=False)
     assert solution.status is Status.NOT_FOUND
     assert np.isnan(solution.value).all()

@@ -14,7 +14,6 @@ from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import Criteria
-from regrasp.programs import Rows, solve
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
@@ -104,6 +103,8 @@ def _gap_with_limits(
     grasp: Grasp, target: Array, weight: Array, frictions: list[float], limits: list[float]
 ) -> Array:
     """Target - G f at the nearest f inside cones and limits: a program in (f, gap)."""
+    from regrasp.programs import Rows, solve
+
     n = 2 * len(grasp)
     rows = Rows(n + 3)
     g = np.hstack([grasp.matrix * weight[:, None], np.eye(3)])

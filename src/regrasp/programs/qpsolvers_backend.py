@@ -48,22 +48,26 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     built = perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # solvers warn of what their status says
-        answer = qpsolvers.solve_problem(problem, name, **{**_DEFAULTS.get(name, {}), **options})
+        try:
+            answer = qpsolvers.solve_problem(problem, name, **{**_DEFAULTS.get(name, {}), **options})
+            found, said = bool(answer.found), "found" if answer.found else "not found"
+        except (qpsolvers.exceptions.QPError, ValueError) as error:  # quadprog refuses a singular P, for one
+            found, said = False, f"error: {error}"
     solved = perf_counter()
     duals = np.full(program.b.size, np.nan)
-    if answer.found:
+    if found:
         for part, values in ((~equal, answer.z), (equal, answer.y)):
             if part.any() and values is not None:
                 duals[part] = values
     return Solution(
         program,
         name,
-        Status.SOLVED if answer.found else Status.NOT_FOUND,
+        Status.SOLVED if found else Status.NOT_FOUND,
         # When nothing was found, several solvers still fill x with whatever they had.
-        np.array(answer.x) if answer.found else np.full(program.q.size, np.nan),
+        np.array(answer.x) if found else np.full(program.q.size, np.nan),
         duals,
         None,
         built - started,
         solved - built,
-        "found" if answer.found else "not found",
+        said,
     )
