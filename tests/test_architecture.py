@@ -1,0 +1,210 @@
+"""The house keeps its import rules (design, section 3), checked by parsing the sources."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator, Set
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import regrasp
+
+ROOT = Path(regrasp.__file__).parent
+
+# Floor (folder or module) -> floors it may import. A new floor needs a line here.
+FLOORS: dict[str, Set[str]] = {
+    "errors": set(),
+    "display": set(),
+    "closed_form": {"closed_form"},
+    "programs": {"errors", "programs"},
+    "mechanics": {"errors", "mechanics"},
+    "planning": {"errors", "display", "mechanics", "closed_form", "programs", "planning"},
+    "verification": {"mechanics"},  # the checker shares no code with the planner
+    "files": {"errors", "mechanics", "closed_form", "programs", "planning", "verification", "files"},
+    "plots": {"errors", "mechanics", "closed_form", "planning", "plots"},
+    "cli": {"", "errors", "mechanics", "planning", "verification", "files", "plots"},
+    "": {"errors", "mechanics", "planning", "verification"},  # regrasp/__init__.py: the public names
+    "__main__": {"cli"},
+}
+SOLVERS = {
+    "clarabel", "cvxpy", "qpsolvers", "osqp", "daqp", "quadprog", "piqp", "proxsuite", "scs", "ecos",
+    "highspy", "gurobipy", "mosek", "qpoases", "cvxopt",
+}  # fmt: skip
+HEAVY = {
+    "matplotlib",
+    "cvxpy",
+    "clarabel",
+    "numba",
+    "scipy",
+    "pandas",
+    "pydantic",
+    "qpsolvers",
+    "click",
+    "rich",
+}
+LINES = 430
+
+
+def sources(root: Path = ROOT) -> dict[str, str]:
+    """Module name -> source, for every module of the package at ``root``."""
+    found = {}
+    for path in root.rglob("*.py"):
+        parts = path.relative_to(root).with_suffix("").parts
+        found[".".join((root.name, *parts)).removesuffix(".__init__")] = path.read_text(encoding="utf-8")
+    return found
+
+
+def imported(module: str, modules: dict[str, str]) -> set[str]:
+    """Every module imported anywhere in ``module``: in functions, for types only or by a literal name."""
+    is_package = any(name.startswith(f"{module}.") for name in modules)
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(modules[module])):
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                here = module.split(".") if is_package else module.split(".")[:-1]
+                base = ".".join([*here[: len(here) - node.level + 1], *([base] if base else [])])
+            for alias in node.names:
+                whole = f"{base}.{alias.name}"
+                found.add(whole if whole in modules else base)
+        elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+            called = ast.unparse(node.func).rpartition(".")[2]
+            if called in ("import_module", "__import__"):
+                found.add(str(node.args[0].value))
+    return found
+
+
+def floor(module: str) -> str:
+    return [*module.split("."), ""][1]
+
+
+def violations(modules: dict[str, str]) -> Iterator[str]:
+    for module in modules:
+        here = floor(module)
+        for name in imported(module, modules):
+            package = name.split(".")[0]
+            if package == "regrasp":
+                if floor(name) not in FLOORS[here]:
+                    yield f"{module} imports {name}"
+            elif not may_import(module, package):
+                yield f"{module} imports {package}"
+
+
+def may_import(module: str, package: str) -> bool:
+    """Whether a module may import a package from outside the project."""
+    here = floor(module)
+    if package in ("matplotlib", "mpl_toolkits"):
+        return here == "plots"
+    if package == "pydantic":
+        return here == "files"
+    if package == "numba":
+        return module == "regrasp.closed_form.compiled"
+    if package in SOLVERS:
+        return module == f"regrasp.programs.{package}_backend"
+    if package in ("click", "rich"):
+        return here == "cli"
+    if here in ("errors", "display", "closed_form", "mechanics", "verification"):
+        return package == "numpy" or package in sys.stdlib_module_names
+    return True
+
+
+def cycle(modules: dict[str, str]) -> list[str]:
+    """Modules that import one another in a ring, or nothing."""
+    graph = {module: imported(module, modules) & modules.keys() for module in modules}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def loaded(code: str) -> set[str]:
+    """The top-level packages a fresh interpreter has loaded after ``code``."""
+    show = "import sys; print(*{name.split('.')[0] for name in sys.modules})"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{show}"], capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.split())
+
+
+def test_every_floor_has_its_rule() -> None:
+    modules = sources()
+    assert len(modules) > 40
+    assert {floor(module) for module in modules} <= FLOORS.keys()
+
+
+def test_every_module_keeps_to_its_floor() -> None:
+    assert list(violations(sources())) == []
+
+
+def test_no_import_cycles() -> None:
+    assert cycle(sources()) == []
+
+
+def test_files_read_in_one_sitting() -> None:
+    assert {m: n for m, text in sources().items() if (n := len(text.splitlines())) > LINES} == {}
+
+
+def test_importing_regrasp_is_light() -> None:
+    assert loaded("import regrasp") & HEAVY == set()
+
+
+def test_what_is_loaded_is_seen() -> None:
+    assert loaded("import regrasp, pydantic") & HEAVY == {"pydantic"}
+
+
+# -- the rules above catch what they are for ------------------------------------------------------------
+
+OFFENCES = [
+    ("regrasp.closed_form.best", "from regrasp.errors import InvalidInput", "regrasp.errors"),
+    ("regrasp.closed_form.best", "import numba", "numba"),
+    ("regrasp.closed_form.best", "from numba.core import types", "numba"),
+    ("regrasp.programs.program", "from regrasp.mechanics import Grasp", "regrasp.mechanics"),
+    ("regrasp.programs.program", "import clarabel", "clarabel"),
+    ("regrasp.programs.clarabel_backend", "import cvxpy as cp", "cvxpy"),
+    ("regrasp.planning.cvxpy_backend", "import cvxpy as cp", "cvxpy"),
+    ("regrasp.mechanics.state", "from regrasp.planning.locus import best_state", "regrasp.planning.locus"),
+    ("regrasp.mechanics.state", "import scipy.optimize", "scipy"),
+    ("regrasp.mechanics.state", "def f():\n    import clarabel", "clarabel"),
+    ("regrasp.verification", "from regrasp.closed_form import path", "regrasp.closed_form.path"),
+    ("regrasp.verification", "from .planning import timing", "regrasp.planning.timing"),
+    ("regrasp.planning.timing", "import matplotlib.pyplot as plt", "matplotlib"),
+    ("regrasp.planning.timing", "import_module('matplotlib')", "matplotlib"),
+    ("regrasp.planning.timing", "from .. import plots", "regrasp.plots"),
+    ("regrasp.planning.timing", "from pydantic import BaseModel", "pydantic"),
+    ("regrasp.planning.timing", "if TYPE_CHECKING:\n    import regrasp.files", "regrasp.files"),
+    ("regrasp.planning", "from ..plots import style", "regrasp.plots.style"),
+    ("regrasp", "from regrasp.plots import style", "regrasp.plots.style"),
+]
+
+
+@pytest.mark.parametrize(("module", "source", "named"), OFFENCES, ids=[f"{o[0]}: {o[1]}" for o in OFFENCES])
+def test_an_offence_is_caught(module: str, source: str, named: str) -> None:
+    assert list(violations(sources() | {module: source})) == [f"{module} imports {named}"]
+
+
+@pytest.mark.parametrize(
+    ("module", "source"),
+    [
+        (
+            "regrasp.programs.cvxpy_backend",
+            "import cvxpy as cp\nfrom regrasp.programs.program import Program",
+        ),
+        ("regrasp.closed_form.compiled", "from numba import njit\nfrom . import best"),
+        ("regrasp.plots.style", "from mpl_toolkits.mplot3d import Axes3D"),
+        ("regrasp.mechanics.state", "from fractions import Fraction\n'import clarabel'"),
+    ],
+)
+def test_what_is_allowed_passes(module: str, source: str) -> None:
+    assert list(violations(sources() | {module: source})) == []
+
+
+def test_a_cycle_is_caught_in_functions_too() -> None:
+    ring = {"regrasp.mechanics.contact": "def f():\n    from .grasp import Grasp"}
+    found = cycle(sources() | ring)
+    assert {"regrasp.mechanics.contact", "regrasp.mechanics.grasp"} <= set(found)
+    assert cycle({"a": "import b", "b": "import c", "c": ""}) == []
