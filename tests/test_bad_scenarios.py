@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.programs import available_backends
 from scenarios import edited, regrasp
+
+METHODS = ", ".join(("auto", "closed-form", *available_backends()))
 
 # name -> (scenario, exit status, message); every line of a message starts with the file's name.
 P2 = edited().split("\n\n")[5]
@@ -229,7 +232,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "unknown method": (
         edited(('objective = "angle"', 'method = "magic"')),
         2,
-        ["task.method: method must be one of auto, closed-form, clarabel; got 'magic'"],
+        [f"task.method: method must be one of {METHODS}; got 'magic'"],
     ),
     "unknown key of the task": (
         edited(("duration = 1.0", "time = 1.0")),
@@ -523,7 +526,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     "choose_state: unknown method": (
         lambda: rg.choose_state(TWO, LOAD, method="magic"),
         rg.InvalidInput,
-        "method must be one of auto, closed-form, clarabel; got 'magic'",
+        f"method must be one of {METHODS}; got 'magic'",
     ),
     "choose_state: closed form of three": (
         lambda: rg.choose_state(GRASP, LOAD, method="closed-form"),

@@ -39,9 +39,9 @@ def best_squeeze(
 ) -> tuple[float, tuple[float, float, float, float], tuple[float, float]]:
     """The best squeeze, the forces (f_1x, f_1y, f_2x, f_2y) and the limits they were chosen under.
 
-    Squeeze and forces are NaN where no state exists. The widest angle or force margin may lie at infinite force, so for
-    these objectives a contact without a limit (infinite) is limited to ``peak_ratio`` (at least 1) times the
-    least peak force of the grasp.
+    Squeeze and forces are NaN where no state exists. The widest angle or force margin may lie at infinite
+    force, so for these objectives a contact without a limit (infinite) is limited to ``peak_ratio`` (at least
+    1) times the least peak force of the grasp.
     """
     ux, uy, phi, a, b, parallel = pair_frame(x1, y1, x2, y2, fx, fy, tau)
     lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)

@@ -7,7 +7,6 @@ from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria
 from regrasp.planning.locus import best_forces
-from regrasp.programs import available_backends
 
 DEFAULT_BACKEND = "clarabel"
 
@@ -18,6 +17,7 @@ def choose_state(
     objective: str = "angle",
     *,
     method: str = "auto",
+    facets: int | None = None,
     max_force: float | None = None,
     peak_ratio: float = PEAK_RATIO,
     reserve: float = RESERVE,
@@ -28,6 +28,8 @@ def choose_state(
     ``peak``, the least largest force; ``peak_normal``, the least largest normal force.
     method: ``closed-form`` (two planar contacts), a back end's name, or ``auto``: the closed form where it
     exists, else Clarabel.
+    facets: let an inner polygon of so many sides stand for the circle of a force limit and of ``peak``, for
+    back ends that take no second-order cones. Safe; limits lose up to the fraction 1 - cos(pi / facets).
     max_force, peak_ratio, reserve: limits of the choice, see ``Criteria``; what they came to is in the
     result's ``force_limits``.
 
@@ -36,11 +38,15 @@ def choose_state(
     """
     check_load(grasp, load)
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
-    return ChosenState(grasp, load, criteria, choose_forces(grasp, load, criteria, method))
+    return ChosenState(grasp, load, criteria, choose_forces(grasp, load, criteria, method, facets))
 
 
-def choose_forces(grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto") -> ChosenForces:
+def choose_forces(
+    grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto", facets: int | None = None
+) -> ChosenForces:
     """``choose_state`` for checked criteria, before a state is made of the forces."""
+    if facets is not None and (not isinstance(facets, int) or facets < 3):
+        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     if method == "closed-form" and not planar_pair:
         raise InvalidInput(
@@ -49,11 +55,15 @@ def choose_forces(grasp: Grasp, load: Wrench, criteria: Criteria, method: str = 
         )
     if len(grasp) < 2:
         raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
-    if method == "closed-form" or (method == "auto" and planar_pair):
+    if method == "closed-form" and facets is not None:
+        raise InvalidInput("the closed form takes force limits as they are; leave facets out")
+    if method == "closed-form" or (method == "auto" and planar_pair and facets is None):
         return best_forces(grasp, load, criteria)
-    if method != "auto" and method not in available_backends():
+    from regrasp.programs import available_backends
+
+    if method != "auto" and method.partition(":")[0] not in available_backends():
         known = ", ".join(("auto", "closed-form", *available_backends()))
         raise InvalidInput(f"method must be one of {known}; got {method!r}")
     from regrasp.planning.state_program import solved_forces
 
-    return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method)
+    return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)

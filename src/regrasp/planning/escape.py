@@ -14,7 +14,6 @@ from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import Criteria
-from regrasp.programs import Cone, Rows, solve
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
@@ -104,20 +103,22 @@ def _gap_with_limits(
     grasp: Grasp, target: Array, weight: Array, frictions: list[float], limits: list[float]
 ) -> Array:
     """Target - G f at the nearest f inside cones and limits: a program in (f, gap)."""
+    from regrasp.programs import Rows, solve
+
     n = 2 * len(grasp)
     rows = Rows(n + 3)
     g = np.hstack([grasp.matrix * weight[:, None], np.eye(3)])
-    rows.add(Cone.ZERO, g, -target)
+    rows.equal(g, -target)
     for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
         pick = np.zeros((2, n + 3))
         pick[0, 2 * i] = pick[1, 2 * i + 1] = 1
         along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
-        rows.add(Cone.NONNEGATIVE, [mu * along - across, mu * along + across, along], np.zeros(3))
+        rows.at_least_zero([mu * along - across, mu * along + across, along])
         if limit < inf:
-            rows.add(Cone.SECOND_ORDER, np.vstack([np.zeros(n + 3), pick]), [limit, 0, 0])
+            rows.second_order(np.vstack([np.zeros(n + 3), pick]), [limit, 0, 0])
     try:
         answer = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3)))
     except SolverFailed as failed:  # a direction short of the solver's tolerances may prove as much
         answer = failed.solution
-    gap: Array = answer.x[n:]
+    gap: Array = answer.value[n:]
     return gap

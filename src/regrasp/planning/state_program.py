@@ -16,7 +16,7 @@ that the data are of order one whatever the units. In the plane two half-planes 
 ``angle`` is quasi-convex: an angle margin m is reached when cones narrowed by m still hold the load.
 """
 
-from math import atan, inf, sqrt, tan
+from math import atan, cos, inf, pi, sqrt, tan
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import ChosenForces, Criteria
 from regrasp.planning.escape import infeasible
-from regrasp.programs import Cone, Program, Rows, Status, solve
+from regrasp.programs import Program, Rows, Status, solve
 
 ANGLE_TOLERANCE = 1e-8
 """The chosen angle margin is within this of the best one [rad]."""
@@ -37,45 +37,67 @@ _FEASIBLE = 1e-7
 
 
 def state_program(
-    grasp: Grasp, load: Wrench, objective: str, frictions: list[float], limits: list[float], unit: float
+    grasp: Grasp,
+    load: Wrench,
+    objective: str,
+    frictions: list[float],
+    limits: list[float],
+    unit: float,
+    facets: int | None = None,
 ) -> Program:
-    """The program of every objective but ``angle``; forces come out in units of ``unit`` [N]."""
+    """The program of every objective but ``angle``; forces come out in units of ``unit`` [N].
+
+    frictions, limits: (n,), in place of the contacts' own. facets: sides of the inner polygon that stands for
+    each circle |f| <= r, or None for second-order cones. ``effort`` has no unknown t.
+    """
     if grasp.dimension != 2:
         raise InvalidInput("states are chosen for planar grasps so far; this grasp is in space")
     n = 2 * len(grasp)
-    t = np.eye(n + 1)[n]
-    rows = Rows(n + 1)
+    width = n if objective == "effort" else n + 1
+    unit_rows = np.eye(n + 1)[:, :width]
+    t = unit_rows[n]
+    rows = Rows(width)
     weight = np.array([1.0, 1.0, 1 / grasp.size if grasp.size else 1.0])
-    g = np.hstack([grasp.matrix * weight[:, None], np.zeros((3, 1))])
-    rows.add(Cone.ZERO, g, load.vector * weight / unit)
+    rows.equal((grasp.matrix * weight[:, None]) @ unit_rows[:n], load.vector * weight / unit)
     for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
-        pick = np.eye(n + 1)[2 * i : 2 * i + 2]
-        along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
+        force = unit_rows[2 * i : 2 * i + 2]
+        along, across = contact.normal @ force, np.array([-contact.normal[1], contact.normal[0]]) @ force
         if mu == 0:  # a ray, which no margin narrows; as inequalities it would leave solvers no interior
-            rows.add(Cone.ZERO, across, 0.0)
-            rows.add(Cone.NONNEGATIVE, along, 0.0)
+            rows.equal(across)
+            rows.at_least_zero(along)
         else:
             margin = t * sqrt(1 + mu * mu) if objective == "force" else 0 * t
-            edges = [mu * along - across - margin, mu * along + across - margin]
-            rows.add(Cone.NONNEGATIVE, edges, np.zeros(2))
+            rows.at_least_zero([mu * along - across - margin, mu * along + across - margin])
         if objective == "peak":
-            rows.add(Cone.SECOND_ORDER, np.vstack([t, pick]), np.zeros(3))
+            _within(rows, force, t, 0.0, facets)
         if objective == "peak_normal":
-            rows.add(Cone.NONNEGATIVE, t - along, 0.0)
+            rows.at_least_zero(t - along)
         if limit < inf:
-            rows.add(Cone.SECOND_ORDER, np.vstack([0 * t, pick]), [limit / unit, 0, 0])
+            _within(rows, force, 0 * t, limit / unit, facets)
     if objective == "force" and not any(frictions):
-        rows.add(Cone.NONNEGATIVE, -t, 0.0)  # no cone bounds the margin of rays: it is zero
+        rows.at_least_zero(-t)  # no cone bounds the margin of rays: it is zero
     if objective == "effort":
-        return rows.program(0 * t, np.diag([2.0] * n + [0.0]))
+        return rows.program(np.zeros(n), 2 * np.eye(n))
     return rows.program(-t if objective == "force" else t)
+
+
+def _within(rows: Rows, force: Array, slope: Array, offset: float, facets: int | None) -> None:
+    """Demand |f| <= slope . x + offset, for the circle or for the polygon inside it."""
+    if facets is None:
+        rows.second_order(np.vstack([slope, force]), [offset, 0.0, 0.0])
+        return
+    angles, apothem = 2 * pi * np.arange(facets) / facets, cos(pi / facets)
+    towards = np.column_stack([np.cos(angles), np.sin(angles)]) @ force
+    rows.at_least_zero(apothem * slope - towards, apothem * offset)
 
 
 class _Solver:
     """Solves the programs of one choice and certifies every answer before it is used."""
 
-    def __init__(self, grasp: Grasp, load: Wrench, backend: str, limits: list[float]) -> None:
-        self.grasp, self.load, self.backend = grasp, load, backend
+    def __init__(
+        self, grasp: Grasp, load: Wrench, backend: str, facets: int | None, limits: list[float]
+    ) -> None:
+        self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         size = grasp.size or 1.0
         self.unit = max(float(abs(load.force).max()), float(abs(load.torque).max()) / size)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
@@ -89,7 +111,7 @@ class _Solver:
         So a solver's tolerance never shows in a plan. An answer that this moves far is not the best one and
         raises ``SolverFailed``, unless any forces will do.
         """
-        program = state_program(self.grasp, self.load, objective, frictions, limits, self.unit)
+        program = state_program(self.grasp, self.load, objective, frictions, limits, self.unit, self.facets)
         try:
             answer = solve(program, self.backend)
         except SolverFailed as failed:
@@ -99,10 +121,12 @@ class _Solver:
         if answer.status is Status.INFEASIBLE:
             return None
         if answer.status is Status.UNBOUNDED:
-            raise SolverFailed(f"{self.backend}: {answer.status.value}", program, answer)
-        if objective == "force" and answer.status is Status.SOLVED and answer.x[-1] < -_FEASIBLE:
+            raise SolverFailed(f"{self.backend}: {answer.status.advice}", program, answer)
+        if objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -_FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
-        wanted = answer.x[:-1].reshape(-1, 2) * self.unit
+        wanted = answer.value[: 2 * len(self.grasp)].reshape(-1, 2) * self.unit
+        if not np.isfinite(wanted).all():
+            return None
         grasp = self.grasp
         forces = nearest_equilibrium(
             wanted,
@@ -125,7 +149,9 @@ class _Solver:
         return forces
 
 
-def solved_forces(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenForces:
+def solved_forces(
+    grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None = None
+) -> ChosenForces:
     """The best forces of any number of planar contacts, by programs. Raises ``Infeasible``.
 
     An angle margin within ``ANGLE_TOLERANCE`` of the best is found by bisection on cones that hold the load;
@@ -133,7 +159,7 @@ def solved_forces(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) 
     """
     criteria.demand_limit(grasp, load)
     try:
-        return _solved(grasp, load, criteria, backend)
+        return _solved(grasp, load, criteria, backend, facets)
     except SolverFailed:
         # Solvers fail at the limit of what can be held. That is no verdict; a proof is.
         reason = infeasible(grasp, load, criteria)
@@ -142,9 +168,9 @@ def solved_forces(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) 
         raise reason from None
 
 
-def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str) -> ChosenForces:
+def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None) -> ChosenForces:
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
-    solver = _Solver(grasp, load, backend, limits)
+    solver = _Solver(grasp, load, backend, facets, limits)
     if criteria.maximises and inf in limits:
         least = solver.forces("peak", frictions, limits)
         if least is None:

@@ -1,5 +1,8 @@
 """Clarabel, called directly. Imported when used."""
 
+from time import perf_counter
+from typing import Any
+
 import clarabel
 import numpy as np
 from scipy import sparse
@@ -7,39 +10,56 @@ from scipy import sparse
 from regrasp.programs.program import Cone, Program
 from regrasp.programs.solution import Solution, Status
 
-_CONES = {
-    Cone.ZERO: clarabel.ZeroConeT,
-    Cone.NONNEGATIVE: clarabel.NonnegativeConeT,
-    Cone.SECOND_ORDER: clarabel.SecondOrderConeT,
-}
 # "Almost" verdicts are not verdicts.
 _STATUS = {
-    clarabel.SolverStatus.Solved: Status.SOLVED,
-    clarabel.SolverStatus.PrimalInfeasible: Status.INFEASIBLE,
-    clarabel.SolverStatus.DualInfeasible: Status.UNBOUNDED,
+    "Solved": Status.SOLVED,
+    "PrimalInfeasible": Status.INFEASIBLE,
+    "DualInfeasible": Status.UNBOUNDED,
+}
+# At 1e-12 Clarabel stops with insufficient progress.
+_DEFAULTS = {
+    "tol_gap_abs": 1e-10,
+    "tol_gap_rel": 1e-10,
+    "tol_feas": 1e-10,
+    "tol_infeas_abs": 1e-10,
+    "tol_infeas_rel": 1e-10,
 }
 
 
-def solve(program: Program) -> Solution:
-    """Solve at tolerances of 1e-10; at 1e-12 Clarabel stops with insufficient progress."""
+def solve(program: Program, name: str, **options: Any) -> Solution:
+    """Solve with Clarabel; ``options`` are its settings by name."""
+    started = perf_counter()
     settings = clarabel.DefaultSettings()
     settings.verbose = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+    for key, value in {**_DEFAULTS, **options}.items():
+        setattr(settings, key, value)
     solver = clarabel.DefaultSolver(
-        sparse.csc_matrix(np.triu(program.P)),
-        program.q,
-        sparse.csc_matrix(program.A),
-        program.b,
-        [_CONES[cone](size) for cone, size in program.cones],
-        settings,
+        sparse.triu(program.P, format="csc"), program.q, program.A, program.b, _cones(program), settings
     )
+    built = perf_counter()
     answer = solver.solve()
+    solved = perf_counter()
+    said = str(answer.status)
     return Solution(
         program,
-        _STATUS.get(answer.status, Status.STOPPED),
+        name,
+        _STATUS.get(said, Status.STOPPED),
         np.array(answer.x),
         np.array(answer.z),
         answer.iterations,
-        answer.solve_time,
-        "clarabel",
+        built - started,
+        solved - built,
+        said,
     )
+
+
+def _cones(program: Program) -> list[Any]:
+    cones: list[Any] = []
+    for block in program.blocks:
+        if block.cone is Cone.ZERO:
+            cones.append(clarabel.ZeroConeT(block.rows))
+        elif block.cone is Cone.NONNEGATIVE:
+            cones.append(clarabel.NonnegativeConeT(block.rows))
+        else:
+            cones += [clarabel.SecondOrderConeT(block.size)] * block.count
+    return cones

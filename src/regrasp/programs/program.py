@@ -9,9 +9,11 @@ nothing of contacts.
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+from scipy import sparse
 
 from regrasp.errors import InvalidInput
 
@@ -22,19 +24,38 @@ class Cone(Enum):
     """The kinds of cone a block of rows can lie in."""
 
     ZERO = "zero"
-    NONNEGATIVE = "nonnegative"
+    NONNEGATIVE = "non-negative"
     SECOND_ORDER = "second-order"
+
+
+@dataclass(frozen=True)
+class Block:
+    """``count`` cones of one kind and size, in consecutive rows."""
+
+    cone: Cone
+    size: int
+    count: int = 1
+
+    @property
+    def rows(self) -> int:
+        """Rows of A the block takes."""
+        return self.size * self.count
 
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """P (n, n) symmetric positive semidefinite, q (n,), A (m, n), b (m,); ``cones`` split the m rows."""
+    """The data of a conic program.
 
-    P: Array
+    P: (n, n) sparse, symmetric positive semidefinite, both triangles. q: (n,).
+    A: (m, n) sparse. b: (m,). blocks: the cones, covering the m rows in order.
+    Raises ``InvalidInput`` for shapes that do not fit and data that are not finite.
+    """
+
+    P: sparse.csc_matrix
     q: Array
-    A: Array
+    A: sparse.csc_matrix
     b: Array
-    cones: tuple[tuple[Cone, int], ...]
+    blocks: tuple[Block, ...]
 
     def __post_init__(self) -> None:
         n, m = self.q.size, self.b.size
@@ -42,41 +63,48 @@ class Program:
             raise InvalidInput(
                 f"P and A must have shapes {(n, n)} and {(m, n)}, got {self.P.shape} and {self.A.shape}"
             )
-        if sum(size for _, size in self.cones) != m:
-            raise InvalidInput(f"the cones must cover the {m} rows of A, got {self.cones}")
+        if sum(block.rows for block in self.blocks) != m:
+            raise InvalidInput(f"the cones must cover the {m} rows of A, got {self.blocks}")
+        for name, values in (("P", self.P.data), ("q", self.q), ("A", self.A.data), ("b", self.b)):
+            if not np.isfinite(values).all():
+                raise InvalidInput(f"{name} must be finite")
 
-    def slack(self, x: Array) -> Array:
-        """S = b - A x, (m,)."""
-        result: Array = self.b - self.A @ x
-        return result
+    @property
+    def has_second_order(self) -> bool:
+        """Whether any cone is of second order, so that a QP solver cannot take the program."""
+        return any(block.cone is Cone.SECOND_ORDER for block in self.blocks)
+
+    @cached_property
+    def slices(self) -> tuple[tuple[Block, slice], ...]:
+        """Each block with its rows."""
+        ends = np.cumsum([block.rows for block in self.blocks])
+        return tuple(
+            (block, slice(int(end) - block.rows, int(end)))
+            for block, end in zip(self.blocks, ends, strict=True)
+        )
 
     def objective(self, x: Array) -> float:
         """1/2 x'Px + q'x."""
-        return float(0.5 * x @ self.P @ x + self.q @ x)
+        return float(0.5 * x @ (self.P @ x) + self.q @ x)
 
+    def slack(self, x: Array) -> Array:
+        """The slack s = b - A x, (m,)."""
+        result: Array = self.b - self.A @ x
+        return result
 
-class Rows:
-    """Collects the rows of A x + s = b, one cone at a time."""
+    def distance_to_cones(self, s: Array, *, dual: bool = False) -> float:
+        """Largest violation of a cone by s, or of a dual cone.
 
-    def __init__(self, unknowns: int) -> None:
-        self._unknowns = unknowns
-        self._blocks: list[tuple[Cone, Array, Array]] = []
-
-    def add(self, cone: Cone, matrix: ArrayLike, offset: ArrayLike) -> None:
-        """Demand ``matrix @ x + offset in cone``; matrix (k, n), offset (k,)."""
-        m = np.atleast_2d(np.asarray(matrix, dtype=float))
-        c = np.atleast_1d(np.asarray(offset, dtype=float))
-        if m.shape != (c.size, self._unknowns):
-            raise InvalidInput(f"rows must have shape {(c.size, self._unknowns)}, got {m.shape}")
-        self._blocks.append((cone, m, c))
-
-    def program(self, q: ArrayLike, P: ArrayLike | None = None) -> Program:
-        """The program with these rows and the objective 1/2 x'Px + q'x."""
-        n = self._unknowns
-        return Program(
-            P=np.zeros((n, n)) if P is None else np.asarray(P, dtype=float),
-            q=np.asarray(q, dtype=float),
-            A=-np.vstack([m for _, m, _ in self._blocks]),
-            b=np.concatenate([c for _, _, c in self._blocks]),
-            cones=tuple((cone, c.size) for cone, _, c in self._blocks),
-        )
+        Zero inside. Non-negative and second-order cones are their own duals; the zero cone's is everything.
+        """
+        worst = 0.0
+        for block, rows in self.slices:
+            part = s[rows]
+            if block.cone is Cone.NONNEGATIVE:
+                worst = max(worst, float((-part).max(initial=0.0)))
+            elif block.cone is Cone.SECOND_ORDER:
+                each = part.reshape(block.count, block.size)
+                worst = max(worst, float((np.linalg.norm(each[:, 1:], axis=1) - each[:, 0]).max(initial=0.0)))
+            elif not dual:
+                worst = max(worst, float(abs(part).max(initial=0.0)))
+        return worst

@@ -1,0 +1,73 @@
+"""Every QP solver that qpsolvers finds installed. Imported when used."""
+
+import warnings
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import qpsolvers
+from scipy import sparse
+
+from regrasp.programs.program import Cone, Program
+from regrasp.programs.solution import Solution, Status
+
+# Settings that bring each solver near the accuracy asked of it; options given override them.
+_DEFAULTS: dict[str, dict[str, Any]] = {
+    "osqp": {"eps_abs": 1e-9, "eps_rel": 1e-9, "max_iter": 50_000, "polishing": True},
+    "scs": {"eps_abs": 1e-9, "eps_rel": 1e-9, "max_iters": 200_000},
+    "proxqp": {"eps_abs": 1e-10, "eps_rel": 0.0},
+    "qpalm": {"eps_abs": 1e-9, "eps_rel": 1e-9, "max_iter": 20_000},
+    "piqp": {"eps_abs": 1e-10, "eps_rel": 1e-10},
+}
+_DENSE = set(qpsolvers.dense_solvers) - set(qpsolvers.sparse_solvers)
+
+
+def installed() -> tuple[str, ...]:
+    """Names of the QP solvers that qpsolvers can call here."""
+    return tuple(qpsolvers.available_solvers)
+
+
+def solve(program: Program, name: str, **options: Any) -> Solution:
+    """Solve a program without second-order cones; ``options`` go to the solver as they are."""
+    started = perf_counter()
+    equal = np.zeros(program.b.size, dtype=bool)
+    for block, rows in program.slices:
+        equal[rows] = block.cone is Cone.ZERO
+    rows = program.A.tocsr()
+    matrices = [program.P, rows[~equal], rows[equal]]
+    dense = name in _DENSE
+    P, G, A = (m.toarray() if dense else sparse.csc_matrix(m) for m in matrices)
+    problem = qpsolvers.Problem(
+        P,
+        program.q,
+        G if (~equal).any() else None,
+        program.b[~equal] if (~equal).any() else None,
+        A if equal.any() else None,
+        program.b[equal] if equal.any() else None,
+    )
+    built = perf_counter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # solvers warn of what their status says
+        try:
+            answer = qpsolvers.solve_problem(problem, name, **{**_DEFAULTS.get(name, {}), **options})
+            found, said = bool(answer.found), "found" if answer.found else "not found"
+        except (qpsolvers.exceptions.QPError, ValueError) as error:  # quadprog refuses a singular P, for one
+            found, said = False, f"error: {error}"
+    solved = perf_counter()
+    duals = np.full(program.b.size, np.nan)
+    if found:
+        for part, values in ((~equal, answer.z), (equal, answer.y)):
+            if part.any() and values is not None:
+                duals[part] = values
+    return Solution(
+        program,
+        name,
+        Status.SOLVED if found else Status.NOT_FOUND,
+        # When nothing was found, several solvers still fill x with whatever they had.
+        np.array(answer.x) if found else np.full(program.q.size, np.nan),
+        duals,
+        None,
+        built - started,
+        solved - built,
+        said,
+    )

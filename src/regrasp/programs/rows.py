@@ -1,0 +1,63 @@
+"""A builder of programs: rows are demanded one cone at a time."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import sparse
+
+from regrasp.errors import InvalidInput
+from regrasp.programs.program import Block, Cone, Program
+
+
+class Rows:
+    """Collects demands ``M x + c in cone`` and hands them over as A x + s = b with A = -M, b = c."""
+
+    def __init__(self, unknowns: int) -> None:
+        self._unknowns = unknowns
+        self._matrices: list[sparse.csr_matrix] = []
+        self._offsets: list[np.ndarray] = []
+        self._blocks: list[Block] = []
+
+    def equal(self, matrix: ArrayLike | sparse.spmatrix, offset: ArrayLike = 0.0) -> None:
+        """Demand M x + c = 0, row by row; M (k, n), c (k,) or one number for all rows."""
+        m = self._checked(matrix)
+        self._add(Cone.ZERO, m, offset, m.shape[0])
+
+    def at_least_zero(self, matrix: ArrayLike | sparse.spmatrix, offset: ArrayLike = 0.0) -> None:
+        """Demand M x + c >= 0, row by row; M (k, n), c (k,) or one number for all rows."""
+        m = self._checked(matrix)
+        self._add(Cone.NONNEGATIVE, m, offset, m.shape[0])
+
+    def second_order(
+        self, matrix: ArrayLike | sparse.spmatrix, offset: ArrayLike = 0.0, *, size: int | None = None
+    ) -> None:
+        """Demand (t, v) = M x + c with |v| <= t; ``size`` rows to a cone, all rows in one if not given."""
+        m = self._checked(matrix)
+        size = m.shape[0] if size is None else size
+        if size < 1 or m.shape[0] % size:
+            raise InvalidInput(f"{m.shape[0]} rows cannot be split into cones of {size}")
+        self._add(Cone.SECOND_ORDER, m, offset, size)
+
+    def program(self, q: ArrayLike, P: ArrayLike | sparse.spmatrix | None = None) -> Program:
+        """The program with these rows and the objective 1/2 x'Px + q'x."""
+        n = self._unknowns
+        if not self._matrices:
+            raise InvalidInput("a program needs at least one row")
+        return Program(
+            P=sparse.csc_matrix((n, n)) if P is None else sparse.csc_matrix(P, dtype=float),
+            q=np.asarray(q, dtype=float),
+            A=-sparse.vstack(self._matrices, format="csc"),
+            b=np.concatenate(self._offsets),
+            blocks=tuple(self._blocks),
+        )
+
+    def _checked(self, matrix: ArrayLike | sparse.spmatrix) -> sparse.csr_matrix:
+        m = sparse.csr_matrix(matrix if sparse.issparse(matrix) else np.atleast_2d(matrix), dtype=float)
+        if m.shape[1] != self._unknowns:
+            raise InvalidInput(f"rows must have {self._unknowns} columns, got {m.shape[1]}")
+        return m
+
+    def _add(self, cone: Cone, matrix: sparse.csr_matrix, offset: ArrayLike, size: int) -> None:
+        rows = matrix.shape[0]
+        self._offsets.append(np.broadcast_to(np.asarray(offset, dtype=float), rows))
+        self._matrices.append(matrix)
+        self._blocks.append(Block(cone, size, rows // size))
