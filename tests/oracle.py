@@ -175,3 +175,35 @@ def _bounds(
             if i == 1:
                 slope, offset = -slope, -offset - dot(m, F)
             yield slope, offset, sqrt(dot(m, m)), slope * slope / (dot(m, m) * dot(d, d))
+
+
+def is_held(
+    positions: Iterable[Sequence[float]],
+    normals: Iterable[Sequence[float]],
+    frictions: Iterable[float],
+    limits: Iterable[float | None],
+    load: Sequence[float],
+    forces: Iterable[Sequence[Fraction | float]],
+    resolution: Fraction = Fraction(1, 2**40),
+) -> tuple[bool, bool, bool]:
+    """(balanced, inside the cones, within the limits), each decided exactly.
+
+    Forces, and torques per largest |r_i|, balance to ``resolution`` of the largest of load and forces;
+    friction below the resolution counts as the resolution.
+    """
+    r = [exact(p) for p in positions]
+    f = [[Fraction(x) for x in force] for force in forces]
+    F, tau = exact(load[:2]), Fraction(float(load[2]))
+    arm2 = max(dot(p, p) for p in r) or Fraction(1)
+    total = [sum((x[k] for x in f), start=F[k]) for k in (0, 1)]
+    torque = sum((cross(p, x) for p, x in zip(r, f, strict=True)), start=tau)
+    scale2 = max(dot(F, F), tau * tau / arm2, *(dot(x, x) for x in f))
+    balanced = max(dot(total, total), torque * torque / arm2) <= resolution**2 * scale2
+    inside = all(
+        in_cone(x, exact(n), max(Fraction(float(mu)), resolution))
+        for x, n, mu in zip(f, normals, frictions, strict=True)
+    )
+    within = all(
+        limit is None or dot(x, x) <= Fraction(float(limit)) ** 2 for x, limit in zip(f, limits, strict=True)
+    )
+    return balanced, inside, within

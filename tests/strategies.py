@@ -141,6 +141,7 @@ _coordinate = st.floats(-4, 4).map(lambda x: round(x, 3) + 0.0)
 _plain = st.integers(-4, 4).map(float)
 coordinates = st.one_of(_coordinate, _plain)
 points = st.tuples(coordinates, coordinates)
+angles = st.floats(-3.14, 3.14)
 directions = points.filter(lambda v: hypot(*v) > 0.1)
 frictions = st.one_of(
     st.sampled_from([1e-8, 1e-3, 0.1, 0.25, 0.3, 0.5, 1.0, 2.0, 5.0]),
@@ -207,11 +208,25 @@ def held_triples(
     )
 
 
+@st.composite
+def grooves(draw: Callable) -> tuple[rg.Grasp, rg.Wrench]:
+    """An object pressed into a frictionless V by its load, and a finger C with friction on top."""
+    left, right, turn = draw(st.floats(0.3, 1.2)), draw(st.floats(0.3, 1.2)), draw(angles)
+    places = (
+        ("A", (-draw(st.floats(0.5, 2)), -0.5), (sin(left), cos(left)), 0.0),
+        ("B", (draw(st.floats(0.5, 2)), 0.2), (-sin(right), cos(right)), 0.0),
+        ("C", (0.1, 2.0), (0.1, -1.0), 0.5),
+    )
+    contacts = [rg.Contact(turned(r, turn), turned(n, turn), mu, name=name) for name, r, n, mu in places]
+    load = rg.Wrench([0, 0])
+    for contact in contacts[:2]:
+        f, r = draw(st.floats(0.5, 2)) * contact.normal, contact.position
+        load -= rg.Wrench(f, float(r[0] * f[1] - r[1] * f[0]))
+    return rg.Grasp(contacts), load
+
+
 def _distance(a: Point, b: Point) -> float:
     return hypot(a[0] - b[0], a[1] - b[1])
-
-
-angles = st.floats(-3.14, 3.14)
 
 
 def turned(v: Point, angle: float) -> Point:
