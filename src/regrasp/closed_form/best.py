@@ -157,24 +157,28 @@ def best_force(
     Each contact has two, its distances (mu N -+ T) / sqrt(1 + mu^2) to the edges of its cone.
     """
     w1, w2 = 1.0 / sqrt(1.0 + mu1 * mu1), 1.0 / sqrt(1.0 + mu2 * mu2)
-    slope = (w1 * (mu1 * p1 - g1), w1 * (mu1 * p1 + g1), w2 * (mu2 * p2 - g2), w2 * (mu2 * p2 + g2))
-    offset = (w1 * (mu1 * q1 - h1), w1 * (mu1 * q1 + h1), w2 * (mu2 * q2 - h2), w2 * (mu2 * q2 + h2))
-    lowest = 0
-    for i in range(1, 4):
-        below = slope[i] * lo + offset[i] - (slope[lowest] * lo + offset[lowest])
-        if below < 0.0 or (below == 0.0 and slope[i] < slope[lowest]):
-            lowest = i
+    lines = (
+        (w1 * (mu1 * p1 - g1), w1 * (mu1 * q1 - h1)),
+        (w1 * (mu1 * p1 + g1), w1 * (mu1 * q1 + h1)),
+        (w2 * (mu2 * p2 - g2), w2 * (mu2 * q2 - h2)),
+        (w2 * (mu2 * p2 + g2), w2 * (mu2 * q2 + h2)),
+    )
+    rise, height = lines[0]  # the lowest line at lo
+    for slope, offset in lines:
+        below = slope * lo + offset - (rise * lo + height)
+        if below < 0.0 or (below == 0.0 and slope < rise):
+            rise, height = slope, offset
     x = lo
-    while slope[lowest] > 0.0:  # climb the lowest line to where a flatter one crosses under it
-        crossing, flatter = hi, -1
-        for i in range(4):
-            if slope[i] < slope[lowest]:
-                at = (offset[i] - offset[lowest]) / (slope[lowest] - slope[i])
+    while rise > 0.0:  # climb the lowest line to where a flatter one crosses under it
+        crossing, flatter, level = hi, rise, height
+        for slope, offset in lines:
+            if slope < rise:
+                at = (offset - height) / (rise - slope)
                 if at < crossing:
-                    crossing, flatter = at, i
-        if flatter < 0:
+                    crossing, flatter, level = at, slope, offset
+        if flatter == rise:
             return hi
-        x, lowest = clamp(crossing, x, hi), flatter
+        x, rise, height = clamp(crossing, x, hi), flatter, level
     return x
 
 
