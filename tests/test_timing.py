@@ -139,7 +139,7 @@ def test_steepest_of_known_shapes(shape: TimeScaling, slope: float) -> None:
 
 
 def test_steepest_away_from_the_middle() -> None:
-    """Control 1, 1, 1/4, 0: T' = -(4.5 s - 3.75 s^2), steepest at s = 0.6. Control 1, 1, 1, 0: T = 1 - s^3."""
+    """Control 1, 1, 1/4, 0: T' = -(4.5 s - 3.75 s^2), steepest at 0.6. Control 1, 1, 1, 0: T = 1 - s^3."""
     assert TimeScaling.spline(1.0, (1, 1, 0.25, 0)).steepest == pytest.approx(1.35, rel=1e-14)
     assert TimeScaling.spline(1.0, (1, 1, 1, 0)).steepest == pytest.approx(3.0, rel=1e-14)
     assert TimeScaling(1.0, (1, 1, 0.2, 0), 2).steepest == pytest.approx(1.6, rel=1e-14)  # T' = 0, -1.6, -0.8
