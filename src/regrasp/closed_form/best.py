@@ -14,18 +14,31 @@ are bounded by themselves.
 
 from math import atan, atan2, sqrt
 
+Line = tuple[float, float, float, float, float]
+"""(p, q, g, h, mu) of a contact."""
+
 # A force below this fraction of the other one is rounding: the contact carries no force.
 IDLE = 2.0**-40
 
 
 def contact_lines(
-    ux: float, uy: float, phi: float, a: float, b: float, nx1: float, ny1: float, nx2: float, ny2: float
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """(p1, q1, g1, h1, p2, q2, g2, h2) from the frame of two contacts; normals of any length."""
+    ux: float,
+    uy: float,
+    phi: float,
+    a: float,
+    b: float,
+    nx1: float,
+    ny1: float,
+    mu1: float,
+    nx2: float,
+    ny2: float,
+    mu2: float,
+) -> tuple[Line, Line]:
+    """The lines of both contacts from their frame; normals of any length."""
     scale1, scale2 = 1.0 / sqrt(nx1 * nx1 + ny1 * ny1), 1.0 / sqrt(nx2 * nx2 + ny2 * ny2)
     c1, s1 = (nx1 * ux + ny1 * uy) * scale1, (ny1 * ux - nx1 * uy) * scale1
     c2, s2 = (nx2 * ux + ny2 * uy) * scale2, (ny2 * ux - nx2 * uy) * scale2
-    return c1, a * s1, -s1, a * c1, -c2, b * s2 - phi * c2, s2, b * c2 + phi * s2
+    return (c1, a * s1, -s1, a * c1, mu1), (-c2, b * s2 - phi * c2, s2, b * c2 + phi * s2, mu2)
 
 
 def clamp(x: float, lo: float, hi: float) -> float:
@@ -33,69 +46,32 @@ def clamp(x: float, lo: float, hi: float) -> float:
     return lo if x < lo else (hi if x > hi else x)
 
 
-def angle_margin(n: float, t: float, mu: float) -> float:
-    """atan(mu) less the angle between the force (n, t) and the normal [rad]."""
-    return atan(mu) - atan2(abs(t), n)
+def angle_margin(line: Line, x: float) -> float:
+    """atan(mu) less the angle between the contact's force at x and its normal [rad]."""
+    p, q, g, h, mu = line
+    return atan(mu) - atan2(abs(g * x + h), p * x + q)
 
 
-def force_margin(n: float, t: float, mu: float) -> float:
-    """Distance of a force (n, t) inside the cone to its boundary [N]."""
-    return (mu * n - abs(t)) / sqrt(1.0 + mu * mu)
-
-
-def best_angle(
-    lo: float,
-    hi: float,
-    phi: float,
-    a: float,
-    b: float,
-    p1: float,
-    q1: float,
-    g1: float,
-    h1: float,
-    mu1: float,
-    p2: float,
-    q2: float,
-    g2: float,
-    h2: float,
-    mu2: float,
-) -> float:
+def best_angle(lo: float, hi: float, phi: float, a: float, b: float, first: Line, second: Line) -> float:
     """The x of the widest least angle margin of the contacts that carry force.
 
     A contact without force has no angle, so the best state may leave one idle. Where neither force turns
     with x, the force margin decides.
     """
-    x = _best_angle_of_both(lo, hi, a, b, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+    x = _best_angle_of_both(lo, hi, a, b, first, second)
     x1, x2 = clamp(0.0, lo, hi), clamp(-phi, lo, hi)  # where each carries least
     idle1 = x1 * x1 + a * a < IDLE * IDLE * ((x1 + phi) * (x1 + phi) + b * b)
     idle2 = (x2 + phi) * (x2 + phi) + b * b < IDLE * IDLE * (x2 * x2 + a * a)
     if idle1 or idle2:
-        least = min(angle_margin(p1 * x + q1, g1 * x + h1, mu1), angle_margin(p2 * x + q2, g2 * x + h2, mu2))
-        if idle1:
-            alone = angle_margin(p2 * x1 + q2, g2 * x1 + h2, mu2)
-            if alone > least:
-                x, least = x1, alone
-        if idle2 and angle_margin(p1 * x2 + q1, g1 * x2 + h1, mu1) > least:
+        least = min(angle_margin(first, x), angle_margin(second, x))
+        if idle1 and angle_margin(second, x1) > least:
+            x, least = x1, angle_margin(second, x1)
+        if idle2 and angle_margin(first, x2) > least:
             x = x2
     return x
 
 
-def _best_angle_of_both(
-    lo: float,
-    hi: float,
-    a: float,
-    b: float,
-    p1: float,
-    q1: float,
-    g1: float,
-    h1: float,
-    mu1: float,
-    p2: float,
-    q2: float,
-    g2: float,
-    h2: float,
-    mu2: float,
-) -> float:
+def _best_angle_of_both(lo: float, hi: float, a: float, b: float, first: Line, second: Line) -> float:
     """The x of the widest least angle margin of both contacts.
 
     The force direction atan2(T, N) turns one way only as x grows, with the sign of g q - p h: that is -a
@@ -103,26 +79,23 @@ def _best_angle_of_both(
     """
     turn1, turn2 = -a, b
     if turn1 == 0.0 and turn2 == 0.0:
-        return best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+        return best_force(lo, hi, first, second)
     if turn1 == 0.0:
-        return _upright(lo, hi, g2, h2, turn2)
-    best1 = _upright(lo, hi, g1, h1, turn1)
+        return _upright(lo, hi, second, turn2)
+    best1 = _upright(lo, hi, first, turn1)
     if turn2 == 0.0:
         return best1
-    best2 = _upright(lo, hi, g2, h2, turn2)
-    if best1 > best2:  # let contact 1 be the one whose best point lies left
-        best1, best2, turn1, turn2, mu1, mu2 = best2, best1, turn2, turn1, mu2, mu1
-        p1, q1, g1, h1, p2, q2, g2, h2 = p2, q2, g2, h2, p1, q1, g1, h1
-    if angle_margin(p1 * best1 + q1, g1 * best1 + h1, mu1) <= angle_margin(
-        p2 * best1 + q2, g2 * best1 + h2, mu2
-    ):
+    best2 = _upright(lo, hi, second, turn2)
+    if best1 > best2:  # let the first contact be the one whose best point lies left
+        best1, best2, turn1, turn2, first, second = best2, best1, turn2, turn1, second, first
+    if angle_margin(first, best1) <= angle_margin(second, best1):
         return best1
-    if angle_margin(p2 * best2 + q2, g2 * best2 + h2, mu2) <= angle_margin(
-        p1 * best2 + q1, g1 * best2 + h1, mu1
-    ):
+    if angle_margin(second, best2) <= angle_margin(first, best2):
         return best2
     # Between them |delta_1| - |delta_2| = alpha_1 - alpha_2: the vector (N_1, |T_1|) is parallel to
     # (N_2, |T_2|) turned by alpha_1 - alpha_2, whose cosine and sine are as k to d.
+    p1, q1, g1, h1, mu1 = first
+    p2, q2, g2, h2, mu2 = second
     sign1 = 1.0 if turn1 > 0.0 else -1.0
     sign2 = -1.0 if turn2 > 0.0 else 1.0
     g1, h1, g2, h2 = sign1 * g1, sign1 * h1, sign2 * g2, sign2 * h2
@@ -138,24 +111,13 @@ def _best_angle_of_both(
     )
 
 
-def best_force(
-    lo: float,
-    hi: float,
-    p1: float,
-    q1: float,
-    g1: float,
-    h1: float,
-    mu1: float,
-    p2: float,
-    q2: float,
-    g2: float,
-    h2: float,
-    mu2: float,
-) -> float:
+def best_force(lo: float, hi: float, first: Line, second: Line) -> float:
     """The x of the widest least force margin: the top of the lower envelope of four lines.
 
     Each contact has two, its distances (mu N -+ T) / sqrt(1 + mu^2) to the edges of its cone.
     """
+    p1, q1, g1, h1, mu1 = first
+    p2, q2, g2, h2, mu2 = second
     w1, w2 = 1.0 / sqrt(1.0 + mu1 * mu1), 1.0 / sqrt(1.0 + mu2 * mu2)
     lines = (
         (w1 * (mu1 * p1 - g1), w1 * (mu1 * q1 - h1)),
@@ -197,8 +159,10 @@ def best_peak(lo: float, hi: float, phi: float, a: float, b: float) -> float:
     return clamp(0.5 * ((a - b) * (a + b) / phi - phi), min(x1, x2), max(x1, x2))
 
 
-def best_peak_normal(lo: float, hi: float, phi: float, p1: float, q1: float, p2: float, q2: float) -> float:
+def best_peak_normal(lo: float, hi: float, phi: float, first: Line, second: Line) -> float:
     """The x of the least larger normal force, max(N_1, N_2)."""
+    p1, q1 = first[0], first[1]
+    p2, q2 = second[0], second[1]
     if p1 == 0.0 and p2 == 0.0:
         return best_effort(lo, hi, phi)
     x1 = lo if p1 > 0.0 else hi  # each normal force's own least
@@ -214,8 +178,9 @@ def best_peak_normal(lo: float, hi: float, phi: float, p1: float, q1: float, p2:
     return clamp((q2 - q1) / (p1 - p2), lo, hi)
 
 
-def _upright(lo: float, hi: float, g: float, h: float, turn: float) -> float:
+def _upright(lo: float, hi: float, line: Line, turn: float) -> float:
     """The x of [lo, hi] where a force inside its cone is nearest to the normal (T = 0)."""
+    g, h = line[2], line[3]
     at_lo, at_hi = g * lo + h, g * hi + h
     if turn < 0.0:
         at_lo, at_hi = -at_lo, -at_hi

@@ -58,9 +58,9 @@ def best_squeeze(
     elif objective == PEAK:
         x = best_peak(lo, hi, phi, a, b)
     else:
-        p1, q1, g1, h1, p2, q2, g2, h2 = contact_lines(ux, uy, phi, a, b, nx1, ny1, nx2, ny2)
+        first, second = contact_lines(ux, uy, phi, a, b, nx1, ny1, mu1, nx2, ny2, mu2)
         if objective == PEAK_NORMAL:
-            x = best_peak_normal(lo, hi, phi, p1, q1, p2, q2)
+            x = best_peak_normal(lo, hi, phi, first, second)
         else:
             if limit1 == inf or limit2 == inf:
                 x = best_peak(lo, hi, phi, a, b)
@@ -74,9 +74,9 @@ def best_squeeze(
                 if lo > hi:  # a ratio of 1 leaves the point itself, up to rounding
                     lo = hi = x
             if objective == ANGLE:
-                x = best_angle(lo, hi, phi, a, b, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+                x = best_angle(lo, hi, phi, a, b, first, second)
             else:
-                x = best_force(lo, hi, p1, q1, g1, h1, mu1, p2, q2, g2, h2, mu2)
+                x = best_force(lo, hi, first, second)
     # Each force by its own bounds: rounding of a large force would carry a small one out of its cone.
     x = clamp(x, lo1, hi1)
     y = clamp(-(x + phi), lo2, hi2)
