@@ -1,0 +1,352 @@
+"""The sets of Section III: wrench planes and cones, iso-torque lines, wrench loops, LS_B and LS_A."""
+
+from math import hypot, inf, nan
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import regrasp as rg
+from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, WrenchLoop, WrenchPlane, iso_torque_line
+from strategies import Pair, coordinates, directions, frictions, held_pairs, held_triples, points
+
+PAPER = rg.Grasp(
+    [
+        rg.Contact([-4, -4], [1, 1], 0.3, name="P1"),
+        rg.Contact([4, -5], [-1, 2], 0.3, name="P2"),
+        rg.Contact([0, 8], [0, -1], 0.3, name="P3"),
+    ]
+)
+LOAD = rg.Wrench([-1.5, -3.5])
+STATE = rg.GraspState(PAPER, LOAD, [[3.7897, 3.0034], [-3.0096, 4.4156], [0.7199, -3.9190]]).balanced()
+SPACE = rg.Contact([1, 0, 0], [-1, 0, 0], 0.5)
+
+contacts = st.builds(rg.Contact, points, directions, frictions)
+shares = st.floats(-0.99, 0.99)
+
+
+def in_cone(contact: rg.Contact, share: float, size: float = 1.0) -> np.ndarray:
+    """The force whose tangential part is ``share`` of the friction available; within the cone up to +-1."""
+    n = contact.normal
+    return size * (n + share * contact.friction * np.array([-n[1], n[0]]))
+
+
+def wrench(contact: rg.Contact, f: np.ndarray) -> np.ndarray:
+    """(f, r x f), by hand."""
+    x, y = contact.position
+    return np.array([f[0], f[1], x * f[1] - y * f[0]])
+
+
+# -- Pi and S Pi ------------------------------------------------------------------------------------------
+
+
+@given(contacts, points, coordinates)
+def test_a_wrench_plane_holds_the_wrenches_of_forces_and_no_others(
+    contact: rg.Contact, force: tuple[float, float], off: float
+) -> None:
+    plane = WrenchPlane(contact)
+    w = plane.wrench(force)
+    np.testing.assert_array_equal(w, wrench(contact, np.array(force)))
+    size = hypot(*force) * (1 + hypot(*contact.position))
+    assert plane.normal @ w == pytest.approx(0, abs=1e-15 * size)
+    assert plane.normal @ (w + np.array([0, 0, off])) == pytest.approx(off, abs=1e-15 * (size + abs(off)))
+
+
+def test_wrenches_of_many_forces_at_once() -> None:
+    plane = WrenchPlane(PAPER["P2"])
+    forces = np.arange(12.0).reshape(2, 3, 2)
+    assert plane.wrench(forces).shape == (2, 3, 3)
+    np.testing.assert_array_equal(plane.wrench(forces)[1, 2], wrench(PAPER["P2"], forces[1, 2]))
+
+
+@given(contacts, shares, st.floats(0.01, 100), st.sampled_from([1, -1]))
+def test_a_wrench_cone_holds_the_forces_of_the_friction_cone(
+    contact: rg.Contact, share: float, size: float, sign: int
+) -> None:
+    cone = WrenchCone(contact, np.array([1.0, -2.0, 3.0]), sign)
+    inside, beyond = (wrench(contact, in_cone(contact, s, size)) for s in (share, 1.01 * np.sign(share or 1)))
+    assert cone.contains(cone.apex + sign * inside)
+    assert cone.contains(cone.apex)
+    assert not cone.contains(cone.apex - sign * inside)
+    if contact.friction > 1e-6:
+        assert not cone.contains(cone.apex + sign * beyond)
+    off_plane = np.array([0, 0, 0.01 * size * (1 + hypot(*contact.position))])
+    assert not cone.contains(cone.apex + sign * inside + off_plane)
+    # The inverse is the same set turned about its apex, and turned twice it is the set again.
+    assert cone.inverse().contains(cone.apex - sign * inside)
+    assert not cone.inverse().contains(cone.apex + sign * inside)
+    assert cone.inverse().inverse() == cone
+    assert cone.moved([7, 8, 9]).contains(np.array([7, 8, 9]) + sign * inside)
+
+
+@given(contacts, st.sampled_from([1, -1]))
+def test_edges_lie_on_the_boundary(contact: rg.Contact, sign: int) -> None:
+    cone = WrenchCone(contact, sign=sign)
+    edges = cone.edges
+    np.testing.assert_allclose(np.hypot(*edges[:, :2].T), 1, rtol=1e-15)
+    normal, tangent = contact.normal, np.array([-contact.normal[1], contact.normal[0]])
+    for edge, side in zip(edges, (-1, 1), strict=True):
+        assert cone.contains(edge)
+        f = sign * edge[:2]
+        assert f @ tangent == pytest.approx(side * contact.friction * (f @ normal), abs=1e-15)
+        beyond = edge[:2] + 1e-3 * sign * side * tangent
+        assert not cone.contains(wrench(contact, beyond))
+        assert edge[2] == pytest.approx(wrench(contact, edge[:2])[2], abs=1e-15)
+
+
+def test_cones_compare_by_value_and_start_at_the_origin() -> None:
+    contact = PAPER["P1"]
+    assert WrenchCone(contact) == WrenchCone(contact, [0, 0, 0], 1)
+    assert WrenchCone(contact) != WrenchCone(contact).inverse()
+    np.testing.assert_array_equal(WrenchCone(contact).apex, 0)
+
+
+# -- L_i --------------------------------------------------------------------------------------------------
+
+
+def test_iso_torque_line_by_hand() -> None:
+    """r = (3, 4), f = (0, 5): tau = 15 = 5 d; the line lies 3 to the left of r."""
+    line = iso_torque_line(rg.Contact([3, 4], [0, 1], 1.0), [0, 5])
+    assert line.torque == 15
+    assert line.distance == 3
+    np.testing.assert_allclose(line.direction, [0.6, 0.8], rtol=1e-15)
+    np.testing.assert_allclose(line.force, [-2.4, 1.8], rtol=1e-15)
+    # |f_x| <= f_y along (-2.4, 1.8) + s (0.6, 0.8): in from s = 3/7 on, and never out again.
+    np.testing.assert_allclose(line.friction_segment[0], np.array([-15, 15]) / 7, rtol=1e-14)
+    assert np.isinf(line.friction_segment[1]).all()
+
+
+@given(contacts, points, st.floats(-10, 10))
+def test_one_torque_along_a_line(contact: rg.Contact, force: tuple[float, float], along: float) -> None:
+    r = contact.position
+    if hypot(*r) < 1e-3:
+        return
+    line = iso_torque_line(contact, force)
+    assert line.torque == pytest.approx(wrench(contact, np.array(force))[2], abs=1e-15)
+    assert line.torque == pytest.approx(hypot(*r) * line.distance, rel=1e-14)
+    for f in (np.array(force) + along * line.direction, line.force + along * line.direction):
+        assert wrench(contact, f)[2] == pytest.approx(line.torque, abs=1e-13 * (1 + hypot(*r)) * 20)
+    # d is the distance of the line from the contact, and f's own head lies on the line.
+    assert abs(line.distance) == pytest.approx(hypot(*line.force), rel=1e-14)
+    assert line.force @ line.direction == pytest.approx(0, abs=1e-14 * (1 + abs(line.distance)))
+
+
+def test_torque_grows_with_the_distance() -> None:
+    contact = rg.Contact([3, 4], [0, 1], 1.0)
+    distances = [IsoTorqueLine(contact, tau).distance for tau in (-10, 0, 5, 10)]
+    assert distances == pytest.approx([-2, 0, 1, 2])
+
+
+@given(contacts, shares, st.floats(0.1, 5))
+def test_the_friction_segment_ends_on_the_cone(contact: rg.Contact, share: float, size: float) -> None:
+    if hypot(*contact.position) < 1e-3:
+        return
+    f, n, mu = in_cone(contact, share, size), contact.normal, contact.friction
+    line = iso_torque_line(contact, f)
+    segment = line.friction_segment
+    if segment is None:  # the line runs along an edge of the cone, to rounding
+        edges = [in_cone(contact, s) / hypot(1, mu) for s in (-1, 1)]
+        assert min(abs(line.direction[0] * e[1] - line.direction[1] * e[0]) for e in edges) < 1e-9
+        return
+    ends = [end for end in segment if np.isfinite(end).all()]
+    for end in ends:
+        normal, tangential = float(end @ n), abs(float(n[0] * end[1] - n[1] * end[0]))
+        size_of_end = hypot(*end) + hypot(*f)
+        assert tangential == pytest.approx(mu * normal, abs=1e-9 * size_of_end)
+        assert normal >= -1e-9 * size_of_end
+        assert wrench(contact, end)[2] == pytest.approx(line.torque, abs=1e-9 * size_of_end * 10)
+    # f lies between the ends, and the cone is convex: beyond a finite end the line has left it.
+    s = [float(end @ line.direction) if np.isfinite(end).all() else side * inf
+         for end, side in zip(segment, (-1, 1), strict=True)]  # fmt: skip
+    own = float(f @ line.direction)
+    assert s[0] - 1e-9 * (1 + abs(s[0])) <= own <= s[1] + 1e-9 * (1 + abs(s[1]))
+    for end, side in zip(s, (-1, 1), strict=True):
+        if abs(end) < 100 and mu > 1e-3:
+            out = line.force + (end + side * 0.1 * (1 + abs(end))) * line.direction
+            assert abs(n[0] * out[1] - n[1] * out[0]) > mu * (out @ n) - 1e-9
+
+
+def test_a_line_that_misses_the_cone_has_no_segment() -> None:
+    contact = rg.Contact(
+        [1, 0], [1, 0], 0.5
+    )  # lines are horizontal: no force (s, tau) with s > 2 |tau| is out
+    assert IsoTorqueLine(contact, 1.0).friction_segment is not None
+    sideways = rg.Contact([1, 0], [0, 1], 0.5)  # f_y >= 2 |f_x|: a negative torque would need to pull
+    assert IsoTorqueLine(sideways, -1.0).friction_segment is None
+    np.testing.assert_allclose(IsoTorqueLine(sideways, 2.0).friction_segment, [[-1, 2], [1, 2]], rtol=1e-15)
+
+
+# -- the wrench loop --------------------------------------------------------------------------------------
+
+
+def test_the_loop_closes_in_equilibrium() -> None:
+    loop = WrenchLoop(STATE)
+    assert loop.order == ("P1", "P2", "P3")
+    assert loop.vertices.shape == (5, 3)
+    np.testing.assert_array_equal(loop.vertices[0], 0)
+    np.testing.assert_array_equal(loop.vertices[1], LOAD.vector)
+    np.testing.assert_allclose(np.diff(loop.vertices[1:], axis=0), STATE.wrenches, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(loop.gap, 0, atol=1e-14)
+
+
+@given(held_pairs(), points, points)
+def test_the_gap_is_what_is_missing(pair: Pair, f1: tuple[float, float], f2: tuple[float, float]) -> None:
+    state = rg.GraspState(pair.grasp, pair.load, [f1, f2])
+    loop = WrenchLoop(state)
+    np.testing.assert_allclose(loop.gap, state.imbalance, rtol=0, atol=1e-13 * 100)
+    assert np.linalg.norm(loop.gap) == pytest.approx(state.residual, abs=1e-11)
+
+
+def test_the_loop_in_another_order() -> None:
+    loop = WrenchLoop(STATE, ("P3", "P1", "P2"))
+    np.testing.assert_allclose(loop.vertices[2] - loop.vertices[1], STATE.wrenches[2], atol=1e-14)
+    np.testing.assert_allclose(loop.gap, 0, atol=1e-14)
+    assert loop != WrenchLoop(STATE)
+
+
+@pytest.mark.parametrize("order", [("P1", "P2", "P3"), ("P1", "P3", "P2"), ("P3", "P2", "P1")])
+def test_cones_of_the_loop_hold_its_vertices(order: tuple[str, ...]) -> None:
+    """Each cone stands where its wrench starts, so holds where it ends; the last is inverted."""
+    loop = WrenchLoop(STATE, order)
+    cones = loop.cones()
+    assert [cone.contact.name for cone in cones] == list(order)
+    assert [cone.sign for cone in cones] == [1, 1, -1]
+    for i, cone in enumerate(cones[:-1]):
+        np.testing.assert_array_equal(cone.apex, loop.vertices[i + 1])
+        assert cone.contains(loop.vertices[i + 2])
+        assert not cone.contains(loop.vertices[i])
+    np.testing.assert_array_equal(cones[-1].apex, 0)
+    assert cones[-1].contains(loop.vertices[-2])
+
+
+# -- LS_B and LS_A ----------------------------------------------------------------------------------------
+
+
+def on_both(first: WrenchCone, second: WrenchCone, ends: np.ndarray) -> None:
+    """The segment lies on both cones, and a hundredth of it beyond either end on only one or neither."""
+    for share in np.linspace(0, 1, 11):
+        point = (1 - share) * ends[0] + share * ends[1]
+        assert first.contains(point)
+        assert second.contains(point)
+    for share in (-0.01, 1.01):
+        beyond = (1 - share) * ends[0] + share * ends[1]
+        assert not (first.contains(beyond) and second.contains(beyond))
+
+
+def test_the_locus_of_the_paper_lies_on_both_cones() -> None:
+    """LS_B = S Pi_1, standing at the head of the load, cut with S Pi_2^-1, at the origin (Fig. 5)."""
+    locus = rg.EquilibriumLocus(PAPER.without("P3"), LOAD)
+    heads = LOAD.vector + locus.segment()
+    on_both(WrenchCone(PAPER["P1"], LOAD.vector), WrenchCone(PAPER["P2"]).inverse(), heads)
+
+
+@given(held_pairs(frictions.filter(lambda mu: mu > 1e-3)))
+def test_any_locus_lies_on_both_cones(pair: Pair) -> None:
+    if min(hypot(*pair.r1), hypot(*pair.r2)) < 0.1:
+        return  # at the centre of mass a cone has no torque, so rounding of the load's puts points off it
+    locus = rg.EquilibriumLocus(pair.grasp, pair.load)
+    lo, hi = locus.interval
+    first, second = pair.grasp
+    cone1, cone2 = WrenchCone(first, pair.load.vector), WrenchCone(second, sign=-1)
+    reach = 10 * (1 + abs(pair.load.vector).max())
+    heads = pair.load.vector + locus.segment(max(reach, *(abs(x) for x in (lo, hi) if abs(x) < inf)))
+    for share in (0, 0.3, 1):
+        point = (1 - share) * heads[0] + share * heads[1]
+        assert cone1.contains(point, 1e-7)
+        assert cone2.contains(point, 1e-7)
+    along = np.append(locus.direction, locus.wrenches(1.0)[0, 2] - locus.wrenches(0.0)[0, 2])
+    for end, head, side in ((lo, heads[0], -1), (hi, heads[1], 1)):
+        if abs(end) < reach:
+            beyond = head + side * 0.1 * reach * along
+            assert not (cone1.contains(beyond) and cone2.contains(beyond))
+
+
+def test_the_locus_of_three_contacts_for_a_given_first_force() -> None:
+    """LS_A = S Pi_3, standing at the head of w_1, cut with S Pi_2^-1, at the origin (Fig. 6)."""
+    f1 = STATE.force("P1")
+    head = LOAD.vector + wrench(PAPER["P1"], f1)
+    locus = rg.EquilibriumLocus.given(PAPER, LOAD, "P1", f1)
+    assert locus.grasp.names == ("P2", "P3")
+    lo, hi = locus.interval
+    assert lo < hi < inf
+    w3 = locus.wrenches(np.array([lo, hi]))[:, 1]
+    on_both(WrenchCone(PAPER["P3"], head), WrenchCone(PAPER["P2"], sign=-1), head + w3)
+    # Of it the state's own forces are one point.
+    own = locus.squeeze(STATE.without("P1"))
+    assert lo < own < hi
+    np.testing.assert_allclose(locus.forces(own), STATE.forces[1:], atol=1e-13)
+
+
+@given(held_triples(frictions.filter(lambda mu: mu > 1e-3)), st.data())
+def test_given_forces_and_the_locus_of_the_others_balance(triple: tuple, data: st.DataObject) -> None:
+    grasp, load = triple
+    fixed = data.draw(st.sampled_from(grasp.names))
+    force = in_cone(grasp[fixed], data.draw(shares), data.draw(st.floats(0, 5)))
+    locus = rg.EquilibriumLocus.given(grasp, load, fixed, force)
+    assert fixed not in locus.grasp.names
+    x = data.draw(st.floats(-5, 5))
+    forces = np.insert(locus.forces(x), grasp.index(fixed), force, axis=0)
+    state = rg.GraspState(grasp, load, forces)
+    scale = abs(forces).max() + abs(load.vector).max()
+    assert state.residual <= 1e-13 * scale * (1 + grasp.size) ** 2
+    if fixed == "C" and not force.any():
+        assert locus.interval == rg.EquilibriumLocus(grasp.without("C"), load).interval
+
+
+def test_segments_without_end_or_without_points() -> None:
+    opposed = rg.Grasp([rg.Contact([0, 0], [1, 0], 1.0), rg.Contact([2, 0], [-1, 0], 1.0)])
+    locus = rg.EquilibriumLocus(opposed, rg.Wrench([0, -2], -2.0))
+    assert locus.interval == (1.0, inf)
+    np.testing.assert_allclose(locus.segment(5.0), [[1, 1, 0], [5, 1, 0]], atol=1e-15)
+    with pytest.raises(rg.InvalidInput) as refused:
+        locus.segment()
+    assert (
+        str(refused.value) == "this locus has no end on one side; give reach, the largest |squeeze| to show"
+    )
+    empty = rg.EquilibriumLocus(
+        rg.Grasp([rg.Contact([0, 0], [0, 1], 0.5), rg.Contact([2, 0], [0, 1], 0.5)]), rg.Wrench([0, 2])
+    )
+    with pytest.raises(rg.Infeasible) as none:
+        empty.segment()
+    assert str(none.value) == "the equilibrium locus of P1, P2 is empty"
+
+
+# -- errors -----------------------------------------------------------------------------------------------
+
+PAIR_IN_SPACE = rg.Grasp([SPACE, rg.Contact([-1, 0, 0], [1, 0, 0], 0.5)])
+BAD = [
+    (lambda: WrenchPlane(SPACE), "wrench planes are defined for planar contacts; this one is in space"),
+    (lambda: WrenchCone(SPACE), "wrench planes are defined for planar contacts; this one is in space"),
+    (lambda: WrenchCone(PAPER["P1"], sign=2), "sign must be 1 or -1, got 2"),
+    (lambda: WrenchCone(PAPER["P1"], [0, 0]), "apex must have shape (3,), got (2,): [0, 0]"),
+    (lambda: IsoTorqueLine(PAPER["P1"], nan), "torque must be finite, got nan"),
+    (
+        lambda: IsoTorqueLine(rg.Contact([0, 0], [1, 0], 0.5), 1.0),
+        "a contact at the centre of mass makes no torque and has no iso-torque lines",
+    ),
+    (lambda: iso_torque_line(PAPER["P1"], [1, 2, 3]), "force must have shape (2,), got (3,): [1, 2, 3]"),
+    (
+        lambda: WrenchLoop(STATE, ("P1", "P2")),
+        "order must name each of P1, P2, P3 once, got ('P1', 'P2')",
+    ),
+    (
+        lambda: WrenchLoop(rg.GraspState(PAIR_IN_SPACE, rg.Wrench([0, 0, 0]), np.zeros((2, 3)))),
+        "the wrench loop is drawn for planar grasps; this one is in space",
+    ),
+    (
+        lambda: rg.EquilibriumLocus.given(PAPER, LOAD, "P1", [1, nan]),
+        "force must be finite, got [1, nan]",
+    ),
+    (
+        lambda: rg.EquilibriumLocus.given(PAPER, LOAD, "P9", [1, 1]),
+        "no contact 'P9' in this grasp; it has P1, P2, P3",
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "message"), BAD, ids=[message for _, message in BAD])
+def test_bad_input_is_refused(call, message: str) -> None:
+    with pytest.raises(rg.InvalidInput) as refused:
+        call()
+    assert str(refused.value) == message
