@@ -5,6 +5,9 @@ import numpy as np
 from pairs import Array, Quadratic, chosen
 from regrasp.mechanics.margins import margins
 
+TOLERANCE = 1e-5
+"""A few times what DAQP allows a constraint by default, 1e-6."""
+
 
 def check_agreement(pairs: list[tuple[float, ...]], programs: list[list[Quadratic]], objective: str) -> None:
     """Raise unless DAQP reaches the same value of the objective as the closed form on every pair.
@@ -14,7 +17,7 @@ def check_agreement(pairs: list[tuple[float, ...]], programs: list[list[Quadrati
     for pair, tried in zip(pairs, programs, strict=True):
         answers = [x[:4] for x, flag in (program.solve() for program in tried) if flag == 1]
         ours, theirs = (_value(pair, f, objective) for f in (chosen(pair, objective)[0], answers[-1]))
-        close(np.array(ours), np.array(theirs), 1e-6, f"DAQP for {objective}")
+        close(np.array(ours), np.array(theirs), TOLERANCE, f"DAQP for {objective}")
 
 
 def close(ours: Array, theirs: Array, tolerance: float, what: str) -> None:

@@ -61,11 +61,8 @@ class Pairs:
 
 def chosen(pair: tuple[float, ...], objective: str) -> tuple[Array, float, float]:
     """The closed form's forces (4,) and the limits they were chosen under."""
-    answer = best_squeeze(*pair, OBJECTIVES.index(objective), inf, inf, PEAK_RATIO)
-    x, (limit1, limit2) = answer[0], answer[-2:]
-    u, phi, a, b = _frame(pair)
-    p = np.array([-u[1], u[0]])
-    return np.concatenate([x * u + a * p, -(x + phi) * u + b * p]), limit1, limit2
+    _, forces, limits = best_squeeze(*pair, OBJECTIVES.index(objective), inf, inf, PEAK_RATIO)
+    return np.array(forces), *limits
 
 
 def _frame(pair: tuple[float, ...]) -> tuple[Array, float, float, float]:

@@ -18,9 +18,9 @@ from timing import Comparison
 class Measure(Enum):
     """How a row is read; the value is how its number is written."""
 
-    TIMES = "{:.2f}x the time"
+    TIMES = "{:.3g}x the time"
     FASTER = "{:.3g}x faster"
-    RATE = "{:.2f} of the rate"
+    RATE = "{:.3g} of the rate"
 
 
 @dataclass(frozen=True)

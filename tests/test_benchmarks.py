@@ -1,0 +1,67 @@
+"""The benchmark runs and reports every row. Its times are never tested."""
+
+import json
+import subprocess
+import sys
+from math import isfinite
+from pathlib import Path
+
+import pytest
+
+from regrasp.closed_form.choice import OBJECTIVES
+
+SCRIPT = Path(__file__).parents[1] / "benchmarks" / "closed_form.py"
+ROWS = {
+    *(f"{size}_{objective}" for size in ("one", "batch") for objective in OBJECTIVES),
+    *(f"removal_{objective}_{seen}" for objective in ("angle", "effort") for seen in ("first", "again")),
+    "set_points",
+    "intervals_1",
+    "loop_1",
+    "import",
+    "version",
+}
+PAGE = "before\n<!-- closed_form: generated, do not edit -->\nold\n<!-- end of closed_form -->\nafter\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("benchmark")
+    (folder / "README.md").write_text(PAGE, encoding="utf-8")
+    subprocess.run([sys.executable, SCRIPT, "--quick", "-o", folder], check=True, capture_output=True)
+    return folder
+
+
+def test_every_row_is_measured(folder: Path) -> None:
+    report = json.loads((folder / "results" / "closed_form.json").read_text(encoding="utf-8"))
+    keys = [row["key"] for row in report["rows"]]
+    assert len(keys) == len(set(keys))
+    assert set(keys) >= ROWS
+    for row in report["rows"]:
+        numbers = [row[name] for name in ("ours", "theirs", "value", "value_of_best", "goal")]
+        assert all(isfinite(number) and number > 0 for number in numbers), row
+        assert row["met"] == (
+            row["value"] <= row["goal"] if row["measure"] == "TIMES" else row["value"] >= row["goal"]
+        )
+    assert report["quick"]
+    assert report["environment"]["versions"].keys() >= {"regrasp", "numpy", "numba", "daqp", "cvxpy"}
+
+
+def test_the_page_has_a_line_per_row(folder: Path) -> None:
+    report = json.loads((folder / "results" / "closed_form.json").read_text(encoding="utf-8"))
+    page = (folder / "README.md").read_text(encoding="utf-8")
+    lines = [line for line in page.splitlines() if line.startswith("| ")]
+    assert len(lines) == 1 + len(report["rows"])
+    assert report["environment"]["date"] in page
+
+
+def test_the_section_is_replaced_and_the_rest_kept(folder: Path) -> None:
+    page = (folder / "README.md").read_text(encoding="utf-8")
+    assert page.startswith("before\n<!-- closed_form: generated, do not edit -->\n| what |")
+    assert page.endswith("\n<!-- end of closed_form -->\nafter\n")
+    assert "old" not in page.splitlines()
+
+
+def test_a_quick_run_does_not_replace_the_results() -> None:
+    done = subprocess.run([sys.executable, SCRIPT, "--quick"], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "say where to write it with -o DIR" in done.stderr
