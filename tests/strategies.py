@@ -148,6 +148,9 @@ frictions = st.one_of(
     st.floats(0.01, 2.0).map(lambda x: round(x, 3)),
 )
 
+ordinary_sizes = st.floats(0.1, 4.0).map(lambda x: round(x, 2))
+uneven_sizes = st.one_of(ordinary_sizes, st.sampled_from([0.0, 1e-6, 1e-5, 1e-3]))
+
 
 @st.composite
 def pairs(draw: Callable, frictions: st.SearchStrategy[float] = frictions, zero_load: bool = True) -> Pair:
@@ -164,26 +167,25 @@ def pairs(draw: Callable, frictions: st.SearchStrategy[float] = frictions, zero_
 
 @st.composite
 def held_pairs(
-    draw: Callable, frictions: st.SearchStrategy[float] = frictions, zero_load: bool = False
+    draw: Callable,
+    frictions: st.SearchStrategy[float] = frictions,
+    sizes: st.SearchStrategy[float] = ordinary_sizes,
 ) -> Pair:
     """Two contacts and a load they hold, made from forces inside the cones, so that no draw is lost."""
-    pair = draw(pairs(frictions, zero_load=True))
-    contacts = ((pair.r1, pair.n1, pair.mu1), (pair.r2, pair.n2, pair.mu2))
-    force, torque = np.zeros(2), 0.0
-    for r, n, mu in contacts:
-        f = draw(forces_in_cone(n, mu))
-        force = force - f
-        torque -= r[0] * f[1] - r[1] * f[0]
-    if not zero_load and not force.any():
-        force = -np.array(pair.n1)
-        torque = -(pair.r1[0] * pair.n1[1] - pair.r1[1] * pair.n1[0])
-    return replace(pair, force=_pair(force), torque=float(torque))
+    pair = draw(pairs(frictions))
+    forces = [draw(forces_in_cone(n, mu, sizes)) for n, mu in ((pair.n1, pair.mu1), (pair.n2, pair.mu2))]
+    if not sum(forces).any():
+        forces = [np.array(pair.n1), 0 * forces[1]]
+    torque = sum(r[0] * f[1] - r[1] * f[0] for r, f in zip((pair.r1, pair.r2), forces, strict=True))
+    return replace(pair, force=_pair(-sum(forces)), torque=-float(torque))
 
 
 @st.composite
-def forces_in_cone(draw: Callable, n: Point, mu: float) -> np.ndarray:
+def forces_in_cone(
+    draw: Callable, n: Point, mu: float, sizes: st.SearchStrategy[float] = ordinary_sizes
+) -> np.ndarray:
     """A force inside the cone of normal n, at most nine tenths of the way to its edges."""
-    size = draw(st.floats(0.1, 4.0).map(lambda x: round(x, 2)))
+    size = draw(sizes)
     share = draw(st.floats(-0.9, 0.9).map(lambda x: round(x, 2)))
     normal = np.array(n) / hypot(*n)
     return size * (normal + share * mu * np.array([-normal[1], normal[0]]))

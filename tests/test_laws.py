@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import regrasp as rg
 from models import OBJECTIVES
 from oracle import is_held
-from strategies import POWERS, Pair, grooves, held_pairs, held_triples
+from strategies import POWERS, Pair, grooves, held_pairs, held_triples, uneven_sizes
 
 objectives = st.sampled_from(OBJECTIVES)
 firm = st.sampled_from([0.1, 0.25, 0.3, 0.5, 1.0, 2.0, 5.0])
@@ -165,7 +165,7 @@ def test_what_is_planned_verifies(
     assert verdict.least_cone_slack >= 0
 
 
-@given(held_pairs(slippery), objectives, POWERS, POWERS, st.sampled_from([0.0, 1.0, 1e3, 1e6]))
+@given(held_pairs(slippery, uneven_sizes), objectives, POWERS, POWERS, st.sampled_from([0.0, 1.0, 1e3, 1e6]))
 @settings(max_examples=200)
 def test_what_is_planned_verifies_down_to_almost_no_friction(
     pair: Pair, objective: str, length: float, force: float, far: float
