@@ -137,5 +137,11 @@ def _refuse_endless(objective: str, force: Array, torque: Array, limit1: Array, 
 
 
 def _blocks(arrays: list[Array], size: int) -> list[Array]:
-    """One value becomes a block of equal values, which serves every block of grasps."""
-    return [np.tile(v, size) if v.size == w else v for v, w in zip(arrays, _SIZES.values(), strict=False)]
+    """One value becomes a block of equal values, which serves every block of grasps.
+
+    All read-only, whether ours or a view of the caller's: Numba compiles anew for every mix of both.
+    """
+    blocks = [np.tile(v, size) if v.size == w else v for v, w in zip(arrays, _SIZES.values(), strict=False)]
+    for block in blocks:
+        block.setflags(write=False)
+    return blocks
