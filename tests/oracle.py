@@ -207,3 +207,24 @@ def is_held(
         limit is None or dot(x, x) <= Fraction(float(limit)) ** 2 for x, limit in zip(f, limits, strict=True)
     )
     return balanced, inside, within
+
+
+def opposition(twist: Sequence[float], r: Sequence[float], n: Sequence[float], mu: float) -> float:
+    """The most work one newton inside the cone can do against a planar motion (v_x, v_y, omega); 0 if none.
+
+    From the definition: minus the least f . (v + omega x r) over unit f in the cone, exact before the roots.
+    """
+    vx, vy, omega = exact(twist)
+    place = exact(r)
+    velocity = [vx - omega * place[1], vy + omega * place[0]]
+    normal, friction = exact(n), Fraction(float(mu))
+    if any(velocity) and in_cone([-x for x in velocity], normal, friction):
+        return sqrt(dot(velocity, velocity))
+    t = turned(normal)
+    edges = [[a + s * friction * b for a, b in zip(normal, t, strict=True)] for s in (1, -1)]
+    return max(0.0, *(float(-dot(e, velocity)) / sqrt(dot(e, e)) for e in edges))
+
+
+def power(twist: Sequence[float], wrench: Sequence[float]) -> Fraction:
+    """Work of a wrench along a motion."""
+    return dot(exact(twist), exact(wrench))
