@@ -13,7 +13,6 @@ import regrasp as rg
 from regrasp import plots
 from regrasp.mechanics.wrench_space import WrenchCone, WrenchLoop, WrenchPlane, iso_torque_line
 from regrasp.plots.style import round_below
-from regrasp.plots.timing import _abscissae
 from regrasp.plots.view import best_view
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -375,7 +374,7 @@ def test_the_scaling_is_drawn_with_its_control_values(scaling):
 def test_control_values_stand_where_they_reproduce_a_straight_line():
     for degree in (1, 2, 3, 5):
         shape = rg.TimeScaling(2.0, tuple(np.linspace(1, 0, 8)), degree)
-        straight = rg.TimeScaling(2.0, tuple(1 - _abscissae(shape) / 2.0), degree)
+        straight = rg.TimeScaling(2.0, tuple(1 - shape.abscissae / 2.0), degree)
         t = np.linspace(0, 2, 17)
         np.testing.assert_allclose(straight(t), 1 - t / 2, atol=1e-12)
 

@@ -89,9 +89,9 @@ class EscapeTwist(ArrayValue):
         if d == 3:
             return f"moving with velocity {numbers(velocity)} and angular velocity {numbers(spin)}"
         if self.centre is None:
-            return f"sliding along {numbers(velocity / hypot(*velocity))}"
+            return f"sliding along {numbers(_without_noise(velocity / hypot(*velocity), 1.0))}"
         turn = "clockwise" if spin[0] < 0 else "counter-clockwise"
-        return f"turning {turn} about {numbers(self.centre)}"
+        return f"turning {turn} about {numbers(_without_noise(self.centre, self.grasp.size))}"
 
     def __repr__(self) -> str:
         return f"EscapeTwist({self})"
@@ -118,6 +118,11 @@ class EscapeTwist(ArrayValue):
             else:
                 result.append((mu * _sqrt_above(tangential) - vn) * _sqrt_above(1 / (nn * (1 + mu * mu))))
         return tuple(result)
+
+
+def _without_noise(values: Array, scale: float) -> Array:
+    """For printing: zero where a value is rounding beside ``scale``."""
+    return np.where(abs(values) < 1e-9 * scale, 0.0, values)
 
 
 def _exact(values: Array) -> list[Fraction]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isnan
+from math import inf, isfinite, isnan
 from typing import cast
 
 import numpy as np
@@ -89,14 +89,18 @@ class EquilibriumLocus(ArrayValue):
         return margins(self.forces(squeeze), self.grasp.normals, self.grasp.frictions)
 
     def segment(self, reach: float = inf) -> Array:
-        """(2, 3) ends of LS_B in wrench space, as values of w_1; ``reach`` bounds |x| of infinite ends."""
+        """(2, 3) ends of LS_B in wrench space, as values of w_1.
+
+        An infinite end is cut off ``reach`` [N] beyond the finite one; beyond zero if both are infinite.
+        """
         lo, hi = self.interval
         if self.is_empty:
             raise Infeasible(f"the equilibrium locus of {', '.join(self.grasp.names)} is empty")
-        ends = max(lo, -reach), min(hi, reach)
-        if not np.isfinite(ends).all():
-            raise InvalidInput("this locus has no end on one side; give reach, the largest |squeeze| to show")
-        result: Array = self.wrenches(np.array(ends))[:, 0]
+        start = lo if isfinite(lo) else (hi if isfinite(hi) else 0.0) - reach
+        end = hi if isfinite(hi) else (lo if isfinite(lo) else 0.0) + reach
+        if not (isfinite(start) and isfinite(end)):
+            raise InvalidInput("this locus has no end on one side; give reach, how far [N] to show it")
+        result: Array = self.wrenches(np.array([start, end]))[:, 0]
         return result
 
     def state(self, squeeze: float) -> GraspState:

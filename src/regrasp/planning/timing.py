@@ -109,6 +109,12 @@ class TimeScaling(ArrayValue):
         """T''(t) [1/s^2]; zero everywhere for a linear scaling, whose jumps at the ends it does not see."""
         return self._evaluate(2, t)
 
+    @property
+    def abscissae(self) -> Array:
+        """(k,) times [s] at which the control values stand: means of ``degree`` knots (Greville)."""
+        means = [self._knots[i + 1 : i + self.degree + 1].mean() for i in range(len(self.control))]
+        return self.duration * np.array(means)
+
     @cached_property
     def steepest(self) -> float:
         """Max |T'(t)| [1/s], exact to rounding: at a knot or where T'' = 0."""
@@ -123,14 +129,19 @@ class TimeScaling(ArrayValue):
         inside = candidates[(candidates >= 0) & (candidates <= 1)]
         return float(abs(slope(inside)).max()) / self.duration
 
+    @property
+    def _knots(self) -> Array:
+        """Clamped, uniform, over s = t / duration in [0, 1]."""
+        k = self.degree
+        inner = np.linspace(0, 1, len(self.control) - k + 1)
+        return np.concatenate([np.zeros(k), inner, np.ones(k)])
+
     @cached_property
     def _splines(self) -> tuple["BSpline", ...]:
         """T and its first two derivatives over s = t / duration in [0, 1]."""
         from scipy.interpolate import BSpline
 
-        k = self.degree
-        inner = np.linspace(0, 1, len(self.control) - k + 1)
-        knots = np.concatenate([np.zeros(k), inner, np.ones(k)])
+        k, knots = self.degree, self._knots
         spline = BSpline(knots, np.array(self.control), k, extrapolate=False)
         first = spline.derivative()
         second = first.derivative() if k >= 2 else BSpline(knots[1:-1], np.zeros(len(self.control)), 0)

@@ -3,7 +3,6 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.mechanics.checks import Array
 from regrasp.planning.timing import TimeScaling
 from regrasp.plots.style import GREY, PALETTE, axes_or_new, label_axis, legend
 
@@ -17,7 +16,7 @@ def plot_scaling(scaling: TimeScaling, ax: Axes | None = None, *, control: bool 
     ax.plot(t, scaling(t), color=PALETTE[0], linewidth=1.4, label="$T(t)$")
     if control:
         ax.plot(
-            _abscissae(scaling),
+            scaling.abscissae,
             scaling.control,
             "o--",
             color=GREY,
@@ -31,11 +30,3 @@ def plot_scaling(scaling: TimeScaling, ax: Axes | None = None, *, control: bool 
     label_axis(ax.xaxis, "$t$", "s", scaling.duration)
     label_axis(ax.yaxis, "$T$", "-", 1.0)
     return ax
-
-
-def _abscissae(scaling: TimeScaling) -> Array:
-    """Where control values stand in time: the means of ``degree`` knots each (Greville)."""
-    k, count = scaling.degree, len(scaling.control)
-    knots = np.concatenate([np.zeros(k), np.linspace(0, 1, count - k + 1), np.ones(k)])
-    means: Array = np.array([knots[i + 1 : i + k + 1].mean() for i in range(count)])
-    return scaling.duration * means
