@@ -78,12 +78,14 @@ def test_by_hand(case: tuple) -> None:
 def test_a_state_has_the_margins_of_its_contacts() -> None:
     grasp = rg.Grasp([rg.Contact([0, 0], [2, 0], 0.75), rg.Contact([1, 0], [0, -3], 0.5)])
     state = rg.GraspState(grasp, rg.Wrench([0, 0]), [[4, 1], [1, -4]])
-    assert state.margins.angle == pytest.approx([atan(0.75) - atan(0.25), atan(0.5) - atan(0.25)], rel=1e-14)
-    assert state.margins.force == pytest.approx([1.6, 1 / sqrt(1.25)], rel=1e-14)
-    assert state.margins.friction_use == pytest.approx([1 / 3, 0.5], rel=1e-14)
-    assert state.margins.least_angle == pytest.approx(atan(0.5) - atan(0.25), rel=1e-14)
-    assert state.margins.least_force == pytest.approx(1 / sqrt(1.25), rel=1e-14)
-    assert state.margins.largest_friction_use == pytest.approx(0.5, rel=1e-14)
+    assert state.margins.angle == pytest.approx(
+        [atan(0.75) - atan(0.25), atan(0.5) - atan(0.25)], rel=1e-14, abs=0
+    )
+    assert state.margins.force == pytest.approx([1.6, 1 / sqrt(1.25)], rel=1e-14, abs=0)
+    assert state.margins.friction_use == pytest.approx([1 / 3, 0.5], rel=1e-14, abs=0)
+    assert state.margins.least_angle == pytest.approx(atan(0.5) - atan(0.25), rel=1e-14, abs=0)
+    assert state.margins.least_force == pytest.approx(1 / sqrt(1.25), rel=1e-14, abs=0)
+    assert state.margins.largest_friction_use == pytest.approx(0.5, rel=1e-14, abs=0)
 
 
 # -- contacts without force -------------------------------------------------------------------------------
@@ -107,8 +109,10 @@ def test_a_contact_without_force_is_left_out() -> None:
 def test_rounding_is_no_force_and_a_small_force_is_one() -> None:
     """A force below 2^-40 of the largest is idle, though here it points out of its cone."""
     found = state_of([4, 1], [-(2.0**-39), 0]).margins  # below 2^-40 |(4, 1)| = 2^-40 * 4.12
-    assert np.isnan(found.angle[1])
+    assert np.isnan([found.angle[1], found.friction_use[1]]).all()
+    assert found.force[1] == 0
     assert found.least_angle > 0
+    assert found.largest_friction_use == pytest.approx(1 / 3)
     found = state_of([4, 1], [-(2.0**-37), 0]).margins
     assert found.least_angle == pytest.approx(atan(0.75) - pi)
 

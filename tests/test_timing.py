@@ -133,16 +133,18 @@ def test_steepest_is_the_largest_slope(scaling: TimeScaling) -> None:
 @pytest.mark.parametrize(("shape", "slope"), [(PAPER, 1.5), (JERK, 1.875), (LINEAR, 1.0)])
 def test_steepest_of_known_shapes(shape: TimeScaling, slope: float) -> None:
     """6 s (1 - s) and 30 s^2 (1 - s)^2 are largest at s = 1/2: 3/2 and 15/8."""
-    assert shape.steepest == pytest.approx(slope, rel=1e-15)
-    assert shape.lasting(0.02).steepest == pytest.approx(50 * slope, rel=1e-15)
-    assert abs(shape.velocity(S)).max() == pytest.approx(slope, rel=1e-14)
+    assert shape.steepest == pytest.approx(slope, rel=1e-15, abs=0)
+    assert shape.lasting(0.02).steepest == pytest.approx(50 * slope, rel=1e-15, abs=0)
+    assert abs(shape.velocity(S)).max() == pytest.approx(slope, rel=1e-14, abs=0)
 
 
 def test_steepest_away_from_the_middle() -> None:
     """Control 1, 1, 1/4, 0: T' = -(4.5 s - 3.75 s^2), steepest at 0.6. Control 1, 1, 1, 0: T = 1 - s^3."""
-    assert TimeScaling.spline(1.0, (1, 1, 0.25, 0)).steepest == pytest.approx(1.35, rel=1e-14)
-    assert TimeScaling.spline(1.0, (1, 1, 1, 0)).steepest == pytest.approx(3.0, rel=1e-14)
-    assert TimeScaling(1.0, (1, 1, 0.2, 0), 2).steepest == pytest.approx(1.6, rel=1e-14)  # T' = 0, -1.6, -0.8
+    assert TimeScaling.spline(1.0, (1, 1, 0.25, 0)).steepest == pytest.approx(1.35, rel=1e-14, abs=0)
+    assert TimeScaling.spline(1.0, (1, 1, 1, 0)).steepest == pytest.approx(3.0, rel=1e-14, abs=0)
+    assert TimeScaling(1.0, (1, 1, 0.2, 0), 2).steepest == pytest.approx(
+        1.6, rel=1e-14, abs=0
+    )  # T' = 0, -1.6, -0.8
 
 
 @given(scalings())
@@ -160,7 +162,7 @@ def test_lasting_stretches_time_only(scaling: TimeScaling, duration: float) -> N
     other = scaling.lasting(duration)
     assert (other.duration, other.control, other.degree) == (duration, scaling.control, scaling.degree)
     np.testing.assert_allclose(other(duration * S), scaling(scaling.duration * S), rtol=0, atol=1e-12)
-    assert other.steepest * duration == pytest.approx(scaling.steepest * scaling.duration, rel=1e-14)
+    assert other.steepest * duration == pytest.approx(scaling.steepest * scaling.duration, rel=1e-14, abs=0)
 
 
 def test_times_have_any_shape() -> None:
@@ -192,7 +194,9 @@ def test_fastest_reaches_a_limit_and_exceeds_none(
     found = TimeScaling.fastest(change, rates, shape)
     assert found.control == shape.control
     use = moved * found.steepest / rates
-    assert use.max() == pytest.approx(1, rel=1e-14)  # tight, and so shorter is too fast for some finger
+    assert use.max() == pytest.approx(
+        1, rel=1e-14, abs=0
+    )  # tight, and so shorter is too fast for some finger
     t = found.duration * np.linspace(0, 1, 1001)
     speed = abs(found.velocity(t))[:, None] * moved
     assert (speed <= rates * (1 + 1e-12)).all()
@@ -201,13 +205,15 @@ def test_fastest_reaches_a_limit_and_exceeds_none(
 def test_fastest_by_hand() -> None:
     """|change| = 5, 1 N at 1.5 per unit time: 5 * 1.5 / 10 = 0.75 s; or 1 * 1.5 / 0.5 = 3 s."""
     change = [[3, 4], [0, -1]]
-    assert TimeScaling.fastest(change, 10.0).duration == pytest.approx(0.75, rel=1e-15)
-    assert TimeScaling.fastest(change, [10.0, 0.5]).duration == pytest.approx(3.0, rel=1e-15)
-    assert TimeScaling.fastest(change, [inf, 0.5]).duration == pytest.approx(3.0, rel=1e-15)
-    assert TimeScaling.fastest(change, [10.0, inf]).duration == pytest.approx(0.75, rel=1e-15)
-    assert TimeScaling.fastest(change, 10.0, JERK).duration == pytest.approx(5 * 1.875 / 10, rel=1e-15)
-    assert TimeScaling.fastest(change, 10.0, LINEAR).duration == pytest.approx(0.5, rel=1e-15)
-    assert TimeScaling.fastest([[2, 3, 6]], 7.0, LINEAR).duration == pytest.approx(1.0, rel=1e-15)  # in space
+    assert TimeScaling.fastest(change, 10.0).duration == pytest.approx(0.75, rel=1e-15, abs=0)
+    assert TimeScaling.fastest(change, [10.0, 0.5]).duration == pytest.approx(3.0, rel=1e-15, abs=0)
+    assert TimeScaling.fastest(change, [inf, 0.5]).duration == pytest.approx(3.0, rel=1e-15, abs=0)
+    assert TimeScaling.fastest(change, [10.0, inf]).duration == pytest.approx(0.75, rel=1e-15, abs=0)
+    assert TimeScaling.fastest(change, 10.0, JERK).duration == pytest.approx(5 * 1.875 / 10, rel=1e-15, abs=0)
+    assert TimeScaling.fastest(change, 10.0, LINEAR).duration == pytest.approx(0.5, rel=1e-15, abs=0)
+    assert TimeScaling.fastest([[2, 3, 6]], 7.0, LINEAR).duration == pytest.approx(
+        1.0, rel=1e-15, abs=0
+    )  # in space
     assert TimeScaling.fastest(change, 10.0) == PAPER.lasting(TimeScaling.fastest(change, 10.0).duration)
 
 
@@ -216,7 +222,7 @@ def test_fastest_in_any_units(change: list, force: float, time: float, duration:
     """Forces in ``force``, seconds in ``time``; the shape's own duration does not matter."""
     plain = TimeScaling.fastest(change, 2.0)
     scaled = TimeScaling.fastest(force * np.array(change), 2.0 * force / time, PAPER.lasting(duration))
-    assert scaled.duration == pytest.approx(plain.duration * time, rel=1e-13)
+    assert scaled.duration == pytest.approx(plain.duration * time, rel=1e-13, abs=0)
 
 
 def test_fastest_transition_keeps_its_path() -> None:
@@ -233,7 +239,7 @@ def test_fastest_transition_keeps_its_path() -> None:
     assert quick.duration < 7.0
     assert (quick.start, quick.end) == (removal.start, removal.end)
     rates = np.linalg.norm(quick.rates(np.linspace(0, quick.duration, 2001)), axis=-1)
-    assert (rates.max(axis=0) / limits).max() == pytest.approx(1, rel=1e-14)
+    assert (rates.max(axis=0) / limits).max() == pytest.approx(1, rel=1e-14, abs=0)
     half = quick.duration / 2
     np.testing.assert_allclose(quick.forces(half), removal.forces(3.5), rtol=1e-14)
     step = 1e-6 * quick.duration

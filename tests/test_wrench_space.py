@@ -124,11 +124,11 @@ def test_one_torque_along_a_line(contact: rg.Contact, force: tuple[float, float]
         return
     line = iso_torque_line(contact, force)
     assert line.torque == pytest.approx(wrench(contact, np.array(force))[2], abs=1e-15)
-    assert line.torque == pytest.approx(hypot(*r) * line.distance, rel=1e-14)
+    assert line.torque == pytest.approx(hypot(*r) * line.distance, rel=1e-14, abs=0)
     for f in (np.array(force) + along * line.direction, line.force + along * line.direction):
         assert wrench(contact, f)[2] == pytest.approx(line.torque, abs=1e-13 * (1 + hypot(*r)) * 20)
     # d is the distance of the line from the contact, and f's own head lies on the line.
-    assert abs(line.distance) == pytest.approx(hypot(*line.force), rel=1e-14)
+    assert abs(line.distance) == pytest.approx(hypot(*line.force), rel=1e-14, abs=0)
     assert line.force @ line.direction == pytest.approx(0, abs=1e-14 * (1 + abs(line.distance)))
 
 
