@@ -253,11 +253,11 @@ def test_any_locus_lies_on_both_cones(pair: Pair) -> None:
     heads = pair.load.vector + locus.segment(reach)
     for share in (0, 0.3, 1):
         point = (1 - share) * heads[0] + share * heads[1]
-        assert cone1.contains(point, 1e-7)
-        assert cone2.contains(point, 1e-7)
+        for cone in (cone1, cone2):  # where a finger is idle the point is the apex, to the load's rounding
+            assert cone.contains(point, 1e-7) or np.linalg.norm(point - cone.apex) < 1e-12 * reach
     along = np.append(locus.direction, locus.wrenches(1.0)[0, 2] - locus.wrenches(0.0)[0, 2])
     for end, head, side in ((lo, heads[0], -1), (hi, heads[1], 1)):
-        if abs(end) < reach:
+        if abs(end) < inf:
             beyond = head + side * 0.1 * reach * along
             assert not (cone1.contains(beyond) and cone2.contains(beyond))
 
