@@ -243,3 +243,13 @@ def test_the_plane_is_a_section_of_space(contact: tuple) -> None:
     f, n, mu = contact
     in_space = one(np.array([*f, 0]), np.array([*n, 0]), mu)
     assert in_space == pytest.approx(one(f, n, mu), rel=1e-12, abs=1e-14, nan_ok=True)
+
+
+@pytest.mark.parametrize("size", [0.25, 1.0, 10.0, 1e-6])
+def test_friction_use_without_friction_does_not_hang_on_rounding(size: float) -> None:
+    """A force along the normal, to rounding, uses nothing of nothing; any other force is infinitely much."""
+    normal = np.array([2.0, 3.0]) / hypot(2, 3)
+    along, off = size * np.array([0.5, 0.75]), size * np.array([0.5, 0.76])
+    unit = normal[None]
+    assert np.isnan(margins(along[None], unit, np.zeros(1)).friction_use).all()
+    assert np.isinf(margins(off[None], unit, np.zeros(1)).friction_use).all()

@@ -7,7 +7,6 @@ form a convex set, so the path is safe when both ends are.
 """
 
 from collections.abc import Iterable
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +31,4 @@ def fastest_duration(changes: Iterable[float], rates: Iterable[float], steepest:
 
     ``changes`` are the |f_i^A - f_i^B|, ``steepest`` is max|T'| of the scaling at duration 1.
     """
-    return max(
-        change * steepest / rate if rate < inf else 0.0 for change, rate in zip(changes, rates, strict=True)
-    )
+    return max(change * steepest / rate for change, rate in zip(changes, rates, strict=True))

@@ -57,7 +57,10 @@ def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
     available = np.maximum(frictions * normal, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         use = np.where(normal < 0, inf, tangential / available)
-    return Margins(np.where(idle, nan, angle), np.where(idle, 0.0, force), np.where(idle, nan, use))
+    straight = (frictions == 0) & (normal > 0) & (tangential <= IDLE * magnitude)  # nothing used of nothing
+    return Margins(
+        np.where(idle, nan, angle), np.where(idle, 0.0, force), np.where(idle | straight, nan, use)
+    )
 
 
 def _over_used(values: Array, pick: np.ufunc, start: float) -> float:
