@@ -14,9 +14,15 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 
-_STEPS = 60
+_STEPS = 200
 # Equilibrium counts as reached at this residual relative to the largest force; a few times rounding.
 EQUILIBRIUM = 1e-13
+# What is aimed at: every component of the residual below this, so that its length passes, too.
+_ENOUGH = EQUILIBRIUM / 2
+# The dual function of what cannot be balanced rises for ever. At a y this large f(y) is mostly rounding.
+_UNBOUNDED = 1e6
+# A rise of the dual function below this fraction of its value is lost in rounding.
+_ROUNDING = 1e-11
 
 
 def nearest_equilibrium(
@@ -30,35 +36,40 @@ def nearest_equilibrium(
     weight = np.ones(matrix.shape[0])
     weight[d:] = 1 / length
     g, w = matrix * weight[:, None], load * weight
-    scale = max(float(abs(forces).max()), float(abs(w).max()))
+    heaviest = float(abs(w).max())
+    scale = max(float(abs(forces).max()), heaviest)
     if scale == 0:
         return np.zeros_like(forces)
 
-    y = np.zeros(w.size)
+    y, damping = np.zeros(w.size), 0.0
     f, derivative = _project(forces, normals, frictions, limits)
     residual = g @ f.ravel() + w
     for _ in range(_STEPS):
-        if abs(residual).max() <= EQUILIBRIUM * max(scale, float(abs(f).max())):
+        if abs(residual).max() <= _ENOUGH * max(heaviest, float(abs(f).max())):
             return f
+        if abs(residual).max() <= _ENOUGH * scale:  # as near as beside such large forces; go on from here
+            return nearest_equilibrium(f, matrix, load, normals, frictions, limits, length)
         curvature = sum(
             (g[:, i * d : i * d + d] @ derivative[i] @ g[:, i * d : i * d + d].T for i in range(n)),
             start=np.zeros((w.size, w.size)),
         )
         # A contact that pushes nothing adds no curvature; the shift keeps the step finite there.
-        shift = 1e-12 * n + 1e-3 * min(1.0, float(abs(residual).max()) / scale) ** 2
-        step = np.linalg.solve(curvature + shift * np.eye(w.size), residual)
-        value, slope, length_of_step = _dual(f, forces, residual, y), float(residual @ step), 1.0
-        while True:  # the dual is concave and smooth: backtrack until it rises
-            trial = y + length_of_step * step
-            f_trial, derivative_trial = _project(
-                forces - (g.T @ trial).reshape(n, d), normals, frictions, limits
-            )
-            residual_trial = g @ f_trial.ravel() + w
-            rise = _dual(f_trial, forces, residual_trial, trial) - value
-            if rise >= 1e-4 * length_of_step * slope or length_of_step < 1e-3:
-                break
-            length_of_step /= 2
-        y, f, derivative, residual = trial, f_trial, derivative_trial, residual_trial
+        step = np.linalg.solve(curvature + (1e-12 * n + damping) * np.eye(w.size), residual)
+        trial = y + step
+        f_trial, derivative_trial = _project(forces - (g.T @ trial).reshape(n, d), normals, frictions, limits)
+        residual_trial = g @ f_trial.ravel() + w
+        value = _dual(f, forces, residual, y)
+        rise, expected = _dual(f_trial, forces, residual_trial, trial) - value, float(residual @ step)
+        if expected < _ROUNDING * abs(value):  # too near the top to see it rise: the slope must fall
+            better = abs(residual_trial).max() < abs(residual).max()
+        else:
+            better = rise >= 1e-4 * expected
+        # The dual is concave and smooth, so that a step that is damped enough always rises.
+        damping = damping / 16 if better else max(16 * damping, 1e-4)
+        if better:
+            y, f, derivative, residual = trial, f_trial, derivative_trial, residual_trial
+            if abs(y).max() > _UNBOUNDED * scale:
+                return None
     return None
 
 
