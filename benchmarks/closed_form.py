@@ -137,7 +137,8 @@ def removals(effort: Effort) -> Iterator[Row]:
                 effort.of(ours, sides[fastest]),
                 Measure.FASTER,
                 20.0,
-                "judging the given state, and building criteria, states and path object in Python",
+                "judging a state seen first and building values in Python; cvxpy solves `effort` here, the "
+                "choice of `angle` would take it a bisection",
             )
 
 
@@ -194,7 +195,8 @@ def loci(effort: Effort) -> Iterator[Row]:
                 effort.of(side, copy),
                 Measure.RATE,
                 0.3 * used,
-                "the divisions and square root of each pair; memory is not yet the limit",
+                "five divisions and a square root per pair, and other processes on the same cores "
+                "where the load average says so",
             )
     numba.set_num_threads(threads)
 
