@@ -336,9 +336,9 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(("duration = 1.0", "reserve = 0.9")),
         3,
         [
-            "forces of P1, P2 balance Wrench(force=(-1.5, -3.5), torque=0) only at the limit of their "
-            "friction cones, within the reserve of 0.9 of the friction that planning keeps back; "
-            "choose a smaller reserve"
+            "no forces of P1, P2 that balance Wrench(force=(-1.5, -3.5), torque=0) were found with 0.9 of "
+            "the friction kept in reserve, and no motion proves that there are none without it: the load "
+            "is near the limit of what they can hold; choose a smaller reserve"
         ],
     ),
     "infeasible start of an addition": (

@@ -160,7 +160,7 @@ def test_a_reserve_that_is_too_large() -> None:
     assert rg.choose_state(grasp, load, "peak", max_force=limit, reserve=0.04).value <= limit
     error = refused(grasp, load, max_force=limit, reserve=0.1)
     assert error.certificate is None
-    assert "within the reserve of 0.1" in str(error)
+    assert "with 0.1 of the friction kept in reserve" in str(error)
 
 
 # -- nothing false ---------------------------------------------------------------------------------------

@@ -39,8 +39,9 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             twist,
         )
     return Infeasible(
-        f"forces of {names} balance {load!r} only at the limit of their friction cones, within the reserve "
-        f"of {criteria.reserve:g} of the friction that planning keeps back; choose a smaller reserve"
+        f"no forces of {names} that balance {load!r} were found with {criteria.reserve:g} of the friction "
+        f"kept in reserve, and no motion proves that there are none without it: the load is near the limit "
+        f"of what they can hold; choose a smaller reserve"
     )
 
 
