@@ -253,3 +253,14 @@ def test_friction_use_without_friction_does_not_hang_on_rounding(size: float) ->
     unit = normal[None]
     assert np.isnan(margins(along[None], unit, np.zeros(1)).friction_use).all()
     assert np.isinf(margins(off[None], unit, np.zeros(1)).friction_use).all()
+
+
+def test_values_hand_out_arrays_that_cannot_be_written() -> None:
+    grasp = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.5), rg.Contact([1, 0], [-1, 0], 0.5)])
+    state = rg.GraspState(grasp, rg.Wrench([0, -1]), [[2, 0.5], [-2, 0.5]])
+    kept = [state.forces, state.wrenches, state.imbalance, state.load.vector, state.load.force]
+    kept += [state.margins.angle, state.margins.force, state.margins.friction_use]
+    kept += [grasp.matrix, grasp.positions, grasp.internal_forces, grasp[0].normal]
+    for array in kept:
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0

@@ -25,8 +25,13 @@ def array(value: ArrayLike, what: str, shape: tuple[int | None, ...]) -> Array:
         raise InvalidInput(f"{what} must have shape {_shape(shape)}, got {_shape(result.shape)}: {value!r}")
     if np.count_nonzero(np.isfinite(result)) < result.size:
         raise InvalidInput(f"{what} must be finite, got {value!r}")
-    result.setflags(write=False)
-    return result
+    return read_only(result)
+
+
+def read_only(values: Array) -> Array:
+    """The same array, which refuses to be written to: values hand out what they keep."""
+    values.setflags(write=False)
+    return values
 
 
 def point(value: ArrayLike, what: str) -> Array:

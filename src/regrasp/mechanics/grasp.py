@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import torque
@@ -114,22 +114,22 @@ class Grasp(ArrayValue):
     @cached_property
     def positions(self) -> Array:
         """(n, d) [m]."""
-        return _frozen(np.array([c.position for c in self.contacts]))
+        return read_only(np.array([c.position for c in self.contacts]))
 
     @cached_property
     def normals(self) -> Array:
         """(n, d), unit, into the object."""
-        return _frozen(np.array([c.normal for c in self.contacts]))
+        return read_only(np.array([c.normal for c in self.contacts]))
 
     @cached_property
     def frictions(self) -> Array:
         """(n,) Coulomb coefficients."""
-        return _frozen(np.array([c.friction for c in self.contacts]))
+        return read_only(np.array([c.friction for c in self.contacts]))
 
     @cached_property
     def max_forces(self) -> Array:
         """(n,) [N], infinite where a contact has no limit."""
-        return _frozen(np.array([np.inf if c.max_force is None else c.max_force for c in self.contacts]))
+        return read_only(np.array([np.inf if c.max_force is None else c.max_force for c in self.contacts]))
 
     @cached_property
     def size(self) -> float:
@@ -143,7 +143,7 @@ class Grasp(ArrayValue):
         axes = np.eye(d)  # a unit force along each axis, at each contact
         arms = torque(self.positions[:, None], axes)  # (n, d, 1) or (n, d, 3)
         blocks = np.concatenate([np.broadcast_to(axes[:, None], (d, n, d)), np.moveaxis(arms, -1, 0)])
-        return _frozen(blocks.reshape(-1, n * d))
+        return read_only(blocks.reshape(-1, n * d))
 
     @cached_property
     def internal_forces(self) -> Array:
@@ -155,16 +155,11 @@ class Grasp(ArrayValue):
         scaled[self.dimension :] /= self.size or 1.0  # so that the rank does not depend on the length unit
         _, values, rows = np.linalg.svd(scaled)
         rank = int((values > 1e-12 * values[0]).sum())
-        return _frozen(rows[rank:].reshape(-1, len(self), self.dimension))
+        return read_only(rows[rank:].reshape(-1, len(self), self.dimension))
 
     def __repr__(self) -> str:
         inside = "".join(f"\n  {contact!r}," for contact in self.contacts)
         return f"Grasp([{inside}\n])"
-
-
-def _frozen(values: Array) -> Array:
-    values.setflags(write=False)
-    return values
 
 
 def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:

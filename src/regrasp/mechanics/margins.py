@@ -5,7 +5,7 @@ from math import inf, nan, pi
 
 import numpy as np
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, read_only
 
 # A force below this fraction of the largest one is rounding: the contact carries no force.
 IDLE = 2.0**-40
@@ -59,7 +59,9 @@ def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
         use = np.where(normal < 0, inf, tangential / available)
     straight = (frictions == 0) & (normal > 0) & (tangential <= IDLE * magnitude)  # nothing used of nothing
     return Margins(
-        np.where(idle, nan, angle), np.where(idle, 0.0, force), np.where(idle | straight, nan, use)
+        read_only(np.where(idle, nan, angle)),
+        read_only(np.where(idle, 0.0, force)),
+        read_only(np.where(idle | straight, nan, use)),
     )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, array, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import IDLE, Margins, margins
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
@@ -46,13 +46,12 @@ class GraspState(ArrayValue):
     @cached_property
     def wrenches(self) -> Array:
         """w_i = (f_i, r_i x f_i), (n, 3) in the plane, (n, 6) in space [N, N m]."""
-        return np.hstack([self.forces, torque(self.grasp.positions, self.forces)])
+        return read_only(np.hstack([self.forces, torque(self.grasp.positions, self.forces)]))
 
     @cached_property
     def imbalance(self) -> Array:
         """G f + w_ext, (3,) or (6,) [N, N m]; zero in equilibrium."""
-        total: Array = self.grasp.matrix @ self.forces.ravel() + self.load.vector
-        return total
+        return read_only(self.grasp.matrix @ self.forces.ravel() + self.load.vector)
 
     @property
     def residual(self) -> float:
