@@ -338,7 +338,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         [
             "no forces of P1, P2 that balance Wrench(force=(-1.5, -3.5), torque=0) were found with 0.9 of "
             "the friction kept in reserve, and no motion proves that there are none without it: the load "
-            "is near the limit of what they can hold; choose a smaller reserve"
+            "needs more friction than that leaves, or is at the limit of what they can hold; choose a "
+            "smaller reserve"
         ],
     ),
     "infeasible start of an addition": (

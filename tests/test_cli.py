@@ -124,8 +124,7 @@ def test_force_changed_by_a_millionth_is_refused(tmp_path: Path) -> None:
     done = run("verify", "out", cwd=tmp_path)
     assert done.returncode == 1
     assert done.stderr.startswith(
-        f"Error: {Path('out') / 'plan.json'}: the plan does not verify:\n"
-        "  start: not in equilibrium, G f + w_ext is "
+        f"Error: {Path('out') / 'plan.json'}: does not verify:\n  start: not in equilibrium, G f + w_ext is "
     )
     assert "Traceback" not in done.stderr
     assert "verified in exact arithmetic" not in done.stdout

@@ -53,7 +53,7 @@ def demo(output: Path) -> None:
     name = "paper.toml"
     text = (files("regrasp.files") / name).read_text(encoding="utf-8")
     _work(parse_scenario(text, name), name, output, copy=text)
-    click.echo(f"\nNext: change {output / name}, then run  regrasp plan {output / name} -o {output}")
+    click.echo(f"\nNext: change {output / name}, then run  {_called()} plan {output / name} -o {output}")
 
 
 @commands.command()
@@ -82,15 +82,22 @@ def plan(scenario: Path, output: Path, no_figures: bool) -> None:
 def verify(path: Path) -> None:
     """Check a PLAN in exact arithmetic.
 
-    PLAN is a plan.json or the folder that holds it.
+    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too, row by row.
     """
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
+    from regrasp.files.setpoints import read_setpoints
+    from regrasp.verification import verify_setpoints
 
     path = path / "plan.json" if path.is_dir() else path
     transition = read_plan(path)
     click.echo(transition)
     click.echo(_verified(verdict_on(transition), path))
+    table = path.with_name("setpoints.csv")
+    if table.exists():
+        times, forces = read_setpoints(table, transition)
+        _verified(verify_setpoints(transition, forces), table)
+        click.echo(f"each of {times.size} set-points in {table} verified too")
 
 
 @commands.command()
@@ -120,6 +127,14 @@ def main() -> None:
         click.echo(f"Error: {error}", err=True)
         status = _status(error)
     sys.exit(status)
+
+
+def _called() -> str:
+    """How a person calls this program again: as they did now."""
+    called = Path(sys.argv[0])
+    if called.name == "__main__.py":
+        return "python -m regrasp"
+    return str(called) if called.parent.name == "bin" else "regrasp"
 
 
 class _Unverified(RegraspError):
@@ -171,7 +186,7 @@ def _verified(verdict: "Verification", name: str | Path) -> "Verification":
         return verdict
     shown, more = verdict.violations[:_SHOWN], len(verdict.violations) - _SHOWN
     lines = [*shown, f"and {more} more"] if more > 0 else shown
-    raise _Unverified("\n  ".join([f"{name}: the plan does not verify:", *lines]))
+    raise _Unverified("\n  ".join([f"{name}: does not verify:", *lines]))
 
 
 def _draw(transition: "Transition", folder: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from regrasp.errors import InvalidInput
+from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import Array
 from regrasp.planning.transition import Transition, setpoint_columns
@@ -46,3 +47,26 @@ def write_setpoints(plan: Transition, path: str | Path, rate: float = 1000.0) ->
         rows.writerow(["t", *setpoint_columns(plan.grasp)])
         for t, forces in blocks:
             rows.writerows(np.column_stack([t, forces.reshape(t.size, -1)]).tolist())
+
+
+def read_setpoints(path: str | Path, plan: Transition) -> tuple[Array, Array]:
+    """Times (m,) [s] and forces (m, n, d) [N] of a file that ``write_setpoints`` wrote for this plan.
+
+    Raises ``InvalidInput`` for other columns, rows that are not numbers, and times that do not rise from 0
+    to the plan's duration.
+    """
+    path = Path(path)
+    header, *lines = text_of(path, "set-points in CSV").splitlines() or [""]
+    columns = ["t", *setpoint_columns(plan.grasp)]
+    if header.split(",") != columns:
+        raise InvalidInput(f"{path}: expected the columns {','.join(columns)}, got {header[:200]}")
+    try:
+        rows = np.array([[float(x) for x in line.split(",")] for line in lines], dtype=float)
+    except ValueError as error:
+        raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
+    if rows.ndim != 2 or rows.shape[1] != len(columns) or not np.isfinite(rows).all():
+        raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
+    times = rows[:, 0]
+    if times[0] != 0 or times[-1] != plan.duration or not (np.diff(times) > 0).all():
+        raise InvalidInput(f"{path}: times must rise from 0 to {plan.duration!r} s")
+    return times, rows[:, 1:].reshape(times.size, *plan.start.forces.shape)

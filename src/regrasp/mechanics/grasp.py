@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count
 
 import numpy as np
 
@@ -20,8 +21,8 @@ COINCIDENT = 1e-12
 class Grasp(ArrayValue):
     """Contacts on one object, addressed by name or by index.
 
-    Unnamed contacts are named P1, P2, ... by their place. Raises ``InvalidInput`` for an empty grasp,
-    contacts of different dimension, equal names and coincident contacts.
+    Unnamed contacts are named P1, P2, ... by their place, or the next such name that is free. Raises
+    ``InvalidInput`` for an empty grasp, contacts of different dimension, equal names and coincident contacts.
     """
 
     contacts: tuple[Contact, ...]
@@ -38,7 +39,7 @@ class Grasp(ArrayValue):
                     f"contacts of one grasp must have one dimension, got {given[0].dimension} "
                     f"and {contact.dimension}"
                 )
-        named = tuple(c if c.name is not None else c.named(f"P{i}") for i, c in enumerate(given, 1))
+        named = _named(given)
         _refuse_equal_names(named)
         _refuse_coincident(named)
         object.__setattr__(self, "contacts", named)
@@ -160,6 +161,19 @@ class Grasp(ArrayValue):
     def __repr__(self) -> str:
         inside = "".join(f"\n  {contact!r}," for contact in self.contacts)
         return f"Grasp([{inside}\n])"
+
+
+def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
+    """Unnamed contacts get the name of their place, or the next P<k> that nobody has."""
+    taken = {contact.name for contact in contacts}
+    result = []
+    for place, contact in enumerate(contacts, 1):
+        if contact.name is None:
+            name = next(name for k in count(place) if (name := f"P{k}") not in taken)
+            taken.add(name)
+            contact = contact.named(name)
+        result.append(contact)
+    return tuple(result)
 
 
 def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:

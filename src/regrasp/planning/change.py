@@ -29,7 +29,7 @@ def plan_removal(
     objective: str = "angle",
     whole_objective: str = "force",
     method: str = "auto",
-    duration: float = 1.0,
+    duration: float | None = None,
     scaling: TimeScaling | None = None,
     max_force: float | None = None,
     peak_ratio: float = PEAK_RATIO,
@@ -44,7 +44,7 @@ def plan_removal(
     objective, whole_objective: what the state without the finger, and the state with it, are chosen for.
     The widest force margin, ``force``, gives every finger work; the others may leave one idle.
     method, max_force, peak_ratio, reserve: as for ``choose_state``.
-    duration: [s]; or ``scaling``, a whole time function.
+    duration: [s], 1 if not given; or ``scaling``, a whole time function.
     balance_tolerance: given forces may change by this fraction of the largest one to reach exact
     equilibrium inside the cones less the reserve; the change is recorded in ``record.balancing``.
 
@@ -78,7 +78,7 @@ def plan_addition(
     objective: str = "angle",
     whole_objective: str = "force",
     method: str = "auto",
-    duration: float = 1.0,
+    duration: float | None = None,
     scaling: TimeScaling | None = None,
     max_force: float | None = None,
     peak_ratio: float = PEAK_RATIO,
@@ -216,9 +216,11 @@ def _with_limit(contact: Contact, limit: float) -> Contact:
     return Contact(contact.position, contact.normal, contact.friction, max_force=limit, name=contact.name)
 
 
-def _scaling(duration: float, scaling: TimeScaling | None) -> TimeScaling:
+def _scaling(duration: float | None, scaling: TimeScaling | None) -> TimeScaling:
     if scaling is None:
-        return _spline(number(duration, "duration", above=0))
+        return _spline(1.0 if duration is None else number(duration, "duration", above=0))
+    if duration is not None:
+        raise InvalidInput("scaling has a duration of its own; give one of duration and scaling")
     if not isinstance(scaling, TimeScaling):
         raise InvalidInput(f"scaling must be a TimeScaling, got {scaling!r}")
     return scaling

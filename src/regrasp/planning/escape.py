@@ -40,8 +40,8 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
         )
     return Infeasible(
         f"no forces of {names} that balance {load!r} were found with {criteria.reserve:g} of the friction "
-        f"kept in reserve, and no motion proves that there are none without it: the load is near the limit "
-        f"of what they can hold; choose a smaller reserve"
+        f"kept in reserve, and no motion proves that there are none without it: the load needs more friction "
+        f"than that leaves, or is at the limit of what they can hold; choose a smaller reserve"
     )
 
 
@@ -118,7 +118,7 @@ def _gap_with_limits(
         if limit < inf:
             rows.second_order(np.vstack([np.zeros(n + 3), pick]), [limit, 0, 0])
     try:
-        answer = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3)))
+        answer = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3)), "clarabel")
     except SolverFailed as failed:  # a direction short of the solver's tolerances may prove as much
         answer = failed.solution
     gap: Array = answer.value[n:]

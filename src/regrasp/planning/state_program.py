@@ -158,6 +158,8 @@ def solved_forces(
     among such states the one of the widest force margin is taken.
     """
     criteria.demand_limit(grasp, load)
+    if not criteria.maximises and not load.vector.any():  # nothing to hold: the least of everything is zero
+        return ChosenForces([[0.0, 0.0]] * len(grasp), tuple(criteria.limits(grasp)), backend)
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except SolverFailed:

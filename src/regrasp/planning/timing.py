@@ -17,6 +17,9 @@ from regrasp.mechanics.value import ArrayValue, numbers
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
+# Three tenths of a second added up are 0.30000000000000004 s.
+_ROUNDING = 2.0**-50
+
 PAPER_CONTROL = (1.0, 1.0, 0.5, 0.0, 0.0)
 """Five control values with zero slope at both ends, as in Section V (values reconstructed)."""
 
@@ -67,7 +70,7 @@ class TimeScaling(ArrayValue):
     def fastest(
         cls, change: ArrayLike, rate_limit: ArrayLike, shape: "TimeScaling | None" = None
     ) -> "TimeScaling":
-        """The shortest scaling of a shape under force-rate limits (fact 6).
+        """The shortest scaling of a shape under force-rate limits (docs/facts.md, 4).
 
         change: (n, d) forces at one end less those at the other [N].
         rate_limit: |f_i'(t)| allowed [N/s], one number or (n,), infinite for no limit.
@@ -152,8 +155,9 @@ class TimeScaling(ArrayValue):
             times = np.asarray(t, dtype=float)
         except (TypeError, ValueError):
             raise InvalidInput(f"t must be numbers, got {t!r}") from None
-        if not ((times >= 0) & (times <= self.duration)).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration:g}] s, got {t!r}")
+        if not ((times >= 0) & (times <= self.duration * (1 + _ROUNDING))).all():
+            raise InvalidInput(f"t must lie in [0, {self.duration!r}] s, got {t!r}")
+        times = np.minimum(times, self.duration)
         values: Array = self._splines[derivative](times / self.duration)
         return values / self.duration**derivative if derivative else values
 
