@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from math import cos, hypot, sin
 
 import numpy as np
+from hypothesis import assume
 from hypothesis import strategies as st
 
 import regrasp as rg
@@ -212,13 +213,20 @@ def held_triples(
 
 @st.composite
 def grooves(draw: Callable) -> tuple[rg.Grasp, rg.Wrench]:
-    """An object pressed into a frictionless V by its load, and a finger C with friction on top."""
+    """An object pressed into a frictionless V by its load, and a finger C with friction on top.
+
+    The two rays meet the line of contacts at 0.05 rad or more: nearer, rounding of the coordinates decides
+    whether they meet one another at all.
+    """
     left, right, turn = draw(st.floats(0.3, 1.2)), draw(st.floats(0.3, 1.2)), draw(angles)
     places = (
         ("A", (-draw(st.floats(0.5, 2)), -0.5), (sin(left), cos(left)), 0.0),
         ("B", (draw(st.floats(0.5, 2)), 0.2), (-sin(right), cos(right)), 0.0),
         ("C", (0.1, 2.0), (0.1, -1.0), 0.5),
     )
+    (ax, ay), (bx, by) = places[0][1], places[1][1]
+    for _, _, n, _ in places[:2]:
+        assume(abs((bx - ax) * n[1] - (by - ay) * n[0]) > 0.05 * hypot(bx - ax, by - ay))
     contacts = [rg.Contact(turned(r, turn), turned(n, turn), mu, name=name) for name, r, n, mu in places]
     load = rg.Wrench([0, 0])
     for contact in contacts[:2]:
