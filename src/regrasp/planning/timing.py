@@ -156,7 +156,7 @@ class TimeScaling(ArrayValue):
         except (TypeError, ValueError):
             raise InvalidInput(f"t must be numbers, got {t!r}") from None
         if not ((times >= 0) & (times <= self.duration * (1 + _ROUNDING))).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration!r}] s, got {t!r}")
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
         times = np.minimum(times, self.duration)
         values: Array = self._splines[derivative](times / self.duration)
         return values / self.duration**derivative if derivative else values
