@@ -19,7 +19,7 @@ FLOORS: dict[str, Set[str]] = {
     "display": {"errors"},
     "closed_form": {"closed_form"},
     "programs": {"errors", "programs"},
-    "mechanics": {"errors", "mechanics"},
+    "mechanics": {"errors", "display", "mechanics"},
     "planning": {"errors", "display", "mechanics", "closed_form", "programs", "planning"},
     "verification": {"mechanics"},  # the checker shares no code with the planner
     "files": {"errors", "mechanics", "closed_form", "programs", "planning", "verification", "files"},

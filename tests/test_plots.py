@@ -1,11 +1,13 @@
 """Pictures show the numbers of the values they draw, on the axes they are given."""
 
+import re
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.patches import FancyArrowPatch, Wedge
 from mpl_toolkits.mplot3d import Axes3D
 
@@ -536,6 +538,108 @@ def test_contacts_keep_their_colour_in_every_figure(removal):
     for name, colour in rest.items():
         (key,) = [line for line in loop.get_legend().get_lines() if line.get_label() == name]
         assert key.get_color() == colour
+
+
+# -- names, limits, units -----------------------------------------------------------------------------
+
+
+def test_names_are_shown_letter_by_letter():
+    names = ("$x$", "_hidden", "a_1$")
+    grasp = rg.Grasp(
+        rg.Contact(c.position, c.normal, c.friction, name=name)
+        for c, name in zip(paper_removal().grasp, names, strict=True)
+    )
+    drawn = plots.figures(rg.plan_removal(grasp, 2, load=rg.Wrench([-1.5, -3.5])))
+    for stem, count in (("magnitudes", 3), ("wrench_loop", 2), ("wrench_paths", 3), ("locus", 2)):
+        ax = drawn[stem].axes[0]
+        legends = [artist for artist in ax.get_children() if isinstance(artist, Legend)]
+        shown = [seen(text) for legend in legends for text in legend.get_texts()]
+        assert [name for name in shown if name in names] == list(names[:count]), stem
+    for stem in ("object", "states", "iso_torque"):
+        shown = {seen(text) for ax in drawn[stem].axes for text in ax.texts}
+        assert set(names) <= shown, stem
+
+
+def seen(text):
+    """What matplotlib draws of a text, without the room around it."""
+    drawn, is_mathematics = text._preprocess_math(text.get_text())
+    return None if is_mathematics else drawn.strip()
+
+
+def test_a_finger_that_is_away_is_drawn_as_a_place(removal):
+    for transition, away in ((removal, 1), (removal.reversed(), 0)):
+        axes = plots.states_figure(transition).axes
+        for i, ax in enumerate(axes):
+            assert len(by_gid(ax, "absent P3")) == (i == away)
+            assert len(by_gid(ax, "cone P3")) == (i != away)
+            assert len(by_gid(ax, "cone P1")) == 1
+        (place,) = by_gid(axes[away], "absent P3")
+        np.testing.assert_allclose(np.ravel(place.get_data()), [0, 8])
+
+
+def test_the_locus_is_hatched_where_a_force_exceeds_its_limit(locus):
+    lo, hi = locus.interval
+    ax = plots.plot_locus(locus, force_limits=(3.2, np.inf))
+    (line,) = by_gid(ax, "force limit")
+    at = line.get_xdata()[0]
+    assert lo < at < hi
+    assert locus.state(at).magnitudes[0] == pytest.approx(3.2)
+    (span,) = by_gid(ax, "over limit")
+    start, end = span.get_x(), span.get_x() + span.get_width()
+    assert (start, end) == pytest.approx((at, hi))
+    assert locus.state(end).magnitudes[0] > 3.2
+    (at,) = limit_lines(plots.plot_locus(locus, force_limits=(np.inf, 1.25)))
+    assert locus.state(at).magnitudes[1] == pytest.approx(1.25)
+    assert not by_gid(plots.plot_locus(locus), "over limit")
+    assert by_gid(plots.plot_locus(locus, force_limits=(0.1, 0.1)), "over limit")  # none holds: all of it
+    with pytest.raises(rg.InvalidInput, match="force_limits must be two numbers"):
+        plots.plot_locus(locus, force_limits=(1.0,))
+
+
+def limit_lines(ax):
+    return [line.get_xdata()[0] for line in by_gid(ax, "force limit")]
+
+
+def test_limits_come_from_the_choice_or_from_the_contacts():
+    addition = box_addition()
+    (at,) = limit_lines(plots.figures(addition)["locus"].axes[0])
+    limits = addition.record.choices[0].force_limits
+    rest = addition.start.without("middle")
+    locus = rg.EquilibriumLocus(rest.grasp, rest.load)
+    assert max(locus.state(at).magnitudes / limits[:2]) == pytest.approx(1)
+    best = locus.best("angle", max_force=20.0)
+    (at,) = limit_lines(plots.plot_locus(locus, chosen=best))
+    assert max(locus.state(at).magnitudes) == pytest.approx(20)
+    own = rg.Grasp(rg.Contact(c.position, c.normal, c.friction, max_force=15.0) for c in rest.grasp)
+    (at,) = limit_lines(plots.plot_locus(rg.EquilibriumLocus(own, rest.load)))
+    assert max(locus.state(at).magnitudes) == pytest.approx(15)
+
+
+def test_labels_name_the_units_they_are_told(removal, locus):
+    units = plots.Units("mm", "kN", "ms")
+    for function, value in (drawable(removal, locus) | drawable_in_space(removal, locus)).items():
+        ax = function(value, units=units)
+        labels = [ax.get_xlabel(), ax.get_ylabel(), *([ax.get_zlabel()] if isinstance(ax, Axes3D) else [])]
+        named = {label.split("[")[1].rstrip("]") for label in labels}
+        assert named <= {"mm", "kN", "ms", "kN mm", "deg", "-"}, function
+    ax = plots.plot_iso_torque(removal.grasp["P1"], torques=[3.0], units=units)
+    assert "3 kN mm" in {text.get_text() for text in ax.texts}
+    for figure in plots.figures(removal, units=units).values():
+        for ax in figure.axes:
+            assert not re.search(r"\[(N|m|s|N m)\]", ax.get_xlabel() + ax.get_ylabel())
+
+
+@pytest.mark.parametrize("build", TRANSITIONS.values(), ids=TRANSITIONS)
+def test_no_torque_is_written_beyond_its_panel(build):
+    figure = plots.iso_torque_figure(build())
+    figure.draw_without_rendering()
+    for ax in figure.axes:
+        frame = ax.get_window_extent()
+        for text in ax.texts:
+            if text.get_text().endswith("N m"):
+                box = text.get_window_extent()
+                assert frame.x0 <= box.x0 <= box.x1 <= frame.x1, text
+                assert frame.y0 <= box.y0 <= box.y1 <= frame.y1, text
 
 
 # -- all figures -------------------------------------------------------------------------------------

@@ -1,14 +1,17 @@
 """Why a grasp cannot hold: the motion along which the object escapes (a Farkas certificate)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import hypot, inf, isqrt
+from math import hypot, inf
 
 import numpy as np
 
+from regrasp.display import Pictured
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.opposition import dot, exact, oppositions
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mechanics.wrench import Wrench
 
@@ -17,10 +20,11 @@ NEVER = 1e9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EscapeTwist(ArrayValue):
+class EscapeTwist(ArrayValue, Pictured):
     """A small motion of the object on which the load does more work than the contacts can oppose.
 
-    twist: (3,) in the plane, (6,) in space: velocity of the centre of mass, then angular velocity.
+    twist: (3,) in the plane, (6,) in space: velocity of the centre of mass, then angular velocity; of any
+    length but zero, so work along it is best read per radian or per metre, as ``amount`` measures it.
     frictions, limits: (n,) friction coefficients and force limits [N] it was found for.
 
     Were G f = -w_ext, then twist . G f = -twist . w_ext < 0; but finger i moves with v_i = v + omega x r_i
@@ -34,8 +38,12 @@ class EscapeTwist(ArrayValue):
     frictions: tuple[float, ...]
     limits: tuple[float, ...]
 
+    _drawn_by = "regrasp.plots.escape:escape_png"
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "twist", array(self.twist, "twist", self.load.vector.shape))
+        if not self.twist.any():
+            raise InvalidInput("an escape twist must not be zero: the object does not move")
 
     @cached_property
     def velocities(self) -> Array:
@@ -46,7 +54,7 @@ class EscapeTwist(ArrayValue):
     @cached_property
     def load_power(self) -> float:
         """Work of the load along the motion, twist . w_ext."""
-        return float(_dot(_exact(self.twist), _exact(self.load.vector)))
+        return float(dot(exact(self.twist), exact(self.load.vector)))
 
     @cached_property
     def oppositions(self) -> tuple[float, ...]:
@@ -56,7 +64,7 @@ class EscapeTwist(ArrayValue):
     @cached_property
     def least_force(self) -> float:
         """Forces that hold the load would have to sum to at least this [N]; infinite when none can hold."""
-        power = _dot(_exact(self.twist), _exact(self.load.vector))
+        power = dot(exact(self.twist), exact(self.load.vector))
         free = Fraction(0)
         for opposition, limit in zip(self._oppositions, self.limits, strict=True):
             if limit == inf:
@@ -70,17 +78,53 @@ class EscapeTwist(ArrayValue):
     @property
     def is_proof(self) -> bool:
         """Whether no forces within cones and limits, and below 1e9 times the load, balance the load."""
-        load = hypot(*self.load.force) + hypot(*self.load.torque) / (self.grasp.size or 1.0)
-        return self.least_force > NEVER * load
+        return self.least_force > self._never
+
+    @cached_property
+    def helpless(self) -> tuple[bool, ...]:
+        """For each contact whether no force in its cone opposes the motion, but for rounding.
+
+        An opposition is rounding where even 1e9 times the load would do less work than the load does.
+        """
+        return tuple(o == 0 or o * self._never < self.load_power for o in self.oppositions)
+
+    @property
+    def turns(self) -> bool:
+        """Whether the motion turns the object; otherwise it is a translation."""
+        d = self.grasp.dimension
+        velocity, spin = hypot(*self.twist[:d]), hypot(*self.twist[d:])
+        return spin > 0 and spin * self.grasp.size >= 1e-9 * velocity
+
+    @property
+    def amount(self) -> float:
+        """How far the motion goes: the angle where it turns [rad], else the distance [m]."""
+        d = self.grasp.dimension
+        return hypot(*(self.twist[d:] if self.turns else self.twist[:d]))
+
+    @property
+    def drive(self) -> float:
+        """Work of the load per ``amount``: its torque about the centre [N m], or its force along [N]."""
+        return self.load_power / self.amount
+
+    @cached_property
+    def resistances(self) -> tuple[float, ...]:
+        """For each contact the most work per ``amount`` it can do against the motion: limit times opposition.
+
+        0 for a helpless contact, infinite for another one without force limit; [N m] or [N] as ``drive``.
+        """
+        return tuple(
+            0.0 if none else limit * opposition / self.amount
+            for none, limit, opposition in zip(self.helpless, self.limits, self.oppositions, strict=True)
+        )
 
     @property
     def centre(self) -> Array | None:
         """Centre of rotation (2,) [m] in the plane; None where the motion is a translation, or in space."""
         if self.grasp.dimension == 3:
             return None
-        vx, vy, omega = self.twist
-        if omega == 0 or abs(omega) * self.grasp.size < 1e-9 * hypot(vx, vy):
+        if not self.turns:
             return None
+        vx, vy, omega = self.twist
         return np.array([-vy / omega, vx / omega]) + 0.0  # -0 reads as 0
 
     def __str__(self) -> str:
@@ -93,50 +137,43 @@ class EscapeTwist(ArrayValue):
         turn = "clockwise" if spin[0] < 0 else "counter-clockwise"
         return f"turning {turn} about {numbers(_without_noise(self.centre, self.grasp.size))}"
 
+    @property
+    def explanation(self) -> str:
+        """Why the load wins, in a sentence: its work along the motion beside what each contact can oppose.
+
+        Work is per radian where the motion turns the object [N m], per metre where it does not [N], so the
+        sentence does not depend on the length of the twist. N and m stand for the units of the input.
+        """
+        per, unit, arm = ("radian", "N m", " m") if self.turns else ("metre", "N", "")
+        parts = [f"per {per} the load does {self.drive:.4g} {unit} of work"]
+        for name, limit, most in zip(self.grasp.names, self.limits, self.resistances, strict=True):
+            if most == 0:
+                parts.append(f"{name} cannot oppose it")
+            elif most == inf:
+                parts.append(f"{name} can oppose it without limit")
+            else:
+                lever = f"{limit:.4g} N times {most / limit:.4g}{arm}"
+                parts.append(f"{name} can oppose at most {most:.4g} {unit} ({lever})")
+        if not self.is_proof:
+            parts.append("that is enough against this motion, which proves nothing")
+        elif any(self.resistances):
+            parts.append(f"together at most {sum(self.resistances):.4g} {unit}, too little")
+        return f"{replace(self, twist=self.twist / self.amount)}: {'; '.join(parts)}"
+
     def __repr__(self) -> str:
         return f"EscapeTwist({self})"
 
+    @property
+    def _never(self) -> float:
+        """A force [N] so large beside the load that it comes from rounding only."""
+        load = hypot(*self.load.force) + hypot(*self.load.torque) / (self.grasp.size or 1.0)
+        return NEVER * load
+
     @cached_property
     def _oppositions(self) -> tuple[Fraction, ...]:
-        """Upper bounds, exact rationals, zero exactly where a contact cannot oppose at all.
-
-        Pushing with 1 N against v = v_n n + v_t t does the work (mu |v_t| - v_n) / sqrt(1 + mu^2) on the
-        nearer edge of the cone, or |v| where -v lies inside the cone. At most |v_n| + |v_t| mu, scaled by n.
-        """
-        d, twist = self.grasp.dimension, _exact(self.twist)
-        columns = [_exact(column) for column in self.grasp.matrix.T]
-        result = []
-        for i, (normal, mu_float) in enumerate(zip(self.grasp.normals, self.frictions, strict=True)):
-            v = [_dot(twist, column) for column in columns[i * d : i * d + d]]
-            n, mu = _exact(normal), Fraction(mu_float)
-            nn, vn, vv = _dot(n, n), _dot(v, n), _dot(v, v)
-            tangential = vv * nn - vn * vn  # |v_t|^2 |n|^2
-            if vn <= 0 and tangential <= mu * mu * vn * vn:
-                result.append(_sqrt_above(vv))
-            elif vn >= 0 and mu * mu * tangential <= vn * vn:
-                result.append(Fraction(0))
-            else:
-                result.append((mu * _sqrt_above(tangential) - vn) * _sqrt_above(1 / (nn * (1 + mu * mu))))
-        return tuple(result)
+        return oppositions(self.grasp, self.frictions, self.twist)
 
 
 def _without_noise(values: Array, scale: float) -> Array:
     """For printing: zero where a value is rounding beside ``scale``."""
     return np.where(abs(values) < 1e-9 * scale, 0.0, values)
-
-
-def _exact(values: Array) -> list[Fraction]:
-    return [Fraction(value) for value in values.tolist()]
-
-
-def _dot(a: list[Fraction], b: list[Fraction]) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), start=Fraction(0))
-
-
-def _sqrt_above(value: Fraction) -> Fraction:
-    """An upper bound of the square root, tight to 2^-100 of it; exactly 0 for 0."""
-    if value == 0:
-        return Fraction(0)
-    shift = max(0, 200 - (value.numerator.bit_length() - value.denominator.bit_length()))
-    shift += shift % 2
-    return Fraction(isqrt((value.numerator << shift) // value.denominator) + 1, 1 << (shift // 2))

@@ -1,10 +1,11 @@
 """Pictures of planar grasps and transitions. The only package that imports matplotlib.
 
 Every function takes a value and, if wanted, the axes to draw on, and returns the axes; it asks the value for
-what it draws. New axes belong to a figure of their own (``ax.figure``), as wide as a column. Units are named
-N, m and s; any consistent units may be meant by them.
+what it draws. New axes belong to a figure of their own (``ax.figure``), as wide as a column. Labels say
+N, m and s unless ``units`` names others; numbers are never converted.
 """
 
+from regrasp.plots.escape import plot_escape
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
 from regrasp.plots.iso_torque import plot_iso_torque
 from regrasp.plots.locus import plot_locus
@@ -19,14 +20,18 @@ from regrasp.plots.overview import (
 )
 from regrasp.plots.style import contact_colours
 from regrasp.plots.timing import plot_scaling
+from regrasp.plots.units import SI, Units
 from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
 from regrasp.plots.wrench_space import plot_locus_segment, plot_wrench_cone, plot_wrench_plane
 
 __all__ = [
+    "SI",
+    "Units",
     "contact_colours",
     "figures",
     "iso_torque_figure",
     "plot_angles",
+    "plot_escape",
     "plot_iso_torque",
     "plot_locus",
     "plot_locus_segment",

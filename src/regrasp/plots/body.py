@@ -1,5 +1,6 @@
 """The object in the plane: its surface at the contacts, normals, friction cones and centre of mass."""
 
+from collections.abc import Collection, Mapping
 from math import atan2, degrees
 
 import numpy as np
@@ -7,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon, Wedge
 
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.plots.style import GREY, INK, PALE, Colours, note
+from regrasp.plots.style import GREY, INK, PALE, Colours, literal, note
 
 
 def extent(grasp: Grasp) -> float:
@@ -17,8 +19,19 @@ def extent(grasp: Grasp) -> float:
     return float(np.ptp(points, axis=0).max()) or 1.0
 
 
-def draw_body(ax: Axes, grasp: Grasp, colours: Colours, cone_length: float) -> None:
-    """Surface, normals and cones of length ``cone_length`` [m] at the contacts, and the centre of mass."""
+def draw_body(
+    ax: Axes,
+    grasp: Grasp,
+    colours: Colours,
+    cone_length: float,
+    absent: Collection[str] = (),
+    labels: Mapping[str, str] | None = None,
+) -> None:
+    """Surface, normals and cones of length ``cone_length`` [m] at the contacts, and the centre of mass.
+
+    absent: names of contacts of which only the surface and an open grey circle are drawn.
+    labels: shown in place of the names, by name.
+    """
     size = extent(grasp)
     surface = _surface(grasp, 0.09 * size)
     if _convex(surface.reshape(-1, 2)):
@@ -27,19 +40,31 @@ def draw_body(ax: Axes, grasp: Grasp, colours: Colours, cone_length: float) -> N
     for ends in surface:
         ax.plot(*ends.T, color=INK, linewidth=1.2, solid_capstyle="butt", zorder=2)
     for name, contact in zip(grasp.names, grasp, strict=True):
-        r, n, colour = contact.position, contact.normal, colours[name]
-        middle, half = degrees(atan2(n[1], n[0])), degrees(contact.half_angle)
-        cone = Wedge(tuple(r), cone_length, middle - half, middle + half, zorder=1, gid=f"cone {name}")
-        cone.set(facecolor=colour, edgecolor=colour, alpha=0.2, linewidth=0.6)
-        ax.add_patch(cone)
+        r, n = contact.position, contact.normal
+        label = literal(name) if labels is None else labels[name]
         ax.update_datalim([r + cone_length * n])
-        ax.plot(*np.array([r, r + cone_length * n]).T, color=GREY, linewidth=0.8, linestyle=":", zorder=2)
-        ax.plot(*r, "o", color=colour, markersize=3.5, zorder=4)
-        note(ax, name, r, -n, color=colour)
-        room = np.array([0.06 + 0.025 * len(name), 0.12]) * size  # for the name
+        if name in absent:
+            ax.plot(
+                *r, "o", color="white", markeredgecolor=GREY, markersize=4.5, zorder=4, gid=f"absent {name}"
+            )
+            note(ax, f"({label})", r, -n, color=GREY)
+        else:
+            _cone(ax, contact, cone_length, colours[name], gid=f"cone {name}")
+            ax.plot(*r, "o", color=colours[name], markersize=3.5, zorder=4)
+            note(ax, label, r, -n, color=colours[name])
+        room = np.array([0.06 + 0.033 * max(map(len, label.split("\n"))), 0.12]) * size  # for the name
         ax.update_datalim([r - room * n])
     ax.plot(0, 0, marker="o", color="white", markeredgecolor=INK, markersize=5, zorder=4)
     ax.plot(0, 0, marker="+", color=INK, markersize=5, markeredgewidth=0.7, zorder=5)
+
+
+def _cone(ax: Axes, contact: Contact, length: float, colour: str, gid: str) -> None:
+    r, n = contact.position, contact.normal
+    middle, half = degrees(atan2(n[1], n[0])), degrees(contact.half_angle)
+    cone = Wedge(tuple(r), length, middle - half, middle + half, zorder=1, gid=gid)
+    cone.set(facecolor=colour, edgecolor=colour, alpha=0.2, linewidth=0.6)
+    ax.add_patch(cone)
+    ax.plot(*np.array([r, r + length * n]).T, color=GREY, linewidth=0.8, linestyle=":", zorder=2)
 
 
 def _surface(grasp: Grasp, half: float) -> Array:

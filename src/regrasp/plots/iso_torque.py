@@ -1,5 +1,7 @@
 """Iso-torque lines of a contact (Fig. 2)."""
 
+import re
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Wedge
@@ -17,10 +19,12 @@ from regrasp.plots.style import (
     SMALL,
     axes_or_new,
     label_axis,
+    literal,
     note,
     quantity,
     refuse_space,
 )
+from regrasp.plots.units import SI, Units
 
 
 def plot_iso_torque(
@@ -30,6 +34,7 @@ def plot_iso_torque(
     torques: ArrayLike | None = None,
     force: ArrayLike | None = None,
     colour: str = PALETTE[0],
+    units: Units = SI,
 ) -> Axes:
     """Lines L_i of forces that make one torque, in the plane of forces at the contact (Fig. 2).
 
@@ -58,9 +63,9 @@ def plot_iso_torque(
     )
     ends = _ends(contact, reach)
     for line in lines:
-        _draw_line(ax, line, ends, colour, gid="line", color=GREY)
+        _draw_line(ax, line, ends, colour, units, gid="line", color=GREY)
     if own is not None and shown is not None:
-        _draw_line(ax, own, ends, colour, gid="line of force", color=INK)
+        _draw_line(ax, own, ends, colour, units, gid="line of force", color=INK)
         arrow(ax, (0, 0), shown, gid="force", color=colour, zorder=4)
         note(ax, "$f_i$", 0.7 * shown, np.sign(own.distance or 1.0) * _left(own.direction), color=colour)
     marked = own or max(lines, key=lambda line: abs(line.distance), default=None)
@@ -70,8 +75,8 @@ def plot_iso_torque(
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
     ax.autoscale_view()
-    label_axis(ax.xaxis, "$f_x$", "N", reach)
-    label_axis(ax.yaxis, "$f_y$", "N", reach)
+    label_axis(ax.xaxis, "$f_x$", units.force, reach)
+    label_axis(ax.yaxis, "$f_y$", units.force, reach)
     return ax
 
 
@@ -116,12 +121,12 @@ def _left(direction: Array) -> Array:
 
 
 def _draw_line(
-    ax: Axes, line: IsoTorqueLine, ends: tuple[float, float], colour: str, gid: str, color: str
+    ax: Axes, line: IsoTorqueLine, ends: tuple[float, float], colour: str, units: Units, gid: str, color: str
 ) -> None:
     """A line with its torque at the end; bold where forces on it are inside the friction cone."""
     first, last = (line.force + s * line.direction for s in ends)
     ax.plot(*np.array([first, last]).T, color=color, linewidth=0.8, gid=gid)
-    _label(ax, line.torque, last, last - first, color)
+    _label(ax, quantity(line.torque, units.torque, 3), last, last - first, color)
     inside = line.friction_segment
     if inside is not None:
         infinite = ~np.isfinite(inside).all(axis=1)
@@ -135,13 +140,14 @@ def _draw_line(
         ax.plot(*bold.T, color=color if gid != "line" else colour, linewidth=1.8, gid="inside the cone")
 
 
-def _label(ax: Axes, torque: float, at: Array, along: Array, color: str) -> None:
+def _label(ax: Axes, torque: str, at: Array, along: Array, color: str) -> None:
     """The torque written along the line, beyond its end, so that near lines keep their labels apart."""
     x, y = along / np.hypot(*along)
-    ax.update_datalim([at + 0.42 * along])  # room for the text
+    letters = len(re.sub(r"[$^{}]|cdot", "", torque))
+    ax.update_datalim([at + 0.055 * letters * along])  # room for the text
     leftwards = x < -1e-9 or (abs(x) <= 1e-9 and y < 0)  # turned about, to be read from below or the right
     ax.annotate(
-        quantity(torque, "N m"),
+        torque,
         tuple(at),
         (3 * x, 3 * y),
         textcoords="offset points",
@@ -164,7 +170,7 @@ def _draw_arm(ax: Axes, contact: Contact, reach: float, line: IsoTorqueLine | No
     note(ax, "CM", tail, side * _left(direction), gap=6)
     ax.plot(*tail, "o", color="white", markeredgecolor=INK, markersize=5, zorder=4)
     ax.plot(0, 0, "o", color=INK, markersize=3.5, zorder=5)
-    note(ax, contact.name or "$P_i$", (0, 0), side * _left(direction), gap=6)
+    note(ax, literal(contact.name) if contact.name else "$P_i$", (0, 0), side * _left(direction), gap=6)
 
 
 def _draw_distance(ax: Axes, line: IsoTorqueLine, along: float) -> None:

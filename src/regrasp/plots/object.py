@@ -1,5 +1,7 @@
 """The object with its contacts, friction cones and forces (Fig. 1 and 10)."""
 
+from collections.abc import Collection
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
@@ -7,10 +9,10 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from regrasp.mechanics.state import GraspState
-from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.transition import Transition
 from regrasp.plots.arrows import arrow
 from regrasp.plots.body import draw_body, extent
+from regrasp.plots.load import draw_load
 from regrasp.plots.style import (
     INK,
     SMALL,
@@ -19,11 +21,11 @@ from regrasp.plots.style import (
     contact_colours,
     label_axis,
     legend,
-    note,
     quantity,
     refuse_space,
     round_below,
 )
+from regrasp.plots.units import SI, Units
 
 # Lengths of the longest force and of the friction cones, as fractions of the object's extent.
 _LONGEST, _CONE = 0.45, 0.36
@@ -35,6 +37,8 @@ def plot_state(
     *,
     force_scale: float | None = None,
     colours: Colours | None = None,
+    absent: Collection[str] = (),
+    units: Units = SI,
 ) -> Axes:
     """The object with the finger forces and the load of one state (Fig. 1).
 
@@ -45,19 +49,24 @@ def plot_state(
 
     force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's extent.
     colours: of the contacts by name; by their place in the grasp if not given.
+    absent: names of contacts whose finger is not there in this state: an open circle marks the place.
     Raises ``InvalidInput`` for a grasp in space.
     """
     refuse_space(state.grasp.dimension)
     ax = axes_or_new(ax, height=3.4)
     colours = contact_colours(state.grasp) if colours is None else colours
     scale = force_scale_of(state) if force_scale is None else force_scale
-    _scene(ax, state, scale, colours)
+    _scene(ax, state, scale, colours, units, absent)
     _forces(ax, state, scale, colours, "force")
     return ax
 
 
 def plot_transition(
-    transition: Transition, ax: Axes | None = None, *, force_scale: float | None = None
+    transition: Transition,
+    ax: Axes | None = None,
+    *,
+    force_scale: float | None = None,
+    units: Units = SI,
 ) -> Axes:
     """The forces at both states of a transition and the path of each force head between them (Fig. 10).
 
@@ -67,7 +76,7 @@ def plot_transition(
     ax = axes_or_new(ax, height=3.4)
     colours = contact_colours(transition.grasp)
     scale = force_scale_of(transition.start, transition.end) if force_scale is None else force_scale
-    _scene(ax, transition.start, scale, colours)
+    _scene(ax, transition.start, scale, colours, units)
     _forces(ax, transition.start, scale, colours, "start force")
     _forces(
         ax,
@@ -105,21 +114,18 @@ def force_scale_of(*states: GraspState) -> float:
     return _LONGEST * extent(states[0].grasp) / (longest or 1.0)
 
 
-def _scene(ax: Axes, state: GraspState, scale: float, colours: Colours) -> None:
+def _scene(
+    ax: Axes, state: GraspState, scale: float, colours: Colours, units: Units, absent: Collection[str] = ()
+) -> None:
     """Everything but the finger forces."""
     size = extent(state.grasp)
-    draw_body(ax, state.grasp, colours, _CONE * size)
-    if state.load.force.any():
-        head = scale * state.load.force
-        arrow(ax, (0, 0), head, gid="load", color=INK, zorder=3)
-        note(ax, r"$f_\mathrm{ext}$", head, head)
-    if state.load.torque[0]:
-        _turn(ax, state.load, 0.1 * size)
-    _scale_key(ax, scale, size)
+    draw_body(ax, state.grasp, colours, _CONE * size, absent)
+    draw_load(ax, state.load, scale, 0.1 * size)
+    _scale_key(ax, scale, size, units)
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
-    label_axis(ax.xaxis, "$x$", "m", size)
-    label_axis(ax.yaxis, "$y$", "m", size)
+    label_axis(ax.xaxis, "$x$", units.length, size)
+    label_axis(ax.yaxis, "$y$", units.length, size)
 
 
 def _forces(ax: Axes, state: GraspState, scale: float, colours: Colours, what: str, **look: object) -> None:
@@ -135,26 +141,14 @@ def _forces(ax: Axes, state: GraspState, scale: float, colours: Colours, what: s
             )
 
 
-def _turn(ax: Axes, load: Wrench, radius: float) -> None:
-    """A load torque: an arrow around the centre of mass in its sense, open towards the load's force."""
-    towards = np.arctan2(load.force[1], load.force[0])
-    sense = 1 if load.torque[0] > 0 else -1
-    angles = towards + sense * np.linspace(np.pi / 3, 5 * np.pi / 3, 40)
-    x, y = radius * np.cos(angles), radius * np.sin(angles)
-    ax.plot(x[:-3], y[:-3], color=INK, linewidth=1.2, zorder=3)
-    arrow(ax, (x[-4], y[-4]), (x[-1], y[-1]), gid="load torque", color=INK, zorder=3)
-    opposite = -np.array([np.cos(towards), np.sin(towards)])
-    note(ax, r"$\tau_\mathrm{ext}$", radius * opposite, opposite)
-
-
-def _scale_key(ax: Axes, scale: float, size: float) -> None:
+def _scale_key(ax: Axes, scale: float, size: float, units: Units) -> None:
     """A bar above the axes, at the right, as long as a round force."""
     force = round_below(0.3 * size / scale)
     ax.add_artist(
         AnchoredSizeBar(
             ax.transData,
             scale * force,
-            quantity(force, "N"),
+            quantity(force, units.force),
             "lower right",
             pad=0,
             borderpad=0.2,

@@ -19,10 +19,11 @@ from regrasp.plots.style import (
     tidy,
 )
 from regrasp.plots.timing import plot_scaling
+from regrasp.plots.units import SI, Units
 from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
 
 
-def transition_figure(transition: Transition) -> Figure:
+def transition_figure(transition: Transition, *, units: Units = SI) -> Figure:
     """The object with its force paths, magnitudes, angles and T(t), two by two.
 
     Raises ``InvalidInput`` for a grasp in space.
@@ -30,10 +31,10 @@ def transition_figure(transition: Transition) -> Figure:
     refuse_space(transition.grasp.dimension)
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
-    plot_transition(transition, tidy(figure.add_subplot(grid[0, 0])))
-    plot_magnitudes(transition, tidy(figure.add_subplot(grid[0, 1])))
-    plot_scaling(transition.scaling, tidy(figure.add_subplot(grid[1, 0])))
-    plot_angles(transition, tidy(figure.add_subplot(grid[1, 1])))
+    plot_transition(transition, tidy(figure.add_subplot(grid[0, 0])), units=units)
+    plot_magnitudes(transition, tidy(figure.add_subplot(grid[0, 1])), units=units)
+    plot_scaling(transition.scaling, tidy(figure.add_subplot(grid[1, 0])), units=units)
+    plot_angles(transition, tidy(figure.add_subplot(grid[1, 1])), units=units)
     return figure
 
 
@@ -49,7 +50,7 @@ def png(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
-def figures(transition: Transition) -> dict[str, Figure]:
+def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
     """Every figure of a transition by file stem.
 
     ``overview``, ``states``, ``object``, ``iso_torque``, ``wrench_loop``, ``wrench_paths``, ``time_scaling``,
@@ -61,37 +62,46 @@ def figures(transition: Transition) -> dict[str, Figure]:
     rest = fewer.without(transition.contact)
     colours = contact_colours(transition.grasp)
     drawn = {
-        "overview": transition_figure(transition),
-        "states": states_figure(transition),
-        "object": plot_transition(transition).figure,
-        "iso_torque": iso_torque_figure(transition),
-        "wrench_loop": plot_wrench_loop(rest, colours=colours).figure,
-        "wrench_paths": plot_wrench_paths(transition).figure,
-        "time_scaling": plot_scaling(transition.scaling, control=True).figure,
-        "magnitudes": plot_magnitudes(transition).figure,
-        "angles": plot_angles(transition).figure,
-        "margins": plot_margins(transition).figure,
+        "overview": transition_figure(transition, units=units),
+        "states": states_figure(transition, units=units),
+        "object": plot_transition(transition, units=units).figure,
+        "iso_torque": iso_torque_figure(transition, units=units),
+        "wrench_loop": plot_wrench_loop(rest, colours=colours, units=units).figure,
+        "wrench_paths": plot_wrench_paths(transition, units=units).figure,
+        "time_scaling": plot_scaling(transition.scaling, control=True, units=units).figure,
+        "magnitudes": plot_magnitudes(transition, units=units).figure,
+        "angles": plot_angles(transition, units=units).figure,
+        "margins": plot_margins(transition, units=units).figure,
     }
     if len(rest.grasp) == 2:
         locus = EquilibriumLocus(rest.grasp, rest.load)
+        objective, limits = _chosen_for(transition)
         drawn["locus"] = plot_locus(
-            locus, objective=_objective(transition), chosen=rest, colours=colours
+            locus,
+            objective=objective,
+            chosen=rest,
+            colours=colours,
+            force_limits=limits,
+            units=units,
         ).figure
     return drawn
 
 
-def states_figure(transition: Transition) -> Figure:
-    """Both states side by side at one scale of force (Fig. 1)."""
+def states_figure(transition: Transition, *, units: Units = SI) -> Figure:
+    """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not."""
     refuse_space(transition.grasp.dimension)
     figure = new_figure(2 * WIDTH, 3.4)
     scale = force_scale_of(transition.start, transition.end)
+    alone = "end" if transition.kind == "removal" else "start"
     for i, (title, state) in enumerate((("start", transition.start), ("end", transition.end))):
-        ax = plot_state(state, tidy(figure.add_subplot(1, 2, i + 1)), force_scale=scale)
+        absent = (transition.contact,) if title == alone else ()
+        ax = tidy(figure.add_subplot(1, 2, i + 1))
+        plot_state(state, ax, force_scale=scale, absent=absent, units=units)
         ax.set_title(title, fontsize=TEXT, loc="left")
     return figure
 
 
-def iso_torque_figure(transition: Transition) -> Figure:
+def iso_torque_figure(transition: Transition, *, units: Units = SI) -> Figure:
     """Iso-torque lines of every contact, with its forces at the state of all fingers (Fig. 2)."""
     refuse_space(transition.grasp.dimension)
     state = transition.start if transition.kind == "removal" else transition.end
@@ -104,11 +114,12 @@ def iso_torque_figure(transition: Transition) -> Figure:
     figure = new_figure(0.75 * WIDTH * columns, 2.6 * rows)
     for i, name in enumerate(shown):
         ax = tidy(figure.add_subplot(rows, columns, i + 1))
-        plot_iso_torque(state.grasp[name], ax, force=state.force(name), colour=colours[name])
+        plot_iso_torque(state.grasp[name], ax, force=state.force(name), colour=colours[name], units=units)
     return figure
 
 
-def _objective(transition: Transition) -> str:
-    """What the state of fewer fingers was chosen for; ``angle`` where it was given."""
+def _chosen_for(transition: Transition) -> tuple[str, tuple[float, ...] | None]:
+    """Objective and force limits of the state of fewer fingers; ``angle`` and None where it was given."""
     end = "end" if transition.kind == "removal" else "start"
-    return next((c.objective for c in transition.record.choices if c.end == end), "angle")
+    chosen = next((c for c in transition.record.choices if c.end == end), None)
+    return ("angle", None) if chosen is None else (chosen.objective, chosen.force_limits)

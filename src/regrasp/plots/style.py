@@ -85,11 +85,17 @@ def short(value: float) -> str:
     return f"{value + 0.0:.4g}".replace("-", "\N{MINUS SIGN}")
 
 
-def quantity(value: float, unit: str) -> str:
+def quantity(value: float, unit: str, digits: int = 4) -> str:
     """A number and its unit, a tiny or huge number with a power of ten."""
-    mantissa, _, power = f"{value:.4g}".partition("e")
+    mantissa, _, power = f"{value:.{digits}g}".partition("e")
     factor = rf"$\cdot 10^{{{int(power)}}}$" if power else ""
     return f"{short(float(mantissa))}{factor} {unit}"
+
+
+def literal(name: str) -> str:
+    """A name to be shown letter by letter: no ``$`` opens mathematics, no ``_`` hides it from a legend."""
+    shown = name.replace("$", r"\$")
+    return f" {shown}" if shown.startswith("_") else shown
 
 
 def note(ax: Axes, text: str, at: ArrayLike, towards: ArrayLike, *, gap: float = 4.0, **look: Any) -> None:

@@ -5,11 +5,14 @@ from matplotlib.axes import Axes
 
 from regrasp.planning.timing import TimeScaling
 from regrasp.plots.style import GREY, PALETTE, axes_or_new, label_axis, legend
+from regrasp.plots.units import SI, Units
 
 _SAMPLES = 201
 
 
-def plot_scaling(scaling: TimeScaling, ax: Axes | None = None, *, control: bool = False) -> Axes:
+def plot_scaling(
+    scaling: TimeScaling, ax: Axes | None = None, *, control: bool = False, units: Units = SI
+) -> Axes:
     """T(t) over the duration (Fig. 8), with its control values if ``control``."""
     ax = axes_or_new(ax)
     t = np.linspace(0, scaling.duration, _SAMPLES)
@@ -27,6 +30,6 @@ def plot_scaling(scaling: TimeScaling, ax: Axes | None = None, *, control: bool 
         )
         legend(ax)
     ax.set_xlim(0, scaling.duration)
-    label_axis(ax.xaxis, "$t$", "s", scaling.duration)
+    label_axis(ax.xaxis, "$t$", units.time, scaling.duration)
     label_axis(ax.yaxis, "$T$", "-", 1.0)
     return ax

@@ -14,14 +14,20 @@ from regrasp.planning.locus import EquilibriumLocus
 from regrasp.planning.transition import Transition
 from regrasp.plots.arrows import arrow3d
 from regrasp.plots.locus import shown_interval
-from regrasp.plots.style import INK, SMALL, Colours, contact_colours, legend, refuse_space
+from regrasp.plots.style import INK, SMALL, Colours, contact_colours, legend, literal, refuse_space
+from regrasp.plots.units import SI, Units
 from regrasp.plots.wrench_space import cone_corners, finish, plot_locus_segment, plot_wrench_cone, wrench_axes
 
 _DASHED: dict[str, Any] = {"linestyle": (0, (3, 1.5)), "linewidth": 1.0}
 
 
 def plot_wrench_loop(
-    state: GraspState, ax: Any = None, *, order: tuple[str, ...] = (), colours: Colours | None = None
+    state: GraspState,
+    ax: Any = None,
+    *,
+    order: tuple[str, ...] = (),
+    colours: Colours | None = None,
+    units: Units = SI,
 ) -> Any:
     """The load and the finger wrenches tail to head, each cone where its wrench starts (Fig. 4 and 6).
 
@@ -42,11 +48,11 @@ def plot_wrench_loop(
     ax = _draw_sets(ax, [loop], ordered, colours)
     _draw_load(ax, loop)
     _draw_wrenches(ax, loop, colours, "wrench")
-    legend(ax, [_key(name, colours[name]) for name in loop.order])
-    return finish(ax)
+    legend(ax, [_key(literal(name), colours[name]) for name in loop.order])
+    return finish(ax, units)
 
 
-def plot_wrench_paths(transition: Transition, ax: Any = None) -> Any:
+def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = SI) -> Any:
     """The wrench loops at both ends of a transition and the straight paths between them (Fig. 7).
 
     Solid arrows close the loop at the start, dashed ones at the end. The finger that leaves or arrives comes
@@ -78,11 +84,11 @@ def plot_wrench_paths(transition: Transition, ax: Any = None) -> Any:
     _draw_load(ax, start)
     _draw_wrenches(ax, start, colours, "start wrench")
     _draw_wrenches(ax, end, colours, "end wrench", **_DASHED)
-    legend(ax, [_key(name, colours[name]) for name in grasp.names])
+    legend(ax, [_key(literal(name), colours[name]) for name in grasp.names])
     ax.add_artist(ax.get_legend())
     ends = [_key("start", INK), _key("end", INK, **_DASHED), _key("path", INK, linewidth=3, alpha=0.5)]
     legend(ax, ends, bbox_to_anchor=(0, 0.92))
-    return finish(ax)
+    return finish(ax, units)
 
 
 def _corners(start: WrenchLoop, end: WrenchLoop) -> tuple[Array, Array]:

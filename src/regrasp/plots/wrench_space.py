@@ -17,6 +17,7 @@ from regrasp.mechanics.wrench_space import WrenchCone, WrenchPlane
 from regrasp.planning.locus import EquilibriumLocus
 from regrasp.plots.locus import shown_interval
 from regrasp.plots.style import GREY, INK, PALETTE, SMALL, label_axis, new_figure
+from regrasp.plots.units import SI, Units
 from regrasp.plots.view import best_view
 
 
@@ -40,12 +41,12 @@ def wrench_axes(ax: Any, shapes: Sequence[Array] = ()) -> Any:
     return ax
 
 
-def finish(ax: Any) -> Any:
+def finish(ax: Any, units: Units) -> Any:
     """Label the axes for the limits they have now."""
     for axis, name, unit in (
-        (ax.xaxis, "$f_x$", "N"),
-        (ax.yaxis, "$f_y$", "N"),
-        (ax.zaxis, r"$\tau$", "N m"),
+        (ax.xaxis, "$f_x$", units.force),
+        (ax.yaxis, "$f_y$", units.force),
+        (ax.zaxis, r"$\tau$", units.torque),
     ):
         label_axis(axis, name, unit, float(max(abs(axis.get_data_interval()))))
         axis.labelpad = -4 if axis is ax.zaxis else -6
@@ -53,13 +54,18 @@ def finish(ax: Any) -> Any:
 
 
 def plot_wrench_plane(
-    plane: WrenchPlane, ax: Any = None, *, reach: float = 1.0, colour: str = PALETTE[0]
+    plane: WrenchPlane,
+    ax: Any = None,
+    *,
+    reach: float = 1.0,
+    colour: str = PALETTE[0],
+    units: Units = SI,
 ) -> Any:
     """Pi_i: wrenches of all forces at a contact, shown for |f_x|, |f_y| up to ``reach`` [N] (Fig. 3)."""
     corners = plane.wrench(reach * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]))
     ax = wrench_axes(ax, [corners])
     _surface(ax, corners, colour, 0.1, gid=f"plane {plane.contact.name}")
-    return finish(ax)
+    return finish(ax, units)
 
 
 def plot_wrench_cone(
@@ -69,6 +75,7 @@ def plot_wrench_cone(
     reach: float = 1.0,
     colour: str = PALETTE[0],
     shadow: bool = False,
+    units: Units = SI,
 ) -> Any:
     """S Pi_i, a flat sector of the plane Pi_i from its apex, for forces up to ``reach`` [N] (Fig. 3-5).
 
@@ -81,11 +88,17 @@ def plot_wrench_cone(
         flat = corners.copy()
         flat[:, 2] = cone.apex[2]
         _surface(ax, flat, GREY, 0.18, gid=f"friction cone {cone.contact.name}")
-    return finish(ax)
+    return finish(ax, units)
 
 
 def plot_locus_segment(
-    locus: EquilibriumLocus, ax: Any = None, *, chosen: Any = None, label: str = "$LS_B$", colour: str = INK
+    locus: EquilibriumLocus,
+    ax: Any = None,
+    *,
+    chosen: Any = None,
+    label: str = "$LS_B$",
+    colour: str = INK,
+    units: Units = SI,
 ) -> Any:
     """LS_B, a bold segment where both cones of the loop meet: the head of w_1 after the load (Fig. 5).
 
@@ -99,7 +112,7 @@ def plot_locus_segment(
     ends = locus.load.vector + locus.wrenches(np.array(shown_interval(locus, chosen)))[:, 0]
     ax.plot(*ends.T, color=colour, linewidth=2.4, marker="o", markersize=2.4, gid="locus", zorder=3)
     ax.text(*ends[1], f"  {label}", fontsize=SMALL, color=colour, va="bottom", zorder=8)
-    return finish(ax)
+    return finish(ax, units)
 
 
 def cone_corners(cone: WrenchCone, reach: float) -> Array:

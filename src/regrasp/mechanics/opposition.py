@@ -1,0 +1,52 @@
+"""How much a finger in a friction cone can oppose a motion, in exact rational arithmetic."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import isqrt
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+
+
+def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple[Fraction, ...]:
+    """For each contact an upper bound of the work against ``twist`` that one newton in its cone can do.
+
+    It is zero exactly where a contact cannot oppose at all, and tight to 2^-100 elsewhere.
+
+    Pushing with 1 N against v = v_n n + v_t t does the work (mu |v_t| - v_n) / sqrt(1 + mu^2) on the
+    nearer edge of the cone, or |v| where -v lies inside the cone. At most |v_n| + |v_t| mu, scaled by n.
+    """
+    d, motion = grasp.dimension, exact(twist)
+    columns = [exact(column) for column in grasp.matrix.T]
+    result = []
+    for i, (normal, mu_float) in enumerate(zip(grasp.normals, frictions, strict=True)):
+        v = [dot(motion, column) for column in columns[i * d : i * d + d]]
+        n, mu = exact(normal), Fraction(mu_float)
+        nn, vn, vv = dot(n, n), dot(v, n), dot(v, v)
+        tangential = vv * nn - vn * vn  # |v_t|^2 |n|^2
+        if vn <= 0 and tangential <= mu * mu * vn * vn:
+            result.append(_sqrt_above(vv))
+        elif vn >= 0 and mu * mu * tangential <= vn * vn:
+            result.append(Fraction(0))
+        else:
+            result.append((mu * _sqrt_above(tangential) - vn) * _sqrt_above(1 / (nn * (1 + mu * mu))))
+    return tuple(result)
+
+
+def exact(values: Array) -> list[Fraction]:
+    """The rationals that doubles are."""
+    return [Fraction(value) for value in values.tolist()]
+
+
+def dot(a: list[Fraction], b: list[Fraction]) -> Fraction:
+    """The inner product of two vectors of rationals."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), start=Fraction(0))
+
+
+def _sqrt_above(value: Fraction) -> Fraction:
+    """An upper bound of the square root, tight to 2^-100 of it; exactly 0 for 0."""
+    if value == 0:
+        return Fraction(0)
+    shift = max(0, 200 - (value.numerator.bit_length() - value.denominator.bit_length()))
+    shift += shift % 2
+    return Fraction(isqrt((value.numerator << shift) // value.denominator) + 1, 1 << (shift // 2))

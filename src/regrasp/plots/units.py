@@ -1,0 +1,23 @@
+"""The names of units on axes and in labels."""
+
+from typing import NamedTuple
+
+
+class Units(NamedTuple):
+    """What one unit of the numbers drawn is called; the numbers stay as they are.
+
+    Nothing is converted: with contacts in millimetres and forces in newtons, ``Units("mm", "N")`` makes the
+    labels say so, torques in N mm. Units must be consistent, as everywhere in regrasp.
+    """
+
+    length: str = "m"
+    force: str = "N"
+    time: str = "s"
+
+    @property
+    def torque(self) -> str:
+        """Of a torque or of work: force times length."""
+        return f"{self.force} {self.length}"
+
+
+SI = Units()
