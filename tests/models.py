@@ -3,22 +3,24 @@
 Nothing here uses regrasp's formulas or its builders of programs.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import atan, inf, tan
+from math import inf
 
 import cvxpy as cp
 import numpy as np
 
-OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal")
+OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal", "friction_use")
 LARGER_IS_BETTER = ("angle", "force")
+LIMITED = (*LARGER_IS_BETTER, "friction_use")
+"""Objectives whose best value may lie at infinite force."""
 IDLE = 2.0**-40
 
 
 def objective_values(
     forces: np.ndarray, normals: np.ndarray, frictions: np.ndarray, objective: str
 ) -> np.ndarray:
-    """(m,) values of (m, n, 2) forces, larger is better; -inf for an angle margin without any force."""
+    """(m,) values of (m, n, 2) forces, larger is better; -inf for an angle or a use without any force."""
     units = normals / np.hypot(normals[:, 0], normals[:, 1])[:, None]
     normal = forces[..., 0] * units[:, 0] + forces[..., 1] * units[:, 1]
     tangent = np.abs(units[:, 0] * forces[..., 1] - units[:, 1] * forces[..., 0])
@@ -27,6 +29,12 @@ def objective_values(
         used = size > IDLE * size.max(axis=-1, keepdims=True)
         margin = np.where(used, np.arctan(frictions) - np.arctan2(tangent, normal), np.inf).min(axis=-1)
         return np.where(np.isinf(margin), -np.inf, margin)
+    if objective == "friction_use":
+        used = size > IDLE * size.max(axis=-1, keepdims=True)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            use = np.where(normal > 0, tangent / (frictions * normal), np.inf)
+        worst = -np.where(used & (frictions > 0), use, 0.0).max(axis=-1)
+        return np.where(used.any(axis=-1), worst, -np.inf)
     if objective == "force":
         return ((frictions * normal - tangent) / np.sqrt(1 + frictions**2)).min(axis=-1)
     return {
@@ -50,7 +58,12 @@ class ConvexChoice:
         """The best value, in the units of the load; the ``limits`` bound each force."""
         scaled = [limit / self.unit for limit in limits]
         if objective == "angle":
-            return self._best_angle(scaled)
+            alphas = np.arctan(self.frictions)
+            return self._best_level(
+                scaled, alphas.max(), lambda m: np.where(alphas >= m, np.tan(np.maximum(alphas - m, 0)), -1)
+            )
+        if objective == "friction_use":
+            return 1 - self._best_level(scaled, 1.0, lambda m: self.frictions * (1 - m))
         f, normal, tangent = self._forces()
         held = [
             *self._equilibrium(f),
@@ -68,24 +81,28 @@ class ConvexChoice:
             return value * self.unit**2
         return -value * self.unit if objective == "force" else value * self.unit
 
-    def _best_angle(self, limits: Sequence[float]) -> float:
-        """Bisection on the cones: margin m is reached if cones narrowed by m hold the load."""
+    def _best_level(self, limits: Sequence[float], top: float, cones: Callable[[float], np.ndarray]) -> float:
+        """Bisection: a level is reached if cones narrowed to it hold the load; one below 0 is none."""
         f, normal, tangent = self._forces()
         narrowed, slack = cp.Parameter(len(self.frictions), nonneg=True), cp.Variable()
+        open_, wide = cp.Parameter(len(self.frictions), nonneg=True), 1e3
         problem = cp.Problem(
             cp.Maximize(slack),
             [
                 *self._equilibrium(f),
                 *self._limits(f, limits),
-                cp.abs(tangent) + slack <= cp.multiply(narrowed, normal),
+                cp.abs(tangent) + cp.multiply(open_, slack) <= cp.multiply(narrowed, normal),
                 normal >= 0,
+                normal <= wide * open_,
+                slack <= wide,
             ],
         )
-        low, high = 0.0, min(atan(mu) for mu in self.frictions)
+        low, high = 0.0, top
         while high - low > 1e-9:
-            margin = (low + high) / 2
-            narrowed.value = np.array([tan(atan(mu) - margin) for mu in self.frictions])
-            low, high = (margin, high) if _solved(problem) >= -1e-9 else (low, margin)
+            level = (low + high) / 2
+            mu = cones(level)
+            narrowed.value, open_.value = np.maximum(mu, 0), (mu >= 0).astype(float)
+            low, high = (level, high) if _solved(problem) >= -1e-9 else (low, level)
         return low
 
     def _forces(self) -> tuple[cp.Variable, cp.Expression, cp.Expression]:
@@ -112,5 +129,7 @@ class ConvexChoice:
 
 def _solved(problem: cp.Problem) -> float:
     value = problem.solve(solver=cp.CLARABEL, tol_gap_abs=1e-11, tol_gap_rel=1e-11, tol_feas=1e-11)
+    if problem.status in (cp.INFEASIBLE, cp.INFEASIBLE_INACCURATE):
+        return -np.inf
     assert problem.status in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE), problem.status
     return float(value)

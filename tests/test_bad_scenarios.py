@@ -227,7 +227,10 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "unknown objective": (
         edited(('objective = "angle"', 'objective = "safest"')),
         2,
-        ["task.objective: expected 'angle', 'force', 'effort', 'peak' or 'peak_normal', got 'safest'"],
+        [
+            "task.objective: expected 'angle', 'force', 'effort', 'peak', 'peak_normal' or 'friction_use', "
+            "got 'safest'"
+        ],
     ),
     "unknown method": (
         edited(('objective = "angle"', 'method = "magic"')),
@@ -522,7 +525,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     "choose_state: unknown objective": (
         lambda: rg.choose_state(TWO, LOAD, "safest"),
         rg.InvalidInput,
-        "objective must be one of angle, force, effort, peak, peak_normal; got 'safest'",
+        "objective must be one of angle, force, effort, peak, peak_normal, friction_use; got 'safest'",
     ),
     "choose_state: unknown method": (
         lambda: rg.choose_state(TWO, LOAD, method="magic"),

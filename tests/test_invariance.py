@@ -47,7 +47,7 @@ class Frame:
         )
 
     def value(self, value: float, objective: str) -> float:
-        return value * {"angle": 1.0, "effort": self.force**2}.get(objective, self.force)
+        return value * {"angle": 1.0, "friction_use": 1.0, "effort": self.force**2}.get(objective, self.force)
 
 
 frames = st.builds(Frame, POWERS, POWERS, angles)
@@ -84,7 +84,7 @@ def test_the_best_value(pair, frame: Frame, objective: str) -> None:
     here = rg.choose_state(pair.grasp, pair.load, objective)
     for order in ((0, 1), (1, 0)):
         there = rg.choose_state(frame.grasp(pair.grasp, order), frame.load(pair.load), objective)
-        size = frame.value(1.0, objective) * (1 if objective == "angle" else here.magnitudes.max())
+        size = frame.value(1.0, objective) * (1 if objective in ("angle", "friction_use") else here.magnitudes.max())
         assert there.value == pytest.approx(frame.value(here.value, objective), rel=1e-7, abs=1e-7 * size)
 
 

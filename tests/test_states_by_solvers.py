@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from models import LARGER_IS_BETTER, OBJECTIVES, ConvexChoice
+from models import LIMITED, OBJECTIVES, ConvexChoice
 from strategies import comfortable_pair
 
 
@@ -45,7 +45,7 @@ def test_closed_form_and_clarabel_agree(objective: str) -> None:
 @pytest.mark.parametrize("fingers", [2, 3])
 def test_cvxpy_finds_no_better(fingers: int, objective: str) -> None:
     rng = np.random.default_rng(20 + fingers)
-    for case in range(3 if objective == "angle" else 6):
+    for case in range(3 if objective in ("angle", "friction_use") else 6):
         grasp, load = comfortable_pair(rng) if fingers == 2 else comfortable_triple(rng)
         model = ConvexChoice(
             grasp.positions, grasp.normals, grasp.frictions, load.vector, float(abs(load.vector).max())
@@ -54,6 +54,6 @@ def test_cvxpy_finds_no_better(fingers: int, objective: str) -> None:
         limits = [50.0 if case % 2 else inf] * fingers
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # cvxpy's, of an answer it calls inaccurate
-            if objective in LARGER_IS_BETTER and inf in limits:
+            if objective in LIMITED and inf in limits:
                 limits = [3.0 * model.best("peak", limits)] * fingers
             assert state.value == pytest.approx(model.best(objective, limits), rel=1e-6, abs=1e-7)

@@ -8,8 +8,8 @@ and every objective is the worse of two functions of x, one per contact, each wi
 So the best x is the best point of one contact where the other is no worse, or else the one place between
 the two best points where both are equal: a root of a linear or quadratic equation.
 
-``lo, hi`` bound x. For ``angle`` and ``force`` both must be finite (limit the forces first); the others
-are bounded by themselves.
+``lo, hi`` bound x. For ``angle``, ``force`` and ``friction_use`` both must be finite (limit the forces
+first); the others are bounded by themselves.
 """
 
 from math import atan, atan2, sqrt
@@ -109,6 +109,20 @@ def _best_angle_of_both(lo: float, hi: float, a: float, b: float, first: Line, s
         n_slope * h1 + n_offset * g1 - t_slope * q1 - t_offset * p1,
         n_offset * h1 - t_offset * q1,
     )
+
+
+def best_friction_use(
+    lo: float, hi: float, phi: float, a: float, b: float, first: Line, second: Line
+) -> float:
+    """The x of the least larger friction use |T| / (mu N) of the contacts that carry force.
+
+    With T / mu in the place of T all cones are equally wide, and the least use is the widest angle margin.
+    A contact without friction uses none.
+    """
+    p1, q1, g1, h1, mu1 = first
+    p2, q2, g2, h2, mu2 = second
+    w1, w2 = 1.0 / mu1 if mu1 > 0.0 else 0.0, 1.0 / mu2 if mu2 > 0.0 else 0.0
+    return best_angle(lo, hi, phi, a, b, (p1, q1, w1 * g1, w1 * h1, 1.0), (p2, q2, w2 * g2, w2 * h2, 1.0))
 
 
 def best_force(lo: float, hi: float, first: Line, second: Line) -> float:

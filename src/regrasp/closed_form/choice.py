@@ -6,6 +6,7 @@ from regrasp.closed_form.best import (
     best_angle,
     best_effort,
     best_force,
+    best_friction_use,
     best_peak,
     best_peak_normal,
     clamp,
@@ -13,8 +14,8 @@ from regrasp.closed_form.best import (
 )
 from regrasp.closed_form.locus import common_interval, cone_interval, pair_frame, within_limit
 
-ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL = range(5)
-OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal")
+ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE = range(6)
+OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal", "friction_use")
 """Names of the objectives; the place of a name is its code."""
 
 
@@ -39,9 +40,9 @@ def best_squeeze(
 ) -> tuple[float, tuple[float, float, float, float], tuple[float, float]]:
     """The best squeeze, the forces (f_1x, f_1y, f_2x, f_2y) and the limits they were chosen under.
 
-    Squeeze and forces are NaN where no state exists. The widest angle or force margin may lie at infinite
-    force, so for these objectives a contact without a limit (infinite) is limited to ``peak_ratio`` (at least
-    1) times the least peak force of the grasp.
+    Squeeze and forces are NaN where no state exists. The widest angle or force margin and the least friction
+    use may lie at infinite force, so for these objectives a contact without a limit (infinite) is limited to
+    ``peak_ratio`` (at least 1) times the least peak force of the grasp.
     """
     ux, uy, phi, a, b, parallel = pair_frame(x1, y1, x2, y2, fx, fy, tau)
     lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)
@@ -75,6 +76,8 @@ def best_squeeze(
                     lo = hi = x
             if objective == ANGLE:
                 x = best_angle(lo, hi, phi, a, b, first, second)
+            elif objective == FRICTION_USE:
+                x = best_friction_use(lo, hi, phi, a, b, first, second)
             else:
                 x = best_force(lo, hi, first, second)
     # Each force by its own bounds: rounding of a large force would carry a small one out of its cone.

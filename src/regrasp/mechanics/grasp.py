@@ -123,6 +123,13 @@ class Grasp(ArrayValue):
         return read_only(np.array([c.normal for c in self.contacts]))
 
     @cached_property
+    def tangents(self) -> Array:
+        """(n, 2), the normals turned left by a right angle; in the plane only."""
+        if self.dimension == 3:
+            raise InvalidInput("a contact in space has a tangent plane, not one tangent")
+        return read_only(np.column_stack([-self.normals[:, 1], self.normals[:, 0]]))
+
+    @cached_property
     def frictions(self) -> Array:
         """(n,) Coulomb coefficients."""
         return read_only(np.array([c.friction for c in self.contacts]))

@@ -25,7 +25,8 @@ def choose_state(
     """The best forces of a grasp under a load.
 
     objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
-    ``peak``, the least largest force; ``peak_normal``, the least largest normal force.
+    ``peak``, the least largest force; ``peak_normal``, the least largest normal force; ``friction_use``, the
+    least largest fraction of the friction available.
     method: ``closed-form`` (two planar contacts), a back end's name, or ``auto``: the closed form where it
     exists, else Clarabel.
     facets: let an inner polygon of so many sides stand for the circle of a force limit and of ``peak``, for
@@ -64,6 +65,6 @@ def choose_forces(
     if method != "auto" and method.partition(":")[0] not in available_backends():
         known = ", ".join(("auto", "closed-form", *available_backends()))
         raise InvalidInput(f"method must be one of {known}; got {method!r}")
-    from regrasp.planning.state_program import solved_forces
+    from regrasp.planning.solved_state import solved_forces
 
     return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)

@@ -13,13 +13,13 @@ from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserv
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 
-Objective = Literal["angle", "force", "effort", "peak", "peak_normal"]
+Objective = Literal["angle", "force", "effort", "peak", "peak_normal", "friction_use"]
 
 PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least peak force that holds the load."""
 
 # Objectives whose best value may lie at infinite force.
-UNBOUNDED = ("angle", "force")
+UNBOUNDED = ("angle", "force", "friction_use")
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,11 @@ class Criteria:
     """Objective and limits of a choice, checked.
 
     objective: ``angle`` or ``force``, the widest least margin; ``effort`` (least sum of squares), ``peak``
-    (least largest force), ``peak_normal`` (least largest normal force).
+    (least largest force), ``peak_normal`` (least largest normal force), ``friction_use`` (least largest
+    fraction of the friction available).
     max_force: a limit on every force [N] besides the contacts' own, or None.
-    peak_ratio: where a contact has no limit, ``angle`` and ``force`` limit it to this multiple (at least 1)
-    of the least peak force with which the grasp holds the load.
+    peak_ratio: where a contact has no limit, ``angle``, ``force`` and ``friction_use`` limit it to this
+    multiple (at least 1) of the least peak force with which the grasp holds the load.
     reserve: fraction of every friction coefficient kept back.
     """
 
@@ -47,8 +48,8 @@ class Criteria:
         reserve_fraction(self.reserve)
 
     @property
-    def maximises(self) -> bool:
-        """Whether a larger value of the objective is better."""
+    def unbounded(self) -> bool:
+        """Whether the best value may lie at infinite force, so that forces must be limited."""
         return self.objective in UNBOUNDED
 
     def frictions(self, grasp: Grasp) -> list[float]:
@@ -65,7 +66,7 @@ class Criteria:
 
     def demand_limit(self, grasp: Grasp, load: Wrench) -> None:
         """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero."""
-        if self.maximises and not any(load.plain) and inf in self.limits(grasp):
+        if self.unbounded and not any(load.plain) and inf in self.limits(grasp):
             raise InvalidInput(
                 f"objective {self.objective!r} under a zero load needs max_force: any squeeze holds it, "
                 f"so no force follows from the load"
@@ -73,11 +74,12 @@ class Criteria:
 
 
 class ChosenForces(NamedTuple):
-    """Forces (n, d) of a choice [N], the limits it was made under and its method, as in ``ChosenState``."""
+    """Forces (n, d) of a choice [N]; limits, method and gap as in ``ChosenState``."""
 
     forces: Array | list[list[float]]
     force_limits: tuple[float, ...]
     method: str
+    gap: float | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,6 +91,8 @@ class ChosenState(GraspState):
     """(n,) limits the choice was made under [N], those set by ``peak_ratio`` included."""
     method: str
     """``closed-form`` or the back end's name."""
+    gap: float | None
+    """How much better the best value can be at most, by duality; None for the closed form, which is exact."""
 
     def __init__(
         self,
@@ -101,15 +105,16 @@ class ChosenState(GraspState):
         object.__setattr__(self, "criteria", criteria)
         object.__setattr__(self, "force_limits", chosen.force_limits)
         object.__setattr__(self, "method", chosen.method)
+        object.__setattr__(self, "gap", chosen.gap)
 
     @cached_property
     def value(self) -> float:
-        """The objective reached: rad for ``angle``, N^2 for ``effort``, N for the others."""
+        """The objective reached; units as for ``objective_value``."""
         return objective_value(self, self.criteria.objective)
 
 
 def objective_value(state: GraspState, objective: str) -> float:
-    """The value of an objective at a state: rad for ``angle``, N^2 for ``effort``, N for the others."""
+    """An objective at a state: ``angle`` [rad], ``effort`` [N^2], ``friction_use`` [-], others [N]."""
     if objective == "angle":
         return state.margins.least_angle
     if objective == "force":
@@ -118,4 +123,6 @@ def objective_value(state: GraspState, objective: str) -> float:
         return float((state.forces**2).sum())
     if objective == "peak":
         return float(state.magnitudes.max())
+    if objective == "friction_use":
+        return state.margins.largest_friction_use
     return float((state.forces * state.grasp.normals).sum(axis=1).max())

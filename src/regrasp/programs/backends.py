@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
@@ -50,12 +51,16 @@ _AUTO = ("clarabel", "daqp", "osqp", "cvxpy")
 
 def available_backends() -> tuple[str, ...]:
     """Names of the back ends installed here; ``cvxpy:<SOLVER>`` names one of cvxpy's solvers besides."""
-    return tuple(
-        name
-        for name, backend in BACKENDS.items()
-        if find_spec(backend.needs) is not None
-        and (backend.module != _QP or find_spec("qpsolvers") is not None)
-    )
+    return tuple(name for name, backend in BACKENDS.items() if _is_installed(backend))
+
+
+@cache
+def _has(package: str) -> bool:
+    return find_spec(package) is not None
+
+
+def _is_installed(backend: Backend) -> bool:
+    return _has(backend.needs) and (backend.module != _QP or _has("qpsolvers"))
 
 
 def solve(program: Program, backend: str = "auto", *, throw: bool = True, **options: Any) -> Solution:
@@ -100,7 +105,7 @@ def _entry(backend: str) -> Backend:
             f"no back end {backend!r}; known: auto, {', '.join(BACKENDS)}, cvxpy:<SOLVER>"
         )
     entry = BACKENDS[name]
-    if name not in available_backends():
+    if not _is_installed(entry):
         raise SolverUnavailable(
             f"back end {name!r} needs the package {entry.needs}: pip install 'regrasp[solvers]'"
         )

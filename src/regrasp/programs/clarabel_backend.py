@@ -1,5 +1,6 @@
 """Clarabel, called directly. Imported when used."""
 
+from functools import cache
 from time import perf_counter
 from typing import Any
 
@@ -7,7 +8,7 @@ import clarabel
 import numpy as np
 from scipy import sparse
 
-from regrasp.programs.program import Cone, Program
+from regrasp.programs.program import Block, Cone, Program
 from regrasp.programs.solution import Solution, Status
 
 # "Almost" verdicts are not verdicts.
@@ -29,12 +30,9 @@ _DEFAULTS = {
 def solve(program: Program, name: str, **options: Any) -> Solution:
     """Solve with Clarabel; ``options`` are its settings by name."""
     started = perf_counter()
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    for key, value in {**_DEFAULTS, **options}.items():
-        setattr(settings, key, value)
+    settings = _settings(**options)
     solver = clarabel.DefaultSolver(
-        sparse.triu(program.P, format="csc"), program.q, program.A, program.b, _cones(program), settings
+        _upper(program.P), program.q, program.A, program.b, _cones_of(program.blocks), settings
     )
     built = perf_counter()
     answer = solver.solve()
@@ -53,9 +51,27 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     )
 
 
-def _cones(program: Program) -> list[Any]:
+@cache
+def _settings(**options: Any) -> Any:
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    for key, value in {**_DEFAULTS, **options}.items():
+        setattr(settings, key, value)
+    return settings
+
+
+def _upper(P: sparse.csc_matrix) -> sparse.csc_matrix:
+    """The upper triangle; of an empty or diagonal matrix that is the matrix itself."""
+    n = P.shape[0]
+    if P.nnz == 0 or (P.nnz == n and np.array_equal(P.indices, np.arange(n))):
+        return P
+    return sparse.triu(P, format="csc")
+
+
+@cache
+def _cones_of(blocks: tuple[Block, ...]) -> list[Any]:
     cones: list[Any] = []
-    for block in program.blocks:
+    for block in blocks:
         if block.cone is Cone.ZERO:
             cones.append(clarabel.ZeroConeT(block.rows))
         elif block.cone is Cone.NONNEGATIVE:

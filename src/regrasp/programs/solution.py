@@ -47,6 +47,11 @@ class Solution:
     said: str
 
     @cached_property
+    def _px(self) -> Array:
+        px: Array = self.program.P @ self.value
+        return px
+
+    @cached_property
     def objective(self) -> float:
         """1/2 x'Px + q'x."""
         return self.program.objective(self.value)
@@ -62,17 +67,22 @@ class Solution:
     def dual_residual(self) -> float:
         """Largest entry of P x + q + A'z, and distance of z to K*, relative to the terms."""
         p = self.program
-        px, az = p.P @ self.value, p.A.T @ self.duals
+        px, az = self._px, p.A.T @ self.duals
         stationarity = _relative(_largest(px + p.q + az), max(_largest(px), _largest(p.q), _largest(az)))
         return max(stationarity, _relative(p.distance_to_cones(self.duals, dual=True), _largest(self.duals)))
 
     @cached_property
     def gap(self) -> float:
         """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|."""
-        p, x, z = self.program, self.value, self.duals
-        px, norm = p.P @ x, np.linalg.norm
+        p, x, z, px, norm = self.program, self.value, self.duals, self._px, np.linalg.norm
         scale = float(norm(x) * norm(px) + norm(p.q) * norm(x) + norm(p.b) * norm(z))
         return _relative(abs(float(x @ px + p.q @ x + p.b @ z)), scale)
+
+    @property
+    def absolute_gap(self) -> float:
+        """|x'Px + q'x + b'z|, the distance of the objective from the dual's."""
+        p, x = self.program, self.value
+        return abs(float(x @ self._px + p.q @ x + p.b @ self.duals))
 
     @cached_property
     def infeasibility_residual(self) -> float:

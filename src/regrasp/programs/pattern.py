@@ -1,0 +1,30 @@
+"""Sparse matrices of one pattern: symbolic work is done once, numbers are filled in at will."""
+
+from copy import copy
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+
+from regrasp.errors import InvalidInput
+
+
+class Pattern:
+    """The places of the entries of a sparse matrix.
+
+    shape: (m, n). rows, columns: (k,) place of each entry, in any order, no place twice.
+    """
+
+    def __init__(self, shape: tuple[int, int], rows: ArrayLike, columns: ArrayLike) -> None:
+        rows, columns = np.asarray(rows, dtype=np.int32), np.asarray(columns, dtype=np.int32)
+        count = rows.size
+        self._template = sparse.csc_matrix((np.arange(count, dtype=float), (rows, columns)), shape)
+        if self._template.nnz != count:
+            raise InvalidInput("a pattern must not name a place twice")
+        self._order = self._template.data.astype(np.intp)
+
+    def filled(self, values: NDArray[np.float64]) -> sparse.csc_matrix:
+        """The matrix with ``values`` (k,) at the places, in the order the pattern was given."""
+        matrix = copy(self._template)  # shares the places
+        matrix.data = values[self._order]
+        return matrix
