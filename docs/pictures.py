@@ -3,13 +3,19 @@
 from importlib.resources import files
 from pathlib import Path
 
+import regrasp as rg
 from regrasp.files import parse_scenario, plan_scenario
-from regrasp.plots import transition_figure
+from regrasp.plots import plot_escape, transition_figure
 
 IMAGES = Path(__file__).parent / "images"
 
 if __name__ == "__main__":
     scenario = parse_scenario((files("regrasp.files") / "paper.toml").read_text(encoding="utf-8"))
-    figure = transition_figure(plan_scenario(scenario))
+    removal = plan_scenario(scenario)
     IMAGES.mkdir(exist_ok=True)
-    figure.savefig(IMAGES / "overview.png", dpi=160, metadata={"Software": None})
+    transition_figure(removal).savefig(IMAGES / "overview.png", dpi=160, metadata={"Software": None})
+    try:
+        rg.plan_removal(removal.start, "P1")
+    except rg.Infeasible as reason:
+        figure = plot_escape(reason.certificate).figure
+        figure.savefig(IMAGES / "escape.png", dpi=160, metadata={"Software": None})

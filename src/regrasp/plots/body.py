@@ -1,7 +1,7 @@
 """The object in the plane: its surface at the contacts, normals, friction cones and centre of mass."""
 
-from collections.abc import Collection, Mapping
-from math import atan2, degrees
+from collections.abc import Collection
+from math import atan2, degrees, hypot
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,12 +25,12 @@ def draw_body(
     colours: Colours,
     cone_length: float,
     absent: Collection[str] = (),
-    labels: Mapping[str, str] | None = None,
+    named: bool = True,
 ) -> None:
     """Surface, normals and cones of length ``cone_length`` [m] at the contacts, and the centre of mass.
 
     absent: names of contacts of which only the surface and an open grey circle are drawn.
-    labels: shown in place of the names, by name.
+    named: write the names beside the contacts.
     """
     size = extent(grasp)
     surface = _surface(grasp, 0.09 * size)
@@ -41,21 +41,29 @@ def draw_body(
         ax.plot(*ends.T, color=INK, linewidth=1.2, solid_capstyle="butt", zorder=2)
     for name, contact in zip(grasp.names, grasp, strict=True):
         r, n = contact.position, contact.normal
-        label = literal(name) if labels is None else labels[name]
+        label, colour = literal(name), colours[name]
         ax.update_datalim([r + cone_length * n])
         if name in absent:
             ax.plot(
                 *r, "o", color="white", markeredgecolor=GREY, markersize=4.5, zorder=4, gid=f"absent {name}"
             )
-            note(ax, f"({label})", r, -n, color=GREY)
+            label, colour = f"({label})", GREY
         else:
-            _cone(ax, contact, cone_length, colours[name], gid=f"cone {name}")
-            ax.plot(*r, "o", color=colours[name], markersize=3.5, zorder=4)
-            note(ax, label, r, -n, color=colours[name])
-        room = np.array([0.06 + 0.033 * max(map(len, label.split("\n"))), 0.12]) * size  # for the name
-        ax.update_datalim([r - room * n])
+            _cone(ax, contact, cone_length, colour, gid=f"cone {name}")
+            ax.plot(*r, "o", color=colour, markersize=3.5, zorder=4)
+        if named:
+            label_contact(ax, label, r, -n, size, color=colour)
     ax.plot(0, 0, marker="o", color="white", markeredgecolor=INK, markersize=5, zorder=4)
     ax.plot(0, 0, marker="+", color=INK, markersize=5, markeredgewidth=0.7, zorder=5)
+
+
+def label_contact(
+    ax: Axes, label: str, at: Array, towards: Array, size: float, *, gap: float = 4.0, color: str
+) -> None:
+    """A short text beside a contact, with room for it; ``size`` is the extent of the grasp [m]."""
+    note(ax, label, at, towards, gap=gap, color=color)
+    room = np.array([0.06 + 0.033 * max(map(len, label.split("\n"))), 0.12]) * size
+    ax.update_datalim([at + room * towards / hypot(*towards)])
 
 
 def _cone(ax: Axes, contact: Contact, length: float, colour: str, gid: str) -> None:

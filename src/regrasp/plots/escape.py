@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.plots.arrows import arrow
-from regrasp.plots.body import draw_body, extent
+from regrasp.plots.body import draw_body, extent, label_contact
 from regrasp.plots.load import draw_load
 from regrasp.plots.overview import png
 from regrasp.plots.style import (
@@ -55,12 +55,12 @@ def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, units: Units = SI
         name: HELPLESS if helpless else OPPOSES
         for name, helpless in zip(twist.grasp.names, twist.helpless, strict=True)
     }
-    draw_body(ax, twist.grasp, colours, 0.3 * size, labels=_labels(twist, units))
+    draw_body(ax, twist.grasp, colours, 0.3 * size, named=False)
     draw_load(ax, twist.load, 0.35 * size / (hypot(*twist.load.force) or 1.0), 0.1 * size)
     low, high = _frame(twist, size)
     ax.update_datalim([low, high])
     _draw_motion(ax, twist, low, high)
-    _draw_contacts(ax, twist, size)
+    _draw_contacts(ax, twist, size, units)
     _draw_centre(ax, twist, low, high, size)
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
@@ -107,24 +107,22 @@ def _draw_motion(ax: Axes, twist: EscapeTwist, low: Array, high: Array) -> None:
     ax.quiver(*points.T, *v.T, angles="xy", scale_units="xy", scale=scale, gid="motion", **look)
 
 
-def _draw_contacts(ax: Axes, twist: EscapeTwist, size: float) -> None:
+def _draw_contacts(ax: Axes, twist: EscapeTwist, size: float, units: Units) -> None:
     """Velocities of the contacts, the fastest a quarter of the extent long, and who can oppose them."""
     fastest = float(np.hypot(*twist.velocities.T).max()) or 1.0
-    for name, r, v, helpless in zip(
-        twist.grasp.names, twist.grasp.positions, twist.velocities, twist.helpless, strict=True
+    bold: dict[str, Any] = {"color": MOTION, "linewidth": 1.8, "zorder": 5}
+    for contact, v, helpless, label in zip(
+        twist.grasp, twist.velocities, twist.helpless, _labels(twist, units), strict=True
     ):
+        name, r = contact.name, contact.position
         if hypot(*v) > 1e-9 * fastest:
-            arrow(
-                ax,
-                r,
-                r + 0.25 * size / fastest * v,
-                gid=f"velocity {name}",
-                color=MOTION,
-                linewidth=1.8,
-                zorder=5,
-            )
+            arrow(ax, r, r + 0.25 * size / fastest * v, gid=f"velocity {name}", **bold)
         what, look = ("helpless", _HELPLESS) if helpless else ("opposes", _OPPOSES)
         ax.plot(*r, linestyle="none", zorder=6, gid=f"{what} {name}", **look)
+        towards, gap = -contact.normal, 6.0
+        if twist.centre is not None and 0 < (near := hypot(*(r - twist.centre))) < 0.15 * size:
+            towards, gap = (r - twist.centre) / near, 9.0  # clear of the mark of the centre
+        label_contact(ax, label, r, towards, size, gap=gap, color=look["color"])
 
 
 def _draw_centre(ax: Axes, twist: EscapeTwist, low: Array, high: Array, size: float) -> None:
@@ -149,13 +147,13 @@ def _draw_centre(ax: Axes, twist: EscapeTwist, low: Array, high: Array, size: fl
         note(ax, f"centre at ({where})", edge - 0.1 * size * towards, (-towards[1], towards[0]), color=MOTION)
 
 
-def _labels(twist: EscapeTwist, units: Units) -> dict[str, str]:
+def _labels(twist: EscapeTwist, units: Units) -> list[str]:
     """The contacts' names, with the most work that those which can oppose can do."""
     unit = units.torque if twist.turns else units.force
-    labels = {}
+    labels = []
     for name, most in zip(twist.grasp.names, twist.resistances, strict=True):
         bound = "without limit" if isinf(most) else f"\N{LESS-THAN OR EQUAL TO} {quantity(most, unit, 3)}"
-        labels[name] = f"{literal(name)}\n{bound}" if most else literal(name)
+        labels.append(f"{literal(name)}\n{bound}" if most else literal(name))
     return labels
 
 
