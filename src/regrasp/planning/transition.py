@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from math import degrees
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,11 +41,17 @@ class Record:
 
     reserve: fraction of every friction coefficient kept back. choices: the ends that were not given.
     balancing: largest change of a given force to reach exact equilibrium [N].
+    path: ``closed-form`` for Eq. 1-3, or the back end that planned the instants; path_objective: what for.
+    rate_limits [N/s], least_normals [N]: what the path keeps to, one for each contact; empty for none.
     """
 
     reserve: float
     choices: tuple[Choice, ...] = ()
     balancing: float = 0.0
+    path: str = "closed-form"
+    path_objective: str | None = None
+    rate_limits: tuple[float, ...] = ()
+    least_normals: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,6 +62,8 @@ class Transition(ArrayValue, Pictured):
 
     With fixed contacts and load the equilibrium forces inside the cones are a convex set, so both ends
     being in it proves every instant (fact 1); ``regrasp.verify`` checks them in exact arithmetic.
+
+    A path that is not straight is a ``SampledTransition``, which answers the same questions.
 
     kind: ``removal`` or ``addition``. contact: the finger that leaves or arrives, idle at that end.
     start, end: states of one grasp, every contact in play, under one load.
@@ -71,9 +79,14 @@ class Transition(ArrayValue, Pictured):
     _drawn_by = "regrasp.plots.overview:transition_png"
 
     def __post_init__(self) -> None:
-        if self.start.grasp != self.end.grasp or self.start.load != self.end.load:
-            raise InvalidInput("both ends of a transition must have the same grasp and the same load")
+        if self.start.grasp != self.end.grasp:
+            raise InvalidInput("both ends of a transition must have the same grasp")
         self.grasp.index(self.contact)
+        self._check()
+
+    def _check(self) -> None:
+        if self.start.load != self.end.load:
+            raise InvalidInput("both ends of a straight path must have the same load")
 
     @property
     def grasp(self) -> Grasp:
@@ -99,6 +112,12 @@ class Transition(ArrayValue, Pictured):
         result: Array = slope[..., None, None] * (self.start.forces - self.end.forces)
         return result
 
+    @property
+    def steepest(self) -> Array:
+        """(n,) the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
+        moved: Array = np.linalg.norm(self.start.forces - self.end.forces, axis=1)
+        return self.scaling.steepest * moved
+
     def load(self, t: ArrayLike) -> Array:
         """The load (3,) or (m, 3) in the object frame, constant here [N, N m]; (…, 6) in space."""
         times = self.scaling(t)  # checks the times
@@ -119,14 +138,16 @@ class Transition(ArrayValue, Pictured):
     def reversed(self) -> "Transition":
         """The same path run backwards: a removal becomes an addition."""
         choices = tuple(replace(c, end="end" if c.end == "start" else "start") for c in self.record.choices)
-        return replace(
-            self,
+        return self._reversed(
             kind="addition" if self.kind == "removal" else "removal",
             start=self.end,
             end=self.start,
             scaling=self.scaling.reversed(),
             record=replace(self.record, choices=choices),
         )
+
+    def _reversed(self, **changes: Any) -> "Transition":
+        return replace(self, **changes)
 
     def retimed(self, scaling: TimeScaling) -> "Transition":
         """The same path under another time function."""

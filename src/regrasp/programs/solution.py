@@ -65,18 +65,25 @@ class Solution:
 
     @cached_property
     def dual_residual(self) -> float:
-        """Largest entry of P x + q + A'z, and distance of z to K*, relative to the terms."""
+        """Largest entry of P x + q + A'z, and distance of z to K*, relative to the terms.
+
+        The terms are those at x, and P x at an x of the size of the data, for answers near x = 0.
+        """
         p = self.program
         px, az = self._px, p.A.T @ self.duals
-        stationarity = _relative(_largest(px + p.q + az), max(_largest(px), _largest(p.q), _largest(az)))
+        usual = _largest(p.P.data) * _ratio(p.b, p.A.data)
+        stationarity = _relative(
+            _largest(px + p.q + az), max(_largest(px), _largest(p.q), _largest(az), usual)
+        )
         return max(stationarity, _relative(p.distance_to_cones(self.duals, dual=True), _largest(self.duals)))
 
     @cached_property
     def gap(self) -> float:
-        """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|."""
+        """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|, or to x'Px as in ``dual_residual``."""
         p, x, z, px, norm = self.program, self.value, self.duals, self._px, np.linalg.norm
         scale = float(norm(x) * norm(px) + norm(p.q) * norm(x) + norm(p.b) * norm(z))
-        return _relative(abs(float(x @ px + p.q @ x + p.b @ z)), scale)
+        usual = _largest(p.P.data) * _ratio(p.b, p.A.data) ** 2
+        return _relative(abs(float(x @ px + p.q @ x + p.b @ z)), max(scale, usual))
 
     @property
     def absolute_gap(self) -> float:

@@ -1,0 +1,82 @@
+"""A load that varies in time: an accelerating or a turning hand."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.wrench import Wrench
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadSeries(ArrayValue):
+    """A load known at instants and linear in time between them.
+
+    times: (k,) [s], rising from 0. vectors: (k, 3) in the plane, (k, 6) in space: force, then torque about
+    the centre of mass, in the object frame [N, N m].
+    Raises ``InvalidInput`` for anything else.
+    """
+
+    times: Array
+    vectors: Array
+
+    def __init__(self, times: ArrayLike, vectors: ArrayLike) -> None:
+        t = array(times, "times of a load", (None,))
+        if t.size < 2 or t[0] != 0 or not (np.diff(t) > 0).all():
+            raise InvalidInput(f"times of a load must rise from 0, two or more; got {times!r}")
+        w = array(vectors, "vectors of a load", (t.size, None))
+        if w.shape[1] not in (3, 6):
+            raise InvalidInput(f"a load has 3 (plane) or 6 (space) numbers at each time, got {w.shape[1]}")
+        object.__setattr__(self, "times", t)
+        object.__setattr__(self, "vectors", w)
+
+    @classmethod
+    def sampled(cls, load: Callable[[float], Wrench], duration: float, instants: int = 101) -> "LoadSeries":
+        """A function of time at ``instants`` equal steps from 0 to ``duration`` [s]."""
+        times = np.linspace(0, number(duration, "duration", above=0), instants)
+        return cls(times, [_wrench_at(load, t).vector for t in times.tolist()])
+
+    @property
+    def duration(self) -> float:
+        """[s]."""
+        return float(self.times[-1])
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the load is the same at every instant."""
+        return bool((self.vectors == self.vectors[0]).all())
+
+    def __call__(self, t: float) -> Wrench:
+        """The load at a time in [0, duration] [s]."""
+        return Wrench.from_vector(self.at(number(t, "t", least=0)))
+
+    def at(self, t: ArrayLike) -> Array:
+        """(..., 3) or (..., 6) at times in [0, duration] [s]."""
+        times = np.asarray(t, dtype=float)
+        if not ((times >= 0) & (times <= self.duration)).all():
+            raise InvalidInput(f"the load is known from 0 to {self.duration:g} s, asked for t = {t!r}")
+        result: Array = np.stack([np.interp(times, self.times, c) for c in self.vectors.T], axis=-1)
+        return result
+
+    def refined(self, instants: int) -> "LoadSeries":
+        """The same load with ``instants`` equal steps added between the times it has."""
+        times = np.union1d(self.times, np.linspace(0, self.duration, instants))
+        # A step of rounding beside a time that was there already.
+        keep = np.append(True, np.diff(times) > 1e-9 * self.duration / instants)
+        keep |= np.isin(times, self.times)
+        times = times[keep]
+        return LoadSeries(times, self.at(times))
+
+    def __repr__(self) -> str:
+        return f"LoadSeries({self.times.size} instants over {self.duration:g} s)"
+
+
+def _wrench_at(load: Callable[[float], Wrench], t: float) -> Wrench:
+    wrench = load(t)
+    if not isinstance(wrench, Wrench):
+        raise InvalidInput(f"a load function must return a Wrench, at t = {t:g} it returned {wrench!r}")
+    return wrench

@@ -1,0 +1,173 @@
+"""Planning a path by a program: solved, moved into exact equilibrium, checked; or refused with the reason."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import Infeasible, SolverFailed
+from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.criteria import Criteria
+from regrasp.planning.escape import infeasible
+from regrasp.planning.path_program import PathTask, path_program
+from regrasp.programs import Program, Solution, Status, solve
+
+# Fraction of friction, limits and rates kept back, so that a solver's rounding stays inside them.
+_SLACK, _RATE_SLACK = 1e-9, 1e-7
+
+
+def planned_path(
+    task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None = None
+) -> Array:
+    """The best path (K, n, 2) [N], in exact equilibrium inside cones and limits at every instant.
+
+    objective: ``change``, ``effort``, ``peak`` or ``force``; of the paths with the widest force margin, the
+    one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or the limit
+    that stands in the way.
+    """
+    kept = _kept(task)
+    if objective == "force":
+        if (task.limits == inf).any():
+            least = _solved(kept, "peak", criteria, backend, facets)
+            peak = criteria.peak_ratio * float(least.value[-1]) * task.unit
+            kept = replace(kept, limits=np.minimum(kept.limits, peak))
+        widest = _solved(kept, "force", criteria, backend, facets)
+        margin = float(widest.value[-1]) * task.unit
+        program = path_program(kept, "change", least_margin=margin - 1e-7 * abs(margin), facets=facets)
+        answer = solve(program, backend)
+        if answer.status is not Status.SOLVED:
+            raise SolverFailed(f"{backend}: no path of least change at the widest margin", program, answer)
+    else:
+        answer = _solved(kept, objective, criteria, backend, facets)
+    return _exact(task, answer.value, answer.program, answer)
+
+
+def _kept(task: PathTask) -> PathTask:
+    keep = 1 - _SLACK
+    return replace(
+        task,
+        frictions=keep * task.frictions,
+        limits=keep * task.limits,
+        rates=(1 - _RATE_SLACK) * task.rates,
+        least_normals=(1 + _SLACK) * task.least_normals,
+    )
+
+
+def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
+    program = path_program(task, objective, facets=facets)
+    try:
+        answer = solve(program, backend)
+    except SolverFailed:
+        reason = _why_not(task, criteria, backend, facets)
+        if reason is None:
+            raise
+        raise reason from None
+    below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -1e-9
+    if answer.status is Status.SOLVED and not below:
+        return answer
+    raise _why_not(task, criteria, backend, facets) or SolverFailed(
+        f"{backend}: {answer.status.advice}", program, answer
+    )
+
+
+def _why_not(task: PathTask, criteria: Criteria, backend: str, facets: int | None) -> Infeasible | None:
+    """The reason in words: an instant that cannot be held at all, or the limit that cannot be kept."""
+    for time, load, active in zip(task.times, task.loads, task.active, strict=True):
+        grasp = task.grasp.subset(np.flatnonzero(active).tolist())
+        wrench = Wrench.from_vector(load)
+        if not _holds(task, wrench, active):
+            reason = infeasible(grasp, wrench, criteria)
+            return Infeasible(f"at t = {time:.6g} s: {reason}", reason.certificate)
+    if (task.rates < inf).any():
+        freed = replace(task, rates=np.full_like(task.rates, inf))
+        if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
+            times = solve(path_program(task, "rate", facets=facets), backend, throw=False)
+            factor = (
+                f"{times.value[-1]:.4g} times the rate limits" if times.status is Status.SOLVED else "more"
+            )
+            return Infeasible(
+                f"the forces would have to change at {factor}: allow faster changes, a longer duration or "
+                f"other ends"
+            )
+    if (task.least_normals > 0).any():
+        freed = replace(task, least_normals=0 * task.least_normals)
+        if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
+            return Infeasible(
+                f"no path keeps every normal force at {task.least_normals.max():g} or more; without "
+                f"min_normal there is one"
+            )
+    return None
+
+
+def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
+    """Whether the active fingers can hold a load within cones and limits."""
+    used = np.flatnonzero(active)
+    grasp = task.grasp.subset(used.tolist())
+    start = np.zeros((used.size, 2))
+    return (
+        nearest_equilibrium(
+            start,
+            grasp.matrix,
+            load.vector,
+            grasp.normals,
+            task.frictions[used],
+            task.limits[used],
+            grasp.size,
+        )
+        is not None
+    )
+
+
+def _exact(task: PathTask, value: Array, program: Program, answer: Solution) -> Array:
+    """The solver's path with every instant moved into exact equilibrium inside the cones."""
+    forces = np.zeros((task.times.size, len(task.grasp), 2))
+    forces[0], forces[-1] = task.start, task.end
+    inner = forces[1:-1]
+    inner[:] = task.reference[1:-1]
+    inner[task.active[1:-1]] += value[: 2 * int(task.active[1:-1].sum())].reshape(-1, 2) * task.unit
+    wanted = forces.copy()
+    for pattern in np.unique(task.active[1:-1], axis=0):
+        rows = 1 + np.flatnonzero((task.active[1:-1] == pattern).all(axis=1))
+        used = np.flatnonzero(pattern)
+        forces[np.ix_(rows, used)] = _balanced(task, forces[np.ix_(rows, used)], task.loads[rows], used)
+    scale = max(task.unit, float(abs(wanted).max()))
+    if abs(forces - wanted).max() > 1e-5 * scale:
+        raise SolverFailed("the answer is no equilibrium inside the cones at some instant", program, answer)
+    _check_between(task, forces, scale, program, answer)
+    return forces
+
+
+def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp]) -> Array:
+    """Forces (m, k, 2) of some fingers at m instants, shifted into equilibrium; by Newton if that fails."""
+    grasp = task.grasp.subset(used.tolist())
+    mu, limits = task.frictions[used], task.limits[used]
+    weight = np.array([1.0, 1.0, 1 / (task.grasp.size or 1.0)])
+    g, w = grasp.matrix * weight[:, None], loads * weight
+    flat = forces.reshape(len(forces), -1)
+    inverse = np.linalg.pinv(g)
+    for _ in range(2):
+        flat = flat - (flat @ g.T + w) @ inverse.T
+    moved = flat.reshape(forces.shape)
+    normal = (moved * grasp.normals).sum(axis=-1)
+    inside = abs((moved * grasp.tangents).sum(axis=-1)) <= mu * normal
+    inside &= (moved**2).sum(axis=-1) <= limits**2
+    scale = np.maximum(abs(flat).max(axis=1), abs(w).max(axis=1))
+    good = inside.all(axis=1) & (abs(flat @ g.T + w).max(axis=1) <= EQUILIBRIUM / 2 * scale)
+    for k in np.flatnonzero(~good):
+        exact = nearest_equilibrium(
+            forces[k], grasp.matrix, loads[k], grasp.normals, mu, limits, task.grasp.size or 1.0
+        )
+        moved[k] = np.inf if exact is None else exact
+    return moved
+
+
+def _check_between(task: PathTask, forces: Array, scale: float, program: Program, answer: Solution) -> None:
+    """What the exact forces must still keep: rates and least normal forces."""
+    speed = np.linalg.norm(np.diff(forces, axis=0), axis=-1) / np.diff(task.times)[:, None]
+    normal = (forces * task.grasp.normals).sum(axis=-1)
+    low = task.active & (normal < task.least_normals * (1 - 1e-12))
+    if (speed > task.rates).any() or low.any():
+        raise SolverFailed("the answer breaks a rate limit or a least normal force", program, answer)
