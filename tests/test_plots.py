@@ -606,7 +606,7 @@ def test_limits_come_from_the_choice_or_from_the_contacts():
     limits = addition.record.choices[0].force_limits
     rest = addition.start.without("middle")
     locus = rg.EquilibriumLocus(rest.grasp, rest.load)
-    assert max(locus.state(at).magnitudes / limits[:2]) == pytest.approx(1)
+    assert max(locus.state(at).magnitudes / limits[:2]) == pytest.approx(1, rel=1e-8)
     best = locus.best("angle", max_force=20.0)
     (at,) = limit_lines(plots.plot_locus(locus, chosen=best))
     assert max(locus.state(at).magnitudes) == pytest.approx(20)

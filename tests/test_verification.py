@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import regrasp as rg
 from oracle import is_held
 from regrasp import verification
+from regrasp.planning.transition import Record
 from strategies import held_triples
 
 POSITIONS = {"P1": [-4, -4], "P2": [4, -5], "P3": [0, 8]}
@@ -138,6 +139,8 @@ class Claimed:
     start: rg.GraspState
     end: rg.GraspState
     scaling: Scaling
+    record: Record = Record(0.0)
+    course: None = None
 
 
 @pytest.mark.parametrize(
@@ -173,7 +176,7 @@ def test_ends_of_different_problems(plan: rg.Transition) -> None:
 def test_the_rule_for_no_friction_is_documented_and_kept() -> None:
     """Friction below 2^-40 counts as 2^-40: doubles cannot express a direction more finely."""
     assert verification.RESOLUTION == 2**-40
-    assert "Friction below 2^-40 counts as 2^-40" in verification.__doc__
+    assert "Friction below 2^-40 counts as 2^-40" in verification.exact.__doc__
     up = rg.Grasp([rg.Contact([0, 0], [0, 1], 0.0), rg.Contact([1, 0], [0, 1], 0.0)])
     for slope, fine in ((0.0, True), (2.0**-41, True), (2.0**-39, False)):
         load = rg.Wrench([-slope, -1.0])

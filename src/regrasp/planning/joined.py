@@ -12,9 +12,10 @@ from regrasp.mechanics.checks import Array, choice, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.choice import DEFAULT_BACKEND
+from regrasp.planning.course import Course
 from regrasp.planning.criteria import Criteria
 from regrasp.planning.loads import LoadSeries
-from regrasp.planning.sampled import Course, SampledTransition
+from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Record, Transition
 
@@ -81,16 +82,13 @@ def joined(
     stays = np.arange(len(grasp)) != contact
     least[contact] = 0.0
     _refuse_weak_ends(start, end, least)
-    kept = (rates < inf).any() or least.any()
-    record = replace(
-        record, rate_limits=tuple(rates.tolist()) if (rates < inf).any() else (),
-        least_normals=tuple(least.tolist()) if least.any() else (),
-    )  # fmt: skip
+    has_rates = bool((rates < inf).any())
+    record = replace(record, least_normals=tuple(least.tolist()) if least.any() else ())
     if load is None:
         plan = Transition(kind, grasp.names[contact], start, end, scaling or TimeScaling.spline(1.0), record)
         if scaling is None:
             plan = plan.fastest(rates)
-        fast_enough = not kept or bool((plan.steepest <= rates).all())
+        fast_enough = not has_rates or bool((plan.steepest <= rates).all())
         if demands.path_objective is None and demands.idle_time is None and fast_enough:
             return plan
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
@@ -104,13 +102,18 @@ def joined(
             "Eq. 1-3 holds under a constant load, and no straight path keeps these demands; use method='auto'"
         )
     objective = demands.path_objective or "change"
-    if objective in ("effort", "peak") and not (rates < inf).any():
+    if objective in ("effort", "peak") and not has_rates:
         raise InvalidInput(f"path_objective {objective!r} would jump at both ends; give rate_limit as well")
     backend = DEFAULT_BACKEND if demands.method == "auto" else demands.method
     course = _course(
         kind, contact, start, end, scaling, load, rates, least, stays, criteria, demands, backend
     )
-    record = replace(record, path=backend, path_objective=objective)
+    record = replace(
+        record,
+        path=backend,
+        path_objective=objective,
+        rate_limits=tuple(rates.tolist()) if has_rates else (),
+    )
     return SampledTransition(kind, grasp.names[contact], start, end, scaling, record, course=course)
 
 

@@ -7,35 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
-from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench import torque
+from regrasp.planning.course import Course
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
-
-
-@dataclass(frozen=True, eq=False)
-class Course(ArrayValue):
-    """Forces and loads at instants, both linear in time between them.
-
-    times: (K,) [s], rising from 0. forces: (K, n, d) [N]. loads: (K, 3) or (K, 6) [N, N m].
-    """
-
-    times: Array
-    forces: Array
-    loads: Array
-
-    def __init__(self, times: ArrayLike, forces: ArrayLike, loads: ArrayLike) -> None:
-        t = array(times, "times of a course", (None,))
-        if t.size < 2 or t[0] != 0 or not (np.diff(t) > 0).all():
-            raise InvalidInput("times of a course must rise from 0, two or more")
-        object.__setattr__(self, "times", t)
-        object.__setattr__(self, "forces", array(forces, "forces of a course", (t.size, None, None)))
-        object.__setattr__(self, "loads", array(loads, "loads of a course", (t.size, None)))
-
-    def reversed(self) -> "Course":
-        """The same, run backwards."""
-        return Course(self.times[-1] - self.times[::-1], self.forces[::-1], self.loads[::-1])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -87,6 +63,21 @@ class SampledTransition(Transition):
     def retimed(self, scaling: TimeScaling) -> Transition:
         """Refused: the load is tied to the clock."""
         raise InvalidInput("a path planned through instants keeps its times; plan it with another duration")
+
+    def _load_in_words(self) -> str:
+        if self.start.load == self.end.load and not np.ptp(self.course.loads, axis=0).any():
+            return repr(self.start.load)
+        return f"a load that goes from {self.start.load!r} to {self.end.load!r}"
+
+    def _path_in_words(self) -> list[str]:
+        record = self.record
+        kept = (
+            [f"rates below {', '.join(f'{r:.4g}' for r in record.rate_limits)}"] if record.rate_limits else []
+        )
+        return [
+            f"path of {self.course.times.size} instants for {record.path_objective} by {record.path}",
+            *kept,
+        ]
 
     def _reversed(self, **changes: Any) -> "SampledTransition":
         return replace(self, course=self.course.reversed(), **changes)

@@ -1,6 +1,6 @@
 """A transition between two equilibria: Eq. 1-3 as a value."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import degrees
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -15,6 +15,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
+from regrasp.planning.course import Course
 from regrasp.planning.timing import TimeScaling
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Record:
     reserve: fraction of every friction coefficient kept back. choices: the ends that were not given.
     balancing: largest change of a given force to reach exact equilibrium [N].
     path: ``closed-form`` for Eq. 1-3, or the back end that planned the instants; path_objective: what for.
-    rate_limits [N/s], least_normals [N]: what the path keeps to, one for each contact; empty for none.
+    rate_limits [N/s] of a path through instants, least_normals [N]: one for each contact; empty for none.
     """
 
     reserve: float
@@ -66,7 +67,7 @@ class Transition(ArrayValue, Pictured):
     A path that is not straight is a ``SampledTransition``, which answers the same questions.
 
     kind: ``removal`` or ``addition``. contact: the finger that leaves or arrives, idle at that end.
-    start, end: states of one grasp, every contact in play, under one load.
+    start, end: states of one grasp, every contact in play, under one load. course: None.
     """
 
     kind: Literal["removal", "addition"]
@@ -75,6 +76,7 @@ class Transition(ArrayValue, Pictured):
     end: GraspState
     scaling: TimeScaling
     record: Record
+    course: Course | None = field(default=None, kw_only=True)
 
     _drawn_by = "regrasp.plots.overview:transition_png"
 
@@ -87,6 +89,8 @@ class Transition(ArrayValue, Pictured):
     def _check(self) -> None:
         if self.start.load != self.end.load:
             raise InvalidInput("both ends of a straight path must have the same load")
+        if self.course is not None:
+            raise InvalidInput("a straight path has no course; that is a SampledTransition")
 
     @property
     def grasp(self) -> Grasp:
@@ -175,7 +179,7 @@ class Transition(ArrayValue, Pictured):
 
     def __str__(self) -> str:
         lines = [
-            f"{self.kind} of {self.contact} in {self.duration:g} s under {self.start.load!r}",
+            f"{self.kind} of {self.contact} in {self.duration:g} s under {self._load_in_words()}",
             f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
         ]
         ends = np.array([self.start.margins.angle, self.end.margins.angle])
@@ -191,11 +195,18 @@ class Transition(ArrayValue, Pictured):
         for c in self.record.choices:
             limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
             lines.append(f"{c.end} chosen for {c.objective} by {c.method}, force limits {limits}")
+        lines += self._path_in_words()
         if self.record.balancing:
             lines.append(f"given forces were balanced; largest change {self.record.balancing:.2g}")
         return "\n".join(lines)
 
     __repr__ = __str__
+
+    def _load_in_words(self) -> str:
+        return repr(self.start.load)
+
+    def _path_in_words(self) -> list[str]:
+        return []
 
 
 def setpoint_columns(grasp: Grasp) -> list[str]:

@@ -1,0 +1,11 @@
+"""Independent check of plans in exact rational arithmetic.
+
+Shares no code with the planner: it imports mechanics only, and of these only the values.
+"""
+
+from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.plans import verify
+from regrasp.verification.rows import verify_setpoints
+from regrasp.verification.verdict import Verification
+
+__all__ = ["RESOLUTION", "Verification", "verify", "verify_setpoints"]

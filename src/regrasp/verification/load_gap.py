@@ -1,0 +1,85 @@
+"""How far a plan's load may be from the load it was made for, and whether the margins can take that.
+
+Between instants h apart, a function with |w''| <= c is within c h^2 / 8 of the chord. Forces that balance the
+function itself are f - G+ (w - chord), with G the grasp matrix of the fingers that stay: each changes by at
+most gap / s, s the least singular value of G. If that is no more than the least force margin and what the
+limits leave, such forces lie inside cones and limits at every t.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.wrench import Wrench
+from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.protocols import Plan
+
+# Points between two instants where a gap without a bound is measured.
+_POINTS = 8
+
+
+def check_load(
+    plan: Plan, load: Callable[[float], Wrench], curvature: float | None
+) -> tuple[float, bool, list[str]]:
+    """The gap [N], whether it is proven, and what is wrong with it."""
+    if plan.course is None:
+        times = np.array([0.0, plan.scaling.duration])
+        forces = np.stack([plan.start.forces, plan.end.forces])
+        loads = np.stack([plan.start.load.vector, plan.end.load.vector])
+    else:
+        times, forces, loads = plan.course.times, plan.course.forces, plan.course.loads
+    grasp, name = plan.start.grasp, plan.contact
+    length = grasp.size or 1.0
+    scale = max(_sizes(loads, length).max(), float(abs(forces).max()))
+    off = _sizes(_at(load, times) - loads, length)
+    if (off > float(RESOLUTION) * scale).any():
+        k = int(off.argmax())
+        broken = f"at t = {times[k]:.6g} s the load given differs from the plan's by {off[k]:.3g}"
+        return float(off[k]), False, [broken]
+    if curvature is not None:
+        gap = float(curvature) * float(np.diff(times).max()) ** 2 / 8
+    else:
+        parts = np.arange(1, _POINTS) / _POINTS
+        between = (times[:-1, None] + parts * np.diff(times)[:, None]).ravel()
+        chord = np.stack([np.interp(between, times, column) for column in loads.T], axis=-1)
+        gap = float(_sizes(_at(load, between) - chord, length).max())
+    stays = [i for i, known in enumerate(grasp.names) if known != name]
+    room = _room(plan, forces[:, stays], stays)
+    d = grasp.dimension
+    matrix = grasp.matrix.reshape(-1, len(grasp), d)[:, stays].reshape(grasp.matrix.shape[0], -1).copy()
+    matrix[d:] /= length
+    least = float(np.linalg.svd(matrix, compute_uv=False)[-1])
+    # Force and torque may both be off by the gap.
+    change = np.sqrt(2) * gap / least if least > 1e-12 else np.inf
+    if gap > 0 and change > room:
+        broken = (
+            f"between instants the load given differs from the plan's by up to {gap:.3g}: forces that "
+            f"balance it may differ by {change:.3g}, more than the margins take ({room:.3g}); plan with more instants"
+        )
+        return gap, curvature is not None, [broken]
+    return gap, curvature is not None, []
+
+
+def _at(load: Callable[[float], Wrench], times: Array) -> Array:
+    return np.array([load(t).vector for t in times.tolist()])
+
+
+def _sizes(wrenches: Array, length: float) -> Array:
+    """The larger of |F| and |tau| / length, (m,)."""
+    d = 2 if wrenches.shape[1] == 3 else 3
+    sizes: Array = np.maximum(
+        np.linalg.norm(wrenches[:, :d], axis=1), np.linalg.norm(wrenches[:, d:], axis=1) / length
+    )
+    return sizes
+
+
+def _room(plan: Plan, forces: Array, stays: list[int]) -> float:
+    """The least change of a force that could leave its cone or its limit."""
+    grasp = plan.start.grasp
+    mu, normals = grasp.frictions[stays], grasp.normals[stays]
+    normal = (forces * normals).sum(axis=-1)
+    tangential = np.linalg.norm(forces - normal[..., None] * normals, axis=-1)
+    edge = (mu * normal - tangential) / np.sqrt(1 + mu**2)
+    spare = grasp.max_forces[stays] - np.linalg.norm(forces, axis=-1)
+    return float(min(edge.min(), spare.min()))

@@ -1,0 +1,128 @@
+"""The verdict on whole plans.
+
+On the straight path f(t) lies on the segment between the ends. With one grasp and one load all conditions
+hold at every t when they hold at both ends and 0 <= T(t) <= 1; a B-spline stays within its control values.
+
+On a course forces and loads are linear between instants, so equilibrium, cones, limits and least normal
+forces hold at every t when they hold at the instants, and a rate is one number on each stretch.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import inf
+
+import numpy as np
+
+from regrasp.mechanics.wrench import Wrench
+from regrasp.verification.exact import RESOLUTION, check_state, dot, exact
+from regrasp.verification.load_gap import check_load
+from regrasp.verification.protocols import Course, Plan, Scaling
+from regrasp.verification.rows import Checked, check_rows
+from regrasp.verification.verdict import Verification
+
+
+def verify(
+    plan: Plan, load: Callable[[float], Wrench] | None = None, *, curvature: float | None = None
+) -> Verification:
+    """Check a transition in exact arithmetic: the ends, the path between them and the idle finger.
+
+    load: a function of time [s] that the plan was made for. The plan's load is linear between its instants
+    and is what the forces balance exactly; the function may differ from it between them. That gap must be
+    less than the margins can take: forces that balance the function must exist inside cones and limits.
+    curvature: a bound on the second derivative of the load, |F''| and |tau''| / size [N/s^2], which proves
+    the gap; without it the gap is measured between the instants, and the verdict says so.
+    """
+    violations = _check_idle(plan) + _check_scaling(plan.scaling)
+    if plan.start.grasp != plan.end.grasp:
+        violations.append("start and end have different contacts")
+    found = _check_ends(plan) if plan.course is None else _check_course(plan, plan.course)
+    violations += found.violations + _check_record(plan)
+    gap, proven = None, False
+    if load is not None:
+        gap, proven, broken = check_load(plan, load, curvature)
+        violations += broken
+    return Verification(tuple(violations), *found[1:], gap, proven)
+
+
+def _check_ends(plan: Plan) -> Checked:
+    broken = []
+    if plan.start.load != plan.end.load:
+        broken.append("start and end have different loads, so the straight path keeps no equilibrium")
+    residuals, slacks, angles = [0.0], [inf], [inf]
+    for label, state in (("start", plan.start), ("end", plan.end)):
+        residual, slack, violations = check_state(state, label)
+        residuals.append(residual)
+        slacks.append(slack)
+        angles.append(state.margins.least_angle)
+        broken += violations
+    return Checked(broken, max(residuals), min(angles), min(slacks))
+
+
+def _check_course(plan: Plan, course: Course) -> Checked:
+    times, forces, loads = course.times, course.forces, course.loads
+    broken = []
+    if times[0] != 0 or times[-1] != plan.scaling.duration or not (times[1:] > times[:-1]).all():
+        broken.append(f"the instants must rise from 0 to the duration {plan.scaling.duration!r} s")
+    for label, state, k in (("start", plan.start, 0), ("end", plan.end, -1)):
+        if (state.forces != forces[k]).any() or (state.load.vector != loads[k]).any():
+            broken.append(f"{label}: its forces or its load are not those of the path at that instant")
+    found = check_rows(plan.start.grasp, forces, loads, "instant {}")
+    return found._replace(violations=broken + found.violations)
+
+
+def _check_record(plan: Plan) -> list[str]:
+    """Whether the path keeps the rates and the least normal forces that it says it keeps."""
+    record, names = plan.record, plan.start.grasp.names
+    course = plan.course
+    forces = np.stack([plan.start.forces, plan.end.forces]) if course is None else course.forces
+    broken = []
+    for i, least in enumerate(record.least_normals):
+        normal = exact(plan.start.grasp.contacts[i].normal.tolist())
+        lowest = min(dot(exact(f[i].tolist()), normal) for f in forces)
+        if lowest < Fraction(least) * (1 - RESOLUTION):
+            broken.append(f"{names[i]} pushes with {float(lowest):.9g} along its normal, below {least:.9g}")
+    for i, limit in enumerate(record.rate_limits):
+        if limit < inf:
+            broken += _check_rate(plan, i, limit)
+    return broken
+
+
+def _check_rate(plan: Plan, i: int, limit: float) -> list[str]:
+    """Whether the force of contact i changes no faster than ``limit`` [N/s]."""
+    name, course = plan.start.grasp.names[i], plan.course
+    if course is None:
+        return [f"a straight path promises no rates, this one promises {limit:.9g} for {name}"]
+    times = exact(course.times.tolist())
+    for k in range(len(times) - 1):
+        step = Fraction(limit) * (times[k + 1] - times[k])
+        a, b = exact(course.forces[k, i].tolist()), exact(course.forces[k + 1, i].tolist())
+        change = [x - y for x, y in zip(b, a, strict=True)]
+        if dot(change, change) > (step * (1 + RESOLUTION)) ** 2:
+            return [f"{name} changes faster than {limit:.9g} after t = {course.times[k]:.9g} s"]
+    return []
+
+
+def _check_scaling(scaling: Scaling) -> list[str]:
+    control = [Fraction(c) for c in scaling.control]
+    broken = []
+    if control[0] != 1 or control[-1] != 0:
+        broken.append(
+            f"time scaling runs from {scaling.control[0]:g} to {scaling.control[-1]:g}, not from 1 to 0"
+        )
+    if min(control) < 0 or max(control) > 1:
+        broken.append("time scaling may leave [0, 1], so the path may leave the segment between its ends")
+    if not scaling.duration > 0:
+        broken.append(f"duration is {scaling.duration:g} s, not greater than 0")
+    return broken
+
+
+def _check_idle(plan: Plan) -> list[str]:
+    if plan.kind not in ("removal", "addition"):
+        return [f"kind {plan.kind!r} is neither removal nor addition"]
+    state, when = (plan.end, "end") if plan.kind == "removal" else (plan.start, "start")
+    if plan.contact not in state.grasp.names:
+        return [f"contact {plan.contact!r} is not one of {', '.join(state.grasp.names)}"]
+    force = state.forces[state.grasp.names.index(plan.contact)].tolist()
+    if any(force):
+        return [f"{when}: {plan.contact} must carry no force, it carries {force}"]
+    return []

@@ -1,0 +1,78 @@
+"""What ``verify`` needs to know of a plan, whoever made it."""
+
+from typing import Protocol
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.state import GraspState
+
+
+class Scaling(Protocol):
+    """T(t) as ``verify`` sees it: a B-spline by its control values."""
+
+    @property
+    def duration(self) -> float:
+        """[s]."""
+
+    @property
+    def control(self) -> tuple[float, ...]:
+        """Control values, first to last."""
+
+
+class Course(Protocol):
+    """Forces and loads at instants, linear between them."""
+
+    @property
+    def times(self) -> Array:
+        """(K,) [s]."""
+
+    @property
+    def forces(self) -> Array:
+        """(K, n, d) [N]."""
+
+    @property
+    def loads(self) -> Array:
+        """(K, 3) or (K, 6) [N, N m]."""
+
+
+class Record(Protocol):
+    """What a plan says it keeps to."""
+
+    @property
+    def rate_limits(self) -> tuple[float, ...]:
+        """(n,) [N/s], or empty."""
+
+    @property
+    def least_normals(self) -> tuple[float, ...]:
+        """(n,) [N], or empty."""
+
+
+class Plan(Protocol):
+    """What ``verify`` needs to know of a transition."""
+
+    @property
+    def kind(self) -> str:
+        """``removal`` or ``addition``."""
+
+    @property
+    def contact(self) -> str:
+        """Name of the finger that leaves or arrives."""
+
+    @property
+    def start(self) -> GraspState:
+        """The state at t = 0."""
+
+    @property
+    def end(self) -> GraspState:
+        """The state at t = duration."""
+
+    @property
+    def scaling(self) -> Scaling:
+        """The time function between them."""
+
+    @property
+    def course(self) -> Course | None:
+        """Instants that the forces go through; None for the straight path."""
+
+    @property
+    def record(self) -> Record:
+        """What the plan says of itself."""

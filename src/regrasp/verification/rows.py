@@ -1,0 +1,75 @@
+"""Many rows of forces at once: set-points, and the instants of a course.
+
+Rows that are inside by more than rounding are settled in floating point, whose error is bounded; the others
+are decided exactly.
+"""
+
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench, torque
+from regrasp.verification.exact import RESOLUTION, check_state
+from regrasp.verification.protocols import Plan
+from regrasp.verification.verdict import Verification
+
+
+class Checked(NamedTuple):
+    """What was found of some rows; fields as in ``Verification``."""
+
+    violations: list[str]
+    worst_residual: float
+    least_angle: float
+    least_cone_slack: float
+
+
+def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checked:
+    """Check forces (m, n, d) against loads (m, 3 or 6); ``labels`` names row k by ``labels.format(k)``."""
+    d, doubt = grasp.dimension, float(RESOLUTION)
+    normal = (forces * grasp.normals).sum(axis=-1)
+    tangential = np.linalg.norm(forces - normal[..., None] * grasp.normals, axis=-1)
+    magnitude = np.linalg.norm(forces, axis=-1)
+    inside = grasp.frictions * normal - tangential > doubt * magnitude
+    inside |= magnitude == 0  # the apex, exactly
+    inside &= magnitude <= grasp.max_forces * (1 - doubt)
+    total = np.concatenate([forces, torque(grasp.positions, forces)], axis=-1).sum(axis=1) + loads
+    arm = grasp.size or 1.0
+    scale = np.maximum(magnitude.max(axis=1), np.linalg.norm(loads[:, :d], axis=1))
+    off = np.maximum(np.linalg.norm(total[:, :d], axis=1), np.linalg.norm(total[:, d:], axis=1) / arm)
+    settled = inside.all(axis=1) & (off <= doubt / 2 * scale)
+    violations, slacks, residuals = [], [inf], [0.0]
+    for row in np.flatnonzero(~settled):
+        state = GraspState(grasp, Wrench.from_vector(loads[row]), forces[row])
+        residual, slack, broken = check_state(state, labels.format(row))
+        violations += broken
+        slacks.append(slack)
+        residuals.append(residual)
+    used = magnitude > doubt * scale[:, None]
+    angles = np.where(used, np.arctan(grasp.frictions) - np.arctan2(tangential, normal), inf)
+    return Checked(violations, max(residuals), float(angles.min(initial=inf)), min(slacks))
+
+
+def verify_setpoints(plan: Plan, forces: Array, times: Array | None = None) -> Verification:
+    """Check sampled forces (m, n, d) of a plan, the numbers that a controller will be given.
+
+    times: (m,) [s], needed where the plan's load varies; it is taken as linear between the plan's instants.
+    """
+    start = plan.start
+    n, d = start.forces.shape
+    if forces.ndim != 3 or forces.shape[1:] != (n, d):
+        return Verification((f"set-points must have shape (m, {n}, {d}), got {forces.shape}",), inf, 0, 0)
+    if plan.course is None:
+        loads = np.broadcast_to(start.load.vector, (len(forces), start.load.vector.size))
+    elif times is None:
+        return Verification(("set-points under a load that varies need their times",), inf, 0, 0)
+    else:
+        at = plan.course.times
+        loads = np.stack([np.interp(times, at, column) for column in plan.course.loads.T], axis=-1)
+    found = check_rows(start.grasp, forces, loads, "set-point {}")
+    return Verification(
+        tuple(found.violations), found.worst_residual, found.least_angle, found.least_cone_slack
+    )

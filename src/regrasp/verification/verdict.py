@@ -1,0 +1,46 @@
+"""The verdict on a plan."""
+
+from dataclasses import dataclass
+
+from regrasp.verification.exact import RESOLUTION
+
+
+@dataclass(frozen=True)
+class Verification:
+    """The verdict on a plan.
+
+    violations: each broken condition in words; none for a valid plan.
+    worst_residual: largest equilibrium residual checked, relative to the forces [-].
+    least_angle: smallest angle margin of the contacts in use [rad], for information.
+    least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0 inside.
+    load_gap: largest difference of the plan's load from the load function given [N], torque divided by the
+    grasp's size; None where none was given. load_gap_is_proven: from a bound on the load's curvature, and not
+    measured between the instants.
+    """
+
+    violations: tuple[str, ...]
+    worst_residual: float
+    least_angle: float
+    least_cone_slack: float
+    load_gap: float | None = None
+    load_gap_is_proven: bool = False
+
+    @property
+    def ok(self) -> bool:
+        """Whether the plan holds the object at every instant, inside every cone and limit."""
+        return not self.violations
+
+    def __str__(self) -> str:
+        if not self.ok:
+            return "\n".join(["not verified:", *(f"  {violation}" for violation in self.violations)])
+        lines = [
+            f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
+            f"every force inside its cone, by {self.least_angle:.6g} rad or more"
+        ]
+        if self.load_gap is not None:
+            how = "proven" if self.load_gap_is_proven else "measured between instants, not proven"
+            lines.append(
+                f"the plan's load is within {self.load_gap:.3g} of the load given ({how}), "
+                f"which the margins can take"
+            )
+        return "\n".join(lines)
