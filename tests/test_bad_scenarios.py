@@ -25,6 +25,17 @@ NO_FORCES = (
     ("force = [-3.0096, 4.4156]", ""),
     ("force = [0.7199, -3.9190]", ""),
 )
+
+
+def loaded_at(*times: float) -> str:
+    """The example with its load given at times."""
+    text = edited()
+    head, rest = text.split("[load]", 1)
+    _, contacts = rest.split("\n\n", 1)
+    entries = "\n".join(f"[[load]]\ntime = {t}\nforce = [-1.5, -3.5]\n" for t in times)
+    return f"{head}{entries}\n{contacts}"
+
+
 SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     # -- the file ---------------------------------------------------------------------------------------
     "not TOML": (
@@ -242,7 +253,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         [
             "task.time: unknown key; known here: contact, objective, whole_objective, method, duration, "
-            "rate_limit, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, kind"
+            "rate_limit, min_normal, path_objective, idle_time, instants, facets, rate, scaling, control, "
+            "max_force, peak_ratio, reserve, balance_tolerance, kind"
         ],
     ),
     "no duration": (
@@ -260,10 +272,35 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         ["rate 1e+12 for 1 s makes 1e+12 set-points; at most 1e+08 are made"],
     ),
-    "duration and rate limit": (
-        edited(("duration = 1.0", "duration = 1.0\nrate_limit = 5.0")),
+    "load at times that do not start at zero": (
+        loaded_at(0.1, 1.0),
         2,
-        ["task: rate_limit sets the duration; give one of rate_limit and duration"],
+        ["load: times of a load must rise from 0, two or more; got [0.1, 1.0]"],
+    ),
+    "load at one time": (
+        loaded_at(0.0),
+        2,
+        ["load: expected at least 2 entries, got [{'time': 0.0, 'force': [-1.5, -3.5]}]"],
+    ),
+    "load at times and another duration": (
+        loaded_at(0.0, 2.0),
+        2,
+        ["task.duration: expected 2, the last time of the load, or nothing; got 1"],
+    ),
+    "rates too slow for any path": (
+        edited(("duration = 1.0", "duration = 1.0\nrate_limit = 1.0")),
+        3,
+        [
+            re.compile(
+                r"the forces would have to change at 4\.\d+ times the rate limits: allow faster changes, a longer "
+                r"duration or other ends"
+            )
+        ],
+    ),
+    "a finger idle after the end": (
+        edited(("duration = 1.0", "duration = 1.0\nidle_time = 1.5")),
+        2,
+        ["the finger's idle time must lie inside (0, 1) s, got 1.5"],
     ),
     "control values that rise": (
         edited(("control = [1.0, 1.0, 0.5, 0.0, 0.0]", "control = [1.0, 0.5, 0.6, 0.0]")),
@@ -311,7 +348,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "contacts[0].friction: expected a number of at least 0, got -1",
             "task.rate: expected a number greater than 0, got 0",
             "task.kin: unknown key; known here: contact, objective, whole_objective, method, duration, "
-            "rate_limit, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, kind",
+            "rate_limit, min_normal, path_objective, idle_time, instants, facets, rate, scaling, control, "
+            "max_force, peak_ratio, reserve, balance_tolerance, kind",
         ],
     ),
     # -- infeasible -------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 """The verifier finds every kind of violation and agrees with an exact check written apart from it."""
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import pi
 
 import numpy as np
@@ -69,7 +69,7 @@ def test_a_force_outside_its_cone_by_one_part_in_1e8(end: str) -> None:
     )
     state = getattr(at_the_edge, end)
     edge = state.grasp.names[int(np.nanargmax(state.margins.friction_use))]
-    assert state.margins.largest_friction_use == pytest.approx(1, abs=2e-9)
+    assert state.margins.largest_friction_use == pytest.approx(1, abs=4e-9)
     assert rg.verify(at_the_edge).ok
     slippery = with_state(at_the_edge, end, grasp=paper_grasp(0.3 * (1 - 1e-8)))
     assert f"{end}: force of {edge} is outside its friction cone: it uses 1.00000000" in violations(slippery)
@@ -139,7 +139,7 @@ class Claimed:
     start: rg.GraspState
     end: rg.GraspState
     scaling: Scaling
-    record: Record = Record(0.0)
+    record: Record = field(default_factory=lambda: Record(0.0))
     course: None = None
 
 

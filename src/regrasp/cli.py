@@ -96,7 +96,7 @@ def verify(path: Path) -> None:
     table = path.with_name("setpoints.csv")
     if table.exists():
         times, forces = read_setpoints(table, transition)
-        _verified(verify_setpoints(transition, forces), table)
+        _verified(verify_setpoints(transition, forces, times), table)
         click.echo(f"each of {times.size} set-points in {table} verified too")
 
 
@@ -162,7 +162,7 @@ def _work(
         transition = plan_scenario(scenario)
         verdict = _verified(verify(transition), name)
         for times, forces in setpoint_blocks(transition, rate):
-            _verified(verify_setpoints(transition, forces), name)
+            _verified(verify_setpoints(transition, forces, times), name)
             count += times.size
     click.echo(f"{scenario.title}\n\n{transition}" if scenario.title else transition)
     click.echo(f"{verdict}\neach of {count} set-points verified too")

@@ -13,6 +13,8 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.course import Course
+from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record, Transition
 
@@ -45,6 +47,16 @@ class _Record(Strict):
     reserve: float
     choices: list[_Choice]
     balancing: float
+    path: str
+    path_objective: str | None
+    rate_limits: list[float | None]
+    least_normals: list[float]
+
+
+class _Course(Strict):
+    times: list[float]
+    forces: list[list[list[float]]]
+    loads: list[list[float]]  # force, then torque
 
 
 class _Plan(Strict):
@@ -52,11 +64,12 @@ class _Plan(Strict):
     version: Literal[1]
     kind: Literal["removal", "addition"]
     contact: str
-    load: list[float]  # force, then torque
+    load: list[float]  # force, then torque; at the start
     contacts: list[_Contact]
     start: list[list[float]]
     end: list[list[float]]
     scaling: _Scaling
+    course: _Course | None  # none for the straight path
     record: _Record
 
 
@@ -96,7 +109,7 @@ def read_plan(path: str | Path) -> Transition:
 
 
 def _document(plan: Transition) -> dict[str, Any]:
-    scaling, record = plan.scaling, plan.record
+    scaling, record, course = plan.scaling, plan.record, plan.course
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -120,6 +133,13 @@ def _document(plan: Transition) -> dict[str, Any]:
             "control": list(scaling.control),
             "degree": scaling.degree,
         },
+        "course": None
+        if course is None
+        else {
+            "times": course.times.tolist(),
+            "forces": course.forces.tolist(),
+            "loads": course.loads.tolist(),
+        },
         "record": {
             "reserve": record.reserve,
             "choices": [
@@ -132,6 +152,10 @@ def _document(plan: Transition) -> dict[str, Any]:
                 for c in record.choices
             ],
             "balancing": record.balancing,
+            "path": record.path,
+            "path_objective": record.path_objective,
+            "rate_limits": [None if limit == inf else limit for limit in record.rate_limits],
+            "least_normals": list(record.least_normals),
         },
     }
 
@@ -140,24 +164,34 @@ def _plan(stored: _Plan) -> Transition:
     grasp = Grasp(
         Contact(c.position, c.normal, c.friction, max_force=c.max_force, name=c.name) for c in stored.contacts
     )
-    load, scaling, record = Wrench.from_vector(stored.load), stored.scaling, stored.record
-    return Transition(
-        stored.kind,
-        stored.contact,
-        GraspState(grasp, load, stored.start),
-        GraspState(grasp, load, stored.end),
-        TimeScaling(scaling.duration, tuple(scaling.control), scaling.degree),
-        Record(
-            record.reserve,
-            tuple(
-                Choice(
-                    c.end,
-                    c.objective,
-                    c.method,
-                    tuple(inf if limit is None else limit for limit in c.force_limits),
-                )
-                for c in record.choices
-            ),
-            record.balancing,
-        ),
+    load = Wrench.from_vector(stored.load)
+    given = stored.course
+    course = None if given is None else Course(given.times, given.forces, given.loads)
+    last = load if course is None else Wrench.from_vector(course.loads[-1])
+    ends = GraspState(grasp, load, stored.start), GraspState(grasp, last, stored.end)
+    scaling = TimeScaling(stored.scaling.duration, tuple(stored.scaling.control), stored.scaling.degree)
+    if course is None:
+        return Transition(stored.kind, stored.contact, *ends, scaling, _read_record(stored.record))
+    return SampledTransition(
+        stored.kind, stored.contact, *ends, scaling, _read_record(stored.record), course=course
     )
+
+
+def _read_record(record: _Record) -> Record:
+    choices = (
+        Choice(c.end, c.objective, c.method, tuple(_unlimited(limit) for limit in c.force_limits))
+        for c in record.choices
+    )
+    return Record(
+        record.reserve,
+        tuple(choices),
+        record.balancing,
+        record.path,
+        record.path_objective,
+        tuple(_unlimited(limit) for limit in record.rate_limits),
+        tuple(record.least_normals),
+    )
+
+
+def _unlimited(limit: float | None) -> float:
+    return inf if limit is None else limit

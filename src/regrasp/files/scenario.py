@@ -3,9 +3,9 @@
 import tomllib
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from regrasp.errors import InvalidInput
 from regrasp.files.source import text_of
@@ -17,6 +17,8 @@ from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.change import BALANCE_TOLERANCE
 from regrasp.planning.criteria import PEAK_RATIO, Objective
+from regrasp.planning.joined import PathObjective
+from regrasp.planning.loads import LoadSeries
 from regrasp.planning.timing import PAPER_CONTROL, TimeScaling
 from regrasp.programs import available_backends
 
@@ -40,8 +42,18 @@ Method = Annotated[str, AfterValidator(_known_method)]
 class Load(Strict):
     """The external wrench on the object, about its centre of mass."""
 
+    shape: ClassVar[str] = "table"
+
     force: Vector = Field(description="[N], x and y in the object frame")
     torque: float = Field(0.0, description="[N m], counter-clockwise")
+
+
+class LoadEntry(Load):
+    """The external wrench at a time; linear between entries."""
+
+    shape: ClassVar[str] = "list"
+
+    time: float = Field(ge=0, description="[s], from 0 to the end of the plan, rising")
 
 
 class ContactEntry(Strict):
@@ -82,8 +94,21 @@ class Change(Strict):
     method: Method = Field("auto", description="'auto', 'closed-form' or a back end's name")
     duration: Positive | None = Field(None, description="[s]; 1 unless rate_limit sets it")
     rate_limit: Positive | None = Field(
-        None, description="fastest change of any force [N/s]; the shortest duration that keeps it is used"
+        None,
+        description="fastest change of any force [N/s]; without a duration the shortest is used",
     )
+    min_normal: Annotated[float, Field(ge=0)] | None = Field(
+        None, description="least normal force of the fingers that stay [N]"
+    )
+    path_objective: PathObjective | None = Field(
+        None, description="what the path is planned for, instant by instant; Eq. 1-3 if absent and enough"
+    )
+    idle_time: Positive | None = Field(
+        None,
+        description="time [s] from which the leaving finger, or up to which the arriving one, has no force",
+    )
+    instants: int = Field(101, ge=3, description="instants of a path that is not straight")
+    facets: int | None = Field(None, ge=3, description="sides of polygons in the place of circles")
     rate: Positive = Field(1000.0, description="set-points per second")
     scaling: Literal["spline", "minimum_jerk", "linear"] = Field("spline", description="shape of T(t)")
     control: Control | None = Field(
@@ -108,7 +133,10 @@ class Change(Strict):
     @cached_property
     def time_scaling(self) -> TimeScaling:
         """T(t) over the duration asked for."""
-        duration = 1.0 if self.duration is None else self.duration
+        return self.scaling_lasting(1.0 if self.duration is None else self.duration)
+
+    def scaling_lasting(self, duration: float) -> TimeScaling:
+        """T(t) over another duration."""
         if self.scaling == "minimum_jerk":
             return TimeScaling.minimum_jerk(duration)
         if self.scaling == "linear":
@@ -117,8 +145,6 @@ class Change(Strict):
 
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> "Change":
-        if self.rate_limit is not None and self.duration is not None:
-            raise ValueError("rate_limit sets the duration; give one of rate_limit and duration")
         if self.control is not None and self.scaling != "spline":
             raise ValueError(f"control belongs to scaling 'spline', got scaling {self.scaling!r}")
         return self
@@ -140,7 +166,10 @@ class Scenario(Strict):
     """A planar object held by fingers under a load, and the change of grasp to plan."""
 
     title: str | None = Field(None, description="shown above the plan")
-    load: Load
+    load: Annotated[
+        Annotated[Load, Tag("table")] | Annotated[list[LoadEntry], Tag("list"), Field(min_length=2)],
+        Discriminator(lambda load: "list" if isinstance(load, list) else "table"),
+    ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     contacts: list[ContactEntry] = Field(min_length=2)
     task: Annotated[Removal | Addition, Field(discriminator="kind")]
 
@@ -150,9 +179,18 @@ class Scenario(Strict):
         return Grasp(entry.contact for entry in self.contacts)
 
     @cached_property
-    def wrench(self) -> Wrench:
+    def external(self) -> Wrench | LoadSeries:
         """The load as a value."""
-        return Wrench(self.load.force, self.load.torque)
+        if isinstance(self.load, Load):
+            return Wrench(self.load.force, self.load.torque)
+        return LoadSeries([e.time for e in self.load], [[*e.force, e.torque] for e in self.load])
+
+    def wrench(self, end: Literal["start", "end"]) -> Wrench:
+        """The load at an end of the task."""
+        external = self.external
+        if isinstance(external, Wrench):
+            return external
+        return external(0.0 if end == "start" else external.duration)
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Scenario":
@@ -163,6 +201,15 @@ class Scenario(Strict):
         if self.task.contact not in names:
             raise ValueError(f"task.contact: expected one of {', '.join(names)}, got {self.task.contact!r}")
         idle = "end_force" if self.task.kind == "removal" else "force"
+        try:
+            external = self.external
+        except InvalidInput as error:
+            raise ValueError(f"load: {error}") from None
+        if isinstance(external, LoadSeries) and self.task.duration not in (None, external.duration):
+            raise ValueError(
+                f"task.duration: expected {external.duration:g}, the last time of the load, or nothing; "
+                f"got {self.task.duration:g}"
+            )
         problems = [*self._gaps("force", idle), *self._gaps("end_force", idle)]
         if problems:
             raise ValueError("\n".join(problems))

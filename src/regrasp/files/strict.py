@@ -67,7 +67,7 @@ def _in_words(model: type[BaseModel], problem: Mapping[str, Any]) -> str:
 def _place(model: type[BaseModel], location: Sequence[int | str]) -> tuple[str, list[type[BaseModel]]]:
     """The key path in a file's own terms, ``contacts[1].normal: ``, and the models that may stand there.
 
-    pydantic's location names the variant of a table chosen by its ``kind`` as well, which no file shows.
+    pydantic's location names the variant of a table as well, which no file shows.
     """
     path, models = "", [model]
     for part in location:
@@ -90,9 +90,9 @@ def _models_in(annotation: Any) -> list[type[BaseModel]]:
 
 
 def _tag(model: type[BaseModel]) -> Any:
-    """The value of ``kind`` that chooses a variant of a table."""
+    """What chooses a variant of a table: the value of its ``kind``, or the name of the shape it comes in."""
     field = model.model_fields.get("kind")
-    return get_args(field.annotation)[0] if field else None
+    return get_args(field.annotation)[0] if field else getattr(model, "shape", None)
 
 
 def _shown(value: Any) -> str:

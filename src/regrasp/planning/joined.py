@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,8 @@ from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Record, Transition
 
-PATH_OBJECTIVES = ("change", "effort", "force", "peak")
+PathObjective = Literal["change", "effort", "force", "peak"]
+PATH_OBJECTIVES = get_args(PathObjective)
 
 # Where T stands still the least change still moves with time, at this fraction of the average pace.
 _LEAST_PACE = 1e-6
@@ -134,16 +135,16 @@ def _course(
     from regrasp.planning.path import planned_path
     from regrasp.planning.path_program import PathTask
 
-    grasp, fine = start.grasp, load.refined(demands.instants)
+    grasp, idle = start.grasp, demands.idle_time
+    if idle is not None and not (0 < idle < scaling.duration):
+        raise InvalidInput(
+            f"the finger's idle time must lie inside (0, {scaling.duration:g}) s, got {idle:g}"
+        )
+    fine = load.refined(demands.instants, *(() if idle is None else (idle,)))
     times = fine.times
     active = np.ones((times.size, len(grasp)), dtype=bool)
     active[-1 if kind == "removal" else 0, contact] = False
-    if demands.idle_time is not None:
-        idle = demands.idle_time
-        if not (0 < idle < scaling.duration):
-            raise InvalidInput(
-                f"the finger's idle time must lie inside (0, {scaling.duration:g}) s, got {idle:g}"
-            )
+    if idle is not None:
         active[times >= idle if kind == "removal" else times <= idle, contact] = False
     steps = np.maximum(-np.diff(scaling(times)), _LEAST_PACE * np.diff(times) / scaling.duration)
     phases = np.append(0.0, np.cumsum(steps) / steps.sum())

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,13 +63,13 @@ class LoadSeries(ArrayValue):
         result: Array = np.stack([np.interp(times, self.times, c) for c in self.vectors.T], axis=-1)
         return result
 
-    def refined(self, instants: int) -> "LoadSeries":
-        """The same load with ``instants`` equal steps added between the times it has."""
-        times = np.union1d(self.times, np.linspace(0, self.duration, instants))
-        # A step of rounding beside a time that was there already.
-        keep = np.append(True, np.diff(times) > 1e-9 * self.duration / instants)
-        keep |= np.isin(times, self.times)
-        times = times[keep]
+    def refined(self, instants: int, *also: float) -> "LoadSeries":
+        """The same load known at ``instants`` equal steps, too, and at the times of ``also`` [s]."""
+        times: Array = np.array(also)
+        # Steps of rounding beside a time that is there already would make stretches of no length.
+        for more in (self.times, np.linspace(0, self.duration, instants)):
+            apart = abs(more[:, None] - times).min(axis=1, initial=inf) > 1e-9 * self.duration / instants
+            times = np.union1d(times, more[apart])
         return LoadSeries(times, self.at(times))
 
     def __repr__(self) -> str:

@@ -13,10 +13,12 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import Criteria
 from regrasp.planning.escape import infeasible
 from regrasp.planning.path_program import PathTask, path_program
-from regrasp.programs import Program, Solution, Status, solve
+from regrasp.programs import Solution, Status, solve
 
-# Fraction of friction, limits and rates kept back, so that a solver's rounding stays inside them.
-_SLACK, _RATE_SLACK = 1e-9, 1e-7
+# Fraction of friction and limits kept back, so that a solver's rounding stays inside them.
+_SLACK = 1e-9
+# Where an answer breaks a rate or a least normal force by rounding, twice the breach is kept back next.
+_ATTEMPTS = 4
 
 
 def planned_path(
@@ -28,31 +30,45 @@ def planned_path(
     one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or the limit
     that stands in the way.
     """
-    kept = _kept(task)
-    if objective == "force":
-        if (task.limits == inf).any():
-            least = _solved(kept, "peak", criteria, backend, facets)
-            peak = criteria.peak_ratio * float(least.value[-1]) * task.unit
-            kept = replace(kept, limits=np.minimum(kept.limits, peak))
-        widest = _solved(kept, "force", criteria, backend, facets)
-        margin = float(widest.value[-1]) * task.unit
-        program = path_program(kept, "change", least_margin=margin - 1e-7 * abs(margin), facets=facets)
-        answer = solve(program, backend)
-        if answer.status is not Status.SOLVED:
-            raise SolverFailed(f"{backend}: no path of least change at the widest margin", program, answer)
-    else:
-        answer = _solved(kept, objective, criteria, backend, facets)
-    return _exact(task, answer.value, answer.program, answer)
+    slack = _SLACK
+    for _ in range(_ATTEMPTS):
+        answer = _best(_kept(task, slack), objective, criteria, backend, facets)
+        forces = _exact(task, answer)
+        breach = _breach(task, forces)
+        if breach <= 0:
+            return forces
+        slack += 2 * breach
+    raise SolverFailed(
+        f"{backend}: the path breaks a rate limit or a least normal force by {breach:.2g} of it",
+        answer.program,
+        answer,
+    )
 
 
-def _kept(task: PathTask) -> PathTask:
+def _best(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
+    if objective != "force":
+        return _solved(task, objective, criteria, backend, facets)
+    if (task.limits == inf).any():
+        least = _solved(task, "peak", criteria, backend, facets)
+        peak = criteria.peak_ratio * float(least.value[-1]) * task.unit
+        task = replace(task, limits=np.minimum(task.limits, peak))
+    widest = _solved(task, "force", criteria, backend, facets)
+    margin = float(widest.value[-1]) * task.unit
+    program = path_program(task, "change", least_margin=margin - 1e-7 * abs(margin), facets=facets)
+    answer = solve(program, backend)
+    if answer.status is not Status.SOLVED:
+        raise SolverFailed(f"{backend}: no path of least change at the widest margin", program, answer)
+    return answer
+
+
+def _kept(task: PathTask, slack: float) -> PathTask:
     keep = 1 - _SLACK
     return replace(
         task,
         frictions=keep * task.frictions,
         limits=keep * task.limits,
-        rates=(1 - _RATE_SLACK) * task.rates,
-        least_normals=(1 + _SLACK) * task.least_normals,
+        rates=(1 - slack) * task.rates,
+        least_normals=(1 + slack) * task.least_normals,
     )
 
 
@@ -121,13 +137,13 @@ def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
     )
 
 
-def _exact(task: PathTask, value: Array, program: Program, answer: Solution) -> Array:
+def _exact(task: PathTask, answer: Solution) -> Array:
     """The solver's path with every instant moved into exact equilibrium inside the cones."""
     forces = np.zeros((task.times.size, len(task.grasp), 2))
     forces[0], forces[-1] = task.start, task.end
     inner = forces[1:-1]
     inner[:] = task.reference[1:-1]
-    inner[task.active[1:-1]] += value[: 2 * int(task.active[1:-1].sum())].reshape(-1, 2) * task.unit
+    inner[task.active[1:-1]] += answer.value[: 2 * int(task.active[1:-1].sum())].reshape(-1, 2) * task.unit
     wanted = forces.copy()
     for pattern in np.unique(task.active[1:-1], axis=0):
         rows = 1 + np.flatnonzero((task.active[1:-1] == pattern).all(axis=1))
@@ -135,8 +151,9 @@ def _exact(task: PathTask, value: Array, program: Program, answer: Solution) -> 
         forces[np.ix_(rows, used)] = _balanced(task, forces[np.ix_(rows, used)], task.loads[rows], used)
     scale = max(task.unit, float(abs(wanted).max()))
     if abs(forces - wanted).max() > 1e-5 * scale:
-        raise SolverFailed("the answer is no equilibrium inside the cones at some instant", program, answer)
-    _check_between(task, forces, scale, program, answer)
+        raise SolverFailed(
+            "the answer is no equilibrium inside the cones at some instant", answer.program, answer
+        )
     return forces
 
 
@@ -164,10 +181,10 @@ def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp
     return moved
 
 
-def _check_between(task: PathTask, forces: Array, scale: float, program: Program, answer: Solution) -> None:
-    """What the exact forces must still keep: rates and least normal forces."""
+def _breach(task: PathTask, forces: Array) -> float:
+    """The fraction by which the exact forces break a rate or a least normal force; not above 0 if none."""
     speed = np.linalg.norm(np.diff(forces, axis=0), axis=-1) / np.diff(task.times)[:, None]
     normal = (forces * task.grasp.normals).sum(axis=-1)
-    low = task.active & (normal < task.least_normals * (1 - 1e-12))
-    if (speed > task.rates).any() or low.any():
-        raise SolverFailed("the answer breaks a rate limit or a least normal force", program, answer)
+    needed = task.active & (task.least_normals > 0)
+    short = (1 - normal / np.where(task.least_normals > 0, task.least_normals, 1.0))[needed]
+    return float(max((speed / task.rates - 1).max(), short.max(initial=-inf)))

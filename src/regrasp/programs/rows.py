@@ -42,13 +42,16 @@ class Rows:
         n = self._unknowns
         if not self._matrices:
             raise InvalidInput("a program needs at least one row")
-        return Program(
+        program = Program(
             P=sparse.csc_matrix((n, n)) if P is None else sparse.csc_matrix(P, dtype=float),
             q=np.asarray(q, dtype=float),
             A=-sparse.vstack(self._matrices, format="csc"),
             b=np.concatenate(self._offsets),
             blocks=tuple(self._blocks),
         )
+        for matrix in (program.P, program.A):
+            matrix.sum_duplicates()  # sorts, too: some solvers read unsorted columns wrongly and say nothing
+        return program
 
     def _checked(self, matrix: ArrayLike | sparse.spmatrix) -> sparse.csr_matrix:
         m = sparse.csr_matrix(matrix if sparse.issparse(matrix) else np.atleast_2d(matrix), dtype=float)

@@ -55,7 +55,8 @@ def check_load(
     if gap > 0 and change > room:
         broken = (
             f"between instants the load given differs from the plan's by up to {gap:.3g}: forces that "
-            f"balance it may differ by {change:.3g}, more than the margins take ({room:.3g}); plan with more instants"
+            f"balance it may differ by {change:.3g}, more than the margins take ({room:.3g}); plan with "
+            f"more instants"
         )
         return gap, curvature is not None, [broken]
     return gap, curvature is not None, []
