@@ -12,6 +12,7 @@ from matplotlib.patches import FancyArrowPatch, Wedge
 from mpl_toolkits.mplot3d import Axes3D
 
 import regrasp as rg
+from paper import STATE
 from regrasp import plots
 from regrasp.mechanics.wrench_space import WrenchCone, WrenchLoop, WrenchPlane, iso_torque_line
 from regrasp.plots.style import round_below
@@ -389,6 +390,7 @@ VALUES = {
     "effort": lambda state: state.magnitudes**2,
     "peak": lambda state: state.magnitudes,
     "peak_normal": lambda state: (state.forces * state.grasp.normals).sum(axis=1),
+    "friction_use": lambda state: state.margins.friction_use,
 }
 
 
@@ -400,6 +402,7 @@ VALUES = {
         ("effort", "sum", sum),
         ("peak", "largest", max),
         ("peak_normal", "largest", max),
+        ("friction_use", "largest", max),
     ],
 )
 def test_the_locus_shows_each_contact_their_objective_and_the_chosen_state(
@@ -744,3 +747,26 @@ def test_round_numbers_stay_below():
 def run(code):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return done.stdout.strip()
+
+
+def test_a_load_over_time_is_drawn_where_it_varies() -> None:
+    series = rg.LoadSeries([0.0, 0.5, 1.0], [[-1.5, -3.5, 0.0], [-1.0, -3.0, 0.2], [-1.5, -3.5, 0.1]])
+    varying = rg.plan_removal(STATE.grasp, "P3", load=series, instants=5)
+    ax = plots.plot_load(varying)
+    drawn = {line.get_label(): line.get_ydata() for line in ax.get_lines()}
+    assert drawn["$f_x$"] == pytest.approx([-1.5, -1.25, -1.0, -1.25, -1.5])
+    assert drawn["$f_y$"] == pytest.approx(varying.course.loads[:, 1])
+    (right,) = [other for other in ax.figure.axes if other is not ax]
+    assert right.get_lines()[0].get_ydata() == pytest.approx(varying.course.loads[:, 2])
+    assert "load" in plots.figures(varying)
+    straight = rg.plan_removal(STATE, "P3")
+    assert "load" not in plots.figures(straight)
+    with pytest.raises(rg.InvalidInput, match="constant"):
+        plots.plot_load(straight)
+
+
+def test_the_dashed_margin_of_a_path_is_its_least_at_any_instant() -> None:
+    path = rg.plan_removal(STATE, "P3", duration=1.0, rate_limit=5.0)
+    ax = plots.plot_margins(path, objective="force")
+    (least,) = [line.get_ydata()[0] for line in ax.get_lines() if line.get_gid() == "least"]
+    assert least == pytest.approx(path.margins(path.course.times).least_force)

@@ -50,6 +50,11 @@ class SampledTransition(Transition):
         return slope[k]
 
     @property
+    def load_varies(self) -> bool:
+        """Whether the load is not the same at every instant."""
+        return bool(np.ptp(self.course.loads, axis=0).any())
+
+    @property
     def steepest(self) -> Array:
         """(n,) the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
         moved = np.linalg.norm(np.diff(self.course.forces, axis=0), axis=-1)
@@ -65,7 +70,7 @@ class SampledTransition(Transition):
         raise InvalidInput("a path planned through instants keeps its times; plan it with another duration")
 
     def _load_in_words(self) -> str:
-        if self.start.load == self.end.load and not np.ptp(self.course.loads, axis=0).any():
+        if not self.load_varies:
             return repr(self.start.load)
         return f"a load that goes from {self.start.load!r} to {self.end.load!r}"
 

@@ -117,6 +117,11 @@ class Transition(ArrayValue, Pictured):
         return result
 
     @property
+    def load_varies(self) -> bool:
+        """Whether the load is not the same at every instant."""
+        return False
+
+    @property
     def steepest(self) -> Array:
         """(n,) the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
         moved: Array = np.linalg.norm(self.start.forces - self.end.forces, axis=1)

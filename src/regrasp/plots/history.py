@@ -51,17 +51,19 @@ def plot_margins(
 ) -> Axes:
     """The ``angle`` margin [deg] or the ``force`` margin [N] of every finger over time.
 
-    The dashed line is the least margin at both ends: no margin falls below it in between (fact 1).
+    The dashed line is the least margin at both ends, or at any instant of a path through instants: no margin
+    falls below it in between (fact 1).
     """
     choice(objective, "objective", ("angle", "force"))
     ax = axes_or_new(ax)
     t = _times(transition)
     margins = transition.margins(t)
-    ends = transition.start.margins, transition.end.margins
+    course = transition.course
+    known = transition.margins(np.array([0.0, transition.duration]) if course is None else course.times)
     if objective == "angle":
-        values, least = np.degrees(margins.angle), np.degrees(min(e.least_angle for e in ends))
+        values, least = np.degrees(margins.angle), np.degrees(known.least_angle)
     else:
-        values, least = margins.force, min(e.least_force for e in ends)
+        values, least = margins.force, known.least_force
     _lines(ax, transition, t, values, units)
     ax.axhline(least, color=INK, linewidth=0.9, linestyle="--", gid="least")
     ax.set_ylim(bottom=min(0.0, 1.1 * float(least)))

@@ -1,7 +1,7 @@
 """The value of a state along the equilibrium locus, against the squeeze."""
 
 from collections.abc import Sequence
-from math import inf, isfinite
+from math import inf, isfinite, nan
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,6 +32,7 @@ _SHOWN = {
     "force": ("force margin", "{force}", np.fmin, "least"),
     "effort": ("$|f|^2$", "{force}$^2$", np.add, "sum"),
     "peak": ("$|f|$", "{force}", np.maximum, "largest"),
+    "friction_use": ("friction use", "-", np.fmax, "largest"),
     "peak_normal": ("normal force", "{force}", np.maximum, "largest"),
 }
 
@@ -76,6 +77,9 @@ def plot_locus(
         ax.axhline(0, color=GREY, linewidth=0.7)
         bottom, top = ax.get_ylim()
         ax.set_ylim(max(bottom, -0.4 * abs(top)), top)  # far outside the cones there is nothing to read
+    if objective == "friction_use":
+        ax.axhline(1, color=GREY, linewidth=0.7)
+        ax.set_ylim(0, 1.3)
     for end in ends:
         if isfinite(end):
             ax.axvline(end, color=GREY, linewidth=0.9, linestyle="--", gid="end")
@@ -118,6 +122,9 @@ def _values(locus: EquilibriumLocus, x: Array, objective: str) -> Array:
         values = np.degrees(locus.margins(x).angle)
     elif objective == "force":
         values = locus.margins(x).force
+    elif objective == "friction_use":
+        use = locus.margins(x).friction_use
+        values = np.where(np.isfinite(use), use, nan)
     elif objective == "peak_normal":
         values = (locus.forces(x) * locus.grasp.normals).sum(axis=-1)
     else:

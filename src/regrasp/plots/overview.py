@@ -8,6 +8,7 @@ from regrasp.planning.locus import EquilibriumLocus
 from regrasp.planning.transition import Transition
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
 from regrasp.plots.iso_torque import plot_iso_torque
+from regrasp.plots.load_history import plot_load
 from regrasp.plots.locus import plot_locus
 from regrasp.plots.object import force_scale_of, plot_state, plot_transition
 from regrasp.plots.style import (
@@ -24,7 +25,7 @@ from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
 
 
 def transition_figure(transition: Transition, *, units: Units = SI) -> Figure:
-    """The object with its force paths, magnitudes, angles and T(t), two by two.
+    """The object with its force paths, magnitudes, angles and T(t), or the load if it varies, two by two.
 
     Raises ``InvalidInput`` for a grasp in space.
     """
@@ -33,7 +34,11 @@ def transition_figure(transition: Transition, *, units: Units = SI) -> Figure:
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
     plot_transition(transition, tidy(figure.add_subplot(grid[0, 0])), units=units)
     plot_magnitudes(transition, tidy(figure.add_subplot(grid[0, 1])), units=units)
-    plot_scaling(transition.scaling, tidy(figure.add_subplot(grid[1, 0])), units=units)
+    below = tidy(figure.add_subplot(grid[1, 0]))
+    if transition.load_varies:
+        plot_load(transition, below, units=units)
+    else:
+        plot_scaling(transition.scaling, below, units=units)
     plot_angles(transition, tidy(figure.add_subplot(grid[1, 1])), units=units)
     return figure
 
@@ -54,7 +59,7 @@ def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
     """Every figure of a transition by file stem.
 
     ``overview``, ``states``, ``object``, ``iso_torque``, ``wrench_loop``, ``wrench_paths``, ``time_scaling``,
-    ``magnitudes``, ``angles``, ``margins``; and ``locus`` where two contacts remain.
+    ``magnitudes``, ``angles``, ``margins``; ``load`` where it varies; ``locus`` where two contacts remain.
     Raises ``InvalidInput`` for a grasp in space.
     """
     refuse_space(transition.grasp.dimension)
@@ -73,6 +78,8 @@ def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
         "angles": plot_angles(transition, units=units).figure,
         "margins": plot_margins(transition, units=units).figure,
     }
+    if transition.load_varies:
+        drawn["load"] = plot_load(transition, units=units).figure
     if len(rest.grasp) == 2:
         locus = EquilibriumLocus(rest.grasp, rest.load)
         objective, limits = _chosen_for(transition)
