@@ -5,7 +5,7 @@ from pathlib import Path
 
 import regrasp as rg
 from regrasp.files import parse_scenario, plan_scenario
-from regrasp.plots import plot_escape, transition_figure
+from regrasp.plots import plot_escape, plot_sensitivity, transition_figure
 
 IMAGES = Path(__file__).parent / "images"
 
@@ -19,3 +19,6 @@ if __name__ == "__main__":
     except rg.Infeasible as reason:
         figure = plot_escape(reason.certificate).figure
         figure.savefig(IMAGES / "escape.png", dpi=160, metadata={"Software": None})
+    found = rg.sensitivity(removal.grasp, removal.start.load, "force", max_force=8)
+    figure = plot_sensitivity(found).figure
+    figure.savefig(IMAGES / "sensitivity.png", dpi=160, metadata={"Software": None})

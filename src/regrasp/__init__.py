@@ -11,7 +11,10 @@ from regrasp.planning.batch import best_squeezes, locus_intervals
 from regrasp.planning.change import plan_addition, plan_removal
 from regrasp.planning.choice import choose_state
 from regrasp.planning.criteria import ChosenState
+from regrasp.planning.loads import LoadSeries
 from regrasp.planning.locus import EquilibriumLocus
+from regrasp.planning.sampled import SampledTransition
+from regrasp.planning.sensitivity import Sensitivity, sensitivity
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
 from regrasp.verification import Verification, verify
@@ -27,8 +30,11 @@ __all__ = [
     "GraspState",
     "Infeasible",
     "InvalidInput",
+    "LoadSeries",
     "Margins",
     "RegraspError",
+    "SampledTransition",
+    "Sensitivity",
     "SolverFailed",
     "SolverUnavailable",
     "TimeScaling",
@@ -40,5 +46,6 @@ __all__ = [
     "locus_intervals",
     "plan_addition",
     "plan_removal",
+    "sensitivity",
     "verify",
 ]

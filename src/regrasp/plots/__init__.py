@@ -8,6 +8,7 @@ N, m and s unless ``units`` names others; numbers are never converted.
 from regrasp.plots.escape import plot_escape
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
 from regrasp.plots.iso_torque import plot_iso_torque
+from regrasp.plots.load_history import plot_load
 from regrasp.plots.locus import plot_locus
 from regrasp.plots.object import plot_state, plot_transition
 from regrasp.plots.overview import (
@@ -18,6 +19,7 @@ from regrasp.plots.overview import (
     transition_figure,
     transition_png,
 )
+from regrasp.plots.sensitivity import plot_sensitivity
 from regrasp.plots.style import contact_colours
 from regrasp.plots.timing import plot_scaling
 from regrasp.plots.units import SI, Units
@@ -33,11 +35,13 @@ __all__ = [
     "plot_angles",
     "plot_escape",
     "plot_iso_torque",
+    "plot_load",
     "plot_locus",
     "plot_locus_segment",
     "plot_magnitudes",
     "plot_margins",
     "plot_scaling",
+    "plot_sensitivity",
     "plot_state",
     "plot_transition",
     "plot_wrench_cone",
