@@ -44,7 +44,7 @@ class Sensitivity(ArrayValue, Pictured):
     load: (3,) per newton, newton and newton metre of the load.
 
     Each is the value's unit (``angle`` [rad], ``effort`` [N^2], ``friction_use`` [-], others [N]) per the
-    parameter's, and is right to about 1e-6 of the largest of its kind.
+    parameter's.
     """
 
     state: ChosenState
