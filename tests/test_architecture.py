@@ -101,7 +101,7 @@ def may_import(module: str, package: str) -> bool:
     if package == "pydantic":
         return here == "files"
     if package == "numba":
-        return module == "regrasp.closed_form.compiled"
+        return module in ("regrasp.closed_form.compiled", "regrasp.programs.audit")
     if package in SOLVERS:
         return module == f"regrasp.programs.{package}_backend"
     if package in ("click", "rich"):

@@ -1,5 +1,7 @@
 """The load over time."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -12,15 +14,18 @@ from regrasp.plots.units import SI, Units
 def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """External force and torque on the object over time, in the object frame; dots where it is given.
 
-    The torque has its own axis on the right. Raises ``InvalidInput`` for a straight path: its load is constant.
+    The torque has its own axis on the right. Raises ``InvalidInput`` for a straight path, whose load is one.
     """
     refuse_space(transition.grasp.dimension)
     course = transition.course
     if course is None:
         raise InvalidInput("the load of a straight path is constant; there is nothing to draw over time")
     ax = axes_or_new(ax)
-    dots = "." if course.times.size <= 60 else ""
-    look = {"linewidth": 1.4, "marker": dots, "markersize": 4}
+    look: dict[str, Any] = {
+        "linewidth": 1.4,
+        "marker": "." if course.times.size <= 60 else "",
+        "markersize": 4,
+    }
     for axis, name in enumerate("xy"):
         ax.plot(course.times, course.loads[:, axis], color=PALETTE[axis], label=f"$f_{name}$", **look)
     right = ax.twinx()

@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from math import inf
-
-import numpy as np
+from math import inf, isnan
+from typing import TYPE_CHECKING
 
 from regrasp.programs.program import Array, Program
+
+if TYPE_CHECKING:
+    from regrasp.programs.audit import Audit
 
 
 class Status(Enum):
@@ -47,21 +49,20 @@ class Solution:
     said: str
 
     @cached_property
-    def _px(self) -> Array:
-        px: Array = self.program.P @ self.value
-        return px
+    def _audit(self) -> "Audit":
+        from regrasp.programs.audit import audited
+
+        return audited(self.program, self.value, self.duals)
 
     @cached_property
     def objective(self) -> float:
         """1/2 x'Px + q'x."""
-        return self.program.objective(self.value)
+        return 0.5 * self._audit.xpx + self._audit.qx
 
     @cached_property
     def primal_residual(self) -> float:
         """Distance of b - A x to K, relative to the largest entry of b and A x."""
-        s = self.program.slack(self.value)
-        scale = max(_largest(self.program.b), _largest(self.program.b - s))
-        return _relative(self.program.distance_to_cones(s), scale)
+        return _relative(self._audit.slack_violation, max(self._audit.b, self._audit.ax))
 
     @cached_property
     def dual_residual(self) -> float:
@@ -69,27 +70,23 @@ class Solution:
 
         The terms are those at x, and P x at an x of the size of the data, for answers near x = 0.
         """
-        p = self.program
-        px, az = self._px, p.A.T @ self.duals
-        usual = _largest(p.P.data) * _ratio(p.b, p.A.data)
-        stationarity = _relative(
-            _largest(px + p.q + az), max(_largest(px), _largest(p.q), _largest(az), usual)
-        )
-        return max(stationarity, _relative(p.distance_to_cones(self.duals, dual=True), _largest(self.duals)))
+        a = self._audit
+        usual = a.p * _ratio(a.b, a.a)
+        stationarity = _relative(a.stationarity, max(a.px, a.q, a.az, usual))
+        return max(stationarity, _relative(a.dual_violation, a.z))
 
     @cached_property
     def gap(self) -> float:
         """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|, or to x'Px as in ``dual_residual``."""
-        p, x, z, px, norm = self.program, self.value, self.duals, self._px, np.linalg.norm
-        scale = float(norm(x) * norm(px) + norm(p.q) * norm(x) + norm(p.b) * norm(z))
-        usual = _largest(p.P.data) * _ratio(p.b, p.A.data) ** 2
-        return _relative(abs(float(x @ px + p.q @ x + p.b @ z)), max(scale, usual))
+        a = self._audit
+        scale = a.x_length * a.px_length + a.q_length * a.x_length + a.b_length * a.z_length
+        usual = a.p * _ratio(a.b, a.a) ** 2
+        return _relative(self.absolute_gap, max(scale, usual))
 
     @property
     def absolute_gap(self) -> float:
         """|x'Px + q'x + b'z|, the distance of the objective from the dual's."""
-        p, x = self.program, self.value
-        return abs(float(x @ self._px + p.q @ x + p.b @ self.duals))
+        return abs(self._audit.xpx + self._audit.qx + self._audit.bz)
 
     @cached_property
     def infeasibility_residual(self) -> float:
@@ -97,16 +94,14 @@ class Solution:
 
         Any feasible x would need |x| of at least 1 / residual times the size b / A of the data.
         """
-        p, z = self.program, self.duals
-        off = max(_largest(p.A.T @ z), p.distance_to_cones(z, dual=True))
-        return _per(off * _ratio(p.b, p.A.data), -float(p.b @ z))
+        a = self._audit
+        return _per(max(a.az, a.dual_violation) * _ratio(a.b, a.a), -a.bz)
 
     @cached_property
     def unboundedness_residual(self) -> float:
         """How far value is from a direction of descent, P x = 0, -A x in K, q'x < 0; infinite if q'x >= 0."""
-        p, x = self.program, self.value
-        off = max(_largest(p.P @ x), p.distance_to_cones(-(p.A @ x)))
-        return _per(off * _ratio(p.q, p.A.data), -float(p.q @ x))
+        a = self._audit
+        return _per(max(a.px, a.ray_violation) * _ratio(a.q, a.a), -a.qx)
 
     @cached_property
     def residual(self) -> float:
@@ -116,7 +111,7 @@ class Solution:
         if self.status is Status.UNBOUNDED:
             return self.unboundedness_residual
         values = (self.primal_residual, self.dual_residual, self.gap)
-        return inf if any(np.isnan(values)) else max(values)
+        return inf if any(map(isnan, values)) else max(values)
 
     def __str__(self) -> str:
         return (
@@ -125,13 +120,8 @@ class Solution:
         )
 
 
-def _largest(values: Array) -> float:
-    return float(abs(values).max(initial=0.0))
-
-
-def _ratio(values: Array, by: Array) -> float:
-    """The size of ``values`` in units of ``by``."""
-    return _largest(values) / (_largest(by) or 1.0)
+def _ratio(size: float, by: float) -> float:
+    return size / (by or 1.0)
 
 
 def _per(amount: float, by: float) -> float:
