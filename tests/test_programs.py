@@ -112,8 +112,30 @@ def test_clarabel_proves_infeasibility_and_unboundedness():
 
 def test_a_back_end_that_refuses_a_program_is_no_verdict():
     pytest.importorskip("quadprog")
+    rows = Rows(2)
+    rows.at_least_zero(np.eye(2))
     with pytest.raises(SolverFailed, match="P is not positive definite"):
-        solve(falling(), "quadprog")
+        solve(rows.program([1.0, 1.0], np.ones((2, 2))), "quadprog")
+
+
+def cheapest_corner():
+    """min -x - 2 y on the triangle x + y <= 30, x, y >= 0: the corner (0, 30)."""
+    rows = Rows(2)
+    rows.at_least_zero([[1.0, 0.0], [0.0, 1.0], [-1.0, -1.0]], [0.0, 0.0, 30.0])
+    return rows.program([-1.0, -2.0])
+
+
+@pytest.mark.parametrize("backend", sorted({*QP_ONLY, *CONIC}))
+def test_every_back_end_answers_a_linear_program(backend):
+    solution = solve(cheapest_corner(), backend)
+    np.testing.assert_allclose(solution.value, [0.0, 30.0], atol=30 * ACCURACY[backend])
+    np.testing.assert_allclose(solution.duals, [1.0, 0.0, 2.0], atol=2e-4)
+
+
+@pytest.mark.parametrize("backend", QP_ONLY)
+def test_a_linear_program_that_falls_for_ever_has_no_answer(backend):
+    with pytest.raises(SolverFailed):
+        solve(falling(), backend)
 
 
 @pytest.mark.parametrize("backend", QP_ONLY)

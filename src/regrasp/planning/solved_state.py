@@ -1,7 +1,7 @@
 """Choosing forces by programs: every answer is moved into exact equilibrium and certified."""
 
 from collections.abc import Iterable
-from math import inf
+from math import cos, inf, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +25,10 @@ _SLACK = 1e-9
 _FEASIBLE = 1e-7
 # An answer that exact equilibrium moves by more than this fraction of the forces is not the best one.
 _MOVED = 1e-5
+# Forces miss the cones for sure by a distance to which the residual is at most this.
+_SURE = 1e-2
+# The best level must be known this well.
+_UNSURE = 10 * LEVEL_TOLERANCE
 
 
 class Found(NamedTuple):
@@ -106,11 +110,12 @@ class Chooser:
             )
             if (tangential <= mu * normal).all() and ((forces**2).sum(axis=1) <= limit**2).all():
                 return forces
-        if not np.isfinite(wanted).all():
-            return None
-        return nearest_equilibrium(
-            wanted, grasp.matrix, self.load.vector, grasp.normals, mu, limit, grasp.size or 1.0
-        )
+        return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
+
+    def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """The forces nearest to ``forces`` in equilibrium, inside cones and limits; None if none are."""
+        g, mu, limit = self.grasp, np.array(frictions), np.array(limits)
+        return nearest_equilibrium(forces, g.matrix, self.load.vector, g.normals, mu, limit, g.size or 1.0)
 
     def _wanted(self, answer: Solution) -> Array:
         wanted: Array = answer.value[: 2 * len(self.grasp)].reshape(-1, 2) * self.unit
@@ -144,7 +149,7 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         least = chooser.best("peak", frictions, limits)
         if least is None:
             raise infeasible(grasp, load, criteria)
-        peak = float(np.sqrt((least.forces**2).sum(axis=1)).max())
+        peak = _radius(least.forces, facets)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     narrows = criteria.objective in ("angle", "friction_use")
     found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
@@ -153,6 +158,17 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
     if narrows:
         found = _narrowed(chooser, Narrowing(grasp, criteria.objective, frictions), found.forces, limits)
     return ChosenForces(found.forces, tuple(limits), backend, found.gap)
+
+
+def _radius(forces: Array, facets: int | None) -> float:
+    """The radius of the least circle about the origin, or the polygon inside it, that holds the forces.
+
+    Many forces share the least polygon, so that another measure of them would depend on the back end.
+    """
+    if facets is None:
+        return float(np.sqrt((forces**2).sum(axis=1)).max())
+    angles = 2 * pi * np.arange(facets) / facets
+    return float((forces @ np.array([np.cos(angles), np.sin(angles)])).max()) / cos(pi / facets)
 
 
 def _shifted(forces: Array, grasp: Grasp, load: Wrench) -> Array | None:
@@ -175,33 +191,65 @@ def _shifted(forces: Array, grasp: Grasp, load: Wrench) -> Array | None:
 def _narrowed(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
     """The forces of the highest level, from ``forces`` upwards; the gap is to a level proven out of reach.
 
-    Of the states within the tolerance, that of the widest force margin is taken.
+    Of the states within the tolerance, that of the widest force margin is taken. Raises ``SolverFailed``
+    where the back end cannot tell what the highest level is.
     """
+    if narrowing.objective == "friction_use":  # four contacts and more often need none
+        straight = _at_level(chooser, narrowing.narrowed(narrowing.top), limits, None).forces
+        forces = forces if straight is None else straight
     held, lost = narrowing.level(forces), narrowing.top
-    proven, gained, climbs = lost, inf, True
+    proven, sure, gained, climbs = lost, lost, inf, True
     while lost - held > LEVEL_TOLERANCE / 2 * (1 + 1e-6):
         middle = (held + lost) / 2
         level = min(held + LEVEL_TOLERANCE / 2, middle) if climbs else middle
-        higher, is_proof = _at_level(chooser, narrowing.narrowed(level), limits, forces)
-        if higher is None:
+        found = _at_level(chooser, narrowing.narrowed(level), limits, forces)
+        if found.forces is None:
             lost, climbs = level, True
-            proven = level if is_proof else proven
+            proven = level if found.is_proof else proven
+            sure = level if found.is_sure else sure
         else:
-            reached = max(narrowing.level(higher), held)
+            reached = max(narrowing.level(found.forces), held)
             # Steps that do not shrink converge too slowly: halve what is left once, then climb on.
             climbs = not climbs or reached - held < gained / 2
-            gained, held, forces = reached - held, reached, higher
+            gained, held, forces = reached - held, reached, found.forces
+    if proven > lost:
+        proven = _lowest_proof(chooser, narrowing, limits, lost, proven)
+    if min(sure, proven) - held > _UNSURE:
+        raise SolverFailed(
+            f"{chooser.backend} cannot tell the best {narrowing.objective}: a level of {held:.9g} is "
+            f"reached, one of {min(sure, proven):.9g} is not, and its answers between are not sound"
+        )
     cones = narrowing.narrowed(max(held - LEVEL_TOLERANCE / 2, 0.0))
-    widest, _ = _at_level(chooser, cones, limits, None)
+    widest = _at_level(chooser, cones, limits, None).forces
     if widest is not None:
         forces = widest
     return Found(forces, max(proven - narrowing.level(forces), 0.0))
 
 
-def _at_level(
-    chooser: Chooser, cones: dict[int, float], limits: list[float], known: Array | None
-) -> tuple[Array | None, bool]:
-    """Forces (n, 2) inside narrowed cones, other fingers idle; or None, and whether a twist proves it.
+def _lowest_proof(
+    chooser: Chooser, narrowing: Narrowing, limits: list[float], above: float, proven: float
+) -> float:
+    """A level proven out of reach, not far above ``above``: nearer the best level rounding hides proofs."""
+    step = LEVEL_TOLERANCE
+    while above + step < proven:
+        cones = narrowing.narrowed(above + step)
+        grasp, bounds = chooser.grasp.subset(cones), [limits[i] for i in cones]
+        if escape_twist(grasp, chooser.load, list(cones.values()), bounds) is not None:
+            return above + step
+        step *= 4
+    return proven
+
+
+class _Level(NamedTuple):
+    """Forces (n, 2) of a level, or None; then whether a twist proves it, and whether the answer was sound."""
+
+    forces: Array | None
+    is_proof: bool = False
+    is_sure: bool = False
+
+
+def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], known: Array | None) -> _Level:
+    """Forces inside narrowed cones, other fingers idle.
 
     The least distance to the edges is widest, measured for each finger by its normal force in ``known``: so
     the level rises most. Without ``known`` forces it is the force margin.
@@ -219,12 +267,22 @@ def _at_level(
     if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -_FEASIBLE:
         forces = used.exact(answer, frictions, bounds)
         if forces is not None:
-            whole = np.zeros((len(grasp), 2))
-            whole[list(cones)] = forces
-            return whole, False
-    if np.isfinite(answer.duals[:3]).all():
-        twist = -answer.duals[:3]
-        twist[2] /= used.grasp.size or 1.0
-        if EscapeTwist(used.grasp, used.load, twist, tuple(frictions), tuple(bounds)).is_proof:
-            return None, True
-    return None, escape_twist(used.grasp, used.load, frictions, bounds) is not None
+            return _Level(_whole(grasp, cones, forces))
+    twist = -answer.duals[:3]
+    twist[2] /= used.grasp.size or 1.0
+    is_twist = bool(np.isfinite(twist).all() and twist.any())
+    if is_twist and EscapeTwist(used.grasp, used.load, twist, tuple(frictions), tuple(bounds)).is_proof:
+        return _Level(None, True, True)
+    if escape_twist(used.grasp, used.load, frictions, bounds) is not None:
+        return _Level(None, True, True)
+    if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
+        return _Level(None, False, True)
+    forces = None if known is None else used.nearest(known[list(cones)], frictions, bounds)
+    return _Level(None if forces is None else _whole(grasp, cones, forces))
+
+
+def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
+    """Forces (n, 2) of all contacts, those of ``contacts`` given and the others idle."""
+    whole = np.zeros((len(grasp), 2))
+    whole[list(contacts)] = forces
+    return whole
