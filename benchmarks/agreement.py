@@ -12,7 +12,7 @@ TOLERANCE = 1e-5
 def check_agreement(pairs: list[tuple[float, ...]], programs: list[list[Quadratic]], objective: str) -> None:
     """Raise unless DAQP reaches the same value of the objective as the closed form on every pair.
 
-    For ``angle`` the last program that held is the answer.
+    For a bisection the last program that held is the answer.
     """
     for pair, tried in zip(pairs, programs, strict=True):
         answers = [x[:4] for x, flag in (program.solve() for program in tried) if flag == 1]
@@ -36,4 +36,6 @@ def _value(pair: tuple[float, ...], forces: Array, objective: str) -> float:
     if objective == "peak_normal":
         return float((f * normals).sum(axis=1).max())
     found = margins(f, normals, frictions)
+    if objective == "friction_use":
+        return float(found.friction_use.max())
     return float((found.angle if objective == "angle" else found.force).min())

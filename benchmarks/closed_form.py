@@ -66,7 +66,7 @@ def choices(effort: Effort) -> Iterator[Row]:
         direct = Side(_each(lambda data, s=settings: daqp.solve(*data, **s), solves), items=len(sample))
         per_choice = len(solves) / len(sample)
         against = "DAQP, the same choice as one QP"
-        if objective == "angle":
+        if objective in ("angle", "friction_use"):
             against = f"DAQP, bisection by {per_choice:.0f} QPs"
         elif not same:
             against = "DAQP, the effort QP (no QP says peak)"

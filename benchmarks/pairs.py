@@ -88,7 +88,7 @@ class Quadratic:
 
 
 def quadratics(pair: tuple[float, ...], objective: str) -> list[Quadratic]:
-    """The QPs whose solution is the choice: one, or as many as the bisection of ``angle`` takes."""
+    """The QPs whose solution is the choice: one, or as many as the bisection of a level takes."""
     if objective == "effort":
         return [_program(pair, _cones(pair), squares=True)]
     if objective == "peak_normal":
@@ -99,17 +99,29 @@ def quadratics(pair: tuple[float, ...], objective: str) -> list[Quadratic]:
     squeeze = _squeeze_bounds(pair, limit1, limit2)
     if objective == "force":
         return [_program(pair, _cones(pair, distance=True), cost=-1.0, squeeze=squeeze)]
-    if objective != "angle":
+    if objective not in ("angle", "friction_use"):
         raise ValueError(f"{objective} is no QP")
-    programs, held, lost = [], 0.0, min(atan(pair[4]), atan(pair[9]))
+    narrowed, top = _at_margin, min(atan(pair[4]), atan(pair[9]))
+    if objective == "friction_use":
+        narrowed, top = _at_use, 1.0
+    programs, held, lost = [], 0.0, top
     while lost - held > 1e-8:
-        margin = (held + lost) / 2
-        programs.append(_program(pair, _cones(pair, margin), squares=True, squeeze=squeeze))
+        level = (held + lost) / 2
+        cones = _cones((*pair[:4], narrowed(pair[4], level), *pair[5:9], narrowed(pair[9], level)))
+        programs.append(_program(pair, cones, squares=True, squeeze=squeeze))
         if programs[-1].solve()[1] == 1:
-            held = margin
+            held = level
         else:
-            lost = margin
+            lost = level
     return programs
+
+
+def _at_margin(mu: float, margin: float) -> float:
+    return tan(atan(mu) - margin)
+
+
+def _at_use(mu: float, spared: float) -> float:
+    return mu * (1 - spared)
 
 
 def _program(
@@ -142,11 +154,10 @@ def _program(
     return Quadratic((H, f, A, np.concatenate(upper), np.concatenate(lower), sense), settings)
 
 
-def _cones(pair: tuple[float, ...], margin: float = 0.0, distance: bool = False) -> Array:
-    """Rows mu f.n -+ f.t of cones narrowed by margin, (4, 4); or these less t sqrt(1 + mu^2), (4, 5)."""
+def _cones(pair: tuple[float, ...], distance: bool = False) -> Array:
+    """Rows mu f.n -+ f.t of the cones, (4, 4); or these less t sqrt(1 + mu^2), (4, 5)."""
     rows = []
     for i, (nx, ny, mu) in enumerate((pair[2:5], pair[7:10])):
-        mu = tan(atan(mu) - margin)
         for sign in (-1.0, 1.0):
             row = np.zeros(5)
             row[2 * i : 2 * i + 2] = mu * nx - sign * ny, mu * ny + sign * nx

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from datetime import date
 from enum import Enum
 from importlib.metadata import version
+from math import log
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -21,6 +22,7 @@ class Measure(Enum):
     TIMES = "{:.3g}x the time"
     FASTER = "{:.3g}x faster"
     RATE = "{:.3g} of the rate"
+    SLOPE = "log-log slope {:.3g}"
 
 
 @dataclass(frozen=True)
@@ -56,18 +58,26 @@ class Row:
     ) -> "Row":
         """The row of a comparison; the goal is the most for ``TIMES`` and the least for the others."""
         value, best = found.ratio, found.ratio_of_best
-        if measure is not Measure.TIMES:
+        if measure in (Measure.FASTER, Measure.RATE):
             value, best = 1 / value, 1 / best
         met = None if goal is None else (value <= goal if measure is Measure.TIMES else value >= goal)
         ours, theirs = median(found.ours), median(found.theirs)
         return cls(key, what, against, measure.name, ours, theirs, value, best, goal, met, limit)
+
+    @classmethod
+    def growth(cls, key: str, what: str, found: Comparison, larger: float, goal: float, limit: str) -> "Row":
+        """How the cost grows from their size to ours, ``larger`` times as large: 1 is linear."""
+        value, best = (log(ratio) / log(larger) for ratio in (found.ratio, found.ratio_of_best))
+        ours, theirs = median(found.ours), median(found.theirs)
+        measure = Measure.SLOPE.name
+        return cls(key, what, "itself", measure, ours, theirs, value, best, goal, value <= goal, limit)
 
     def cells(self) -> tuple[str, ...]:
         """The row as text, one cell per column of ``COLUMNS``."""
         written = Measure[self.measure].value.format
         goal, verdict = "", ""
         if self.goal is not None:
-            bound = "at most" if self.measure == "TIMES" else "at least"
+            bound = "at most" if self.measure in ("TIMES", "SLOPE") else "at least"
             goal, verdict = f"{bound} {written(self.goal)}", "yes" if self.met else "**no**"
         times = (_seconds(self.ours), _seconds(self.theirs))
         return (

@@ -1,0 +1,243 @@
+"""Speed of the programs: choosing a state and planning a path by solvers, beside the closed form.
+
+    python benchmarks/programs.py                 measures, writes results/programs.json and README.md
+    python benchmarks/programs.py --quick -o DIR  a short run into another folder, to see that it works
+
+Every ratio compares two things measured in turn in this one process. Answers are compared before times are.
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from itertools import chain
+from pathlib import Path
+
+import clarabel
+import cvxpy
+import numpy as np
+import osqp
+import quadprog
+from scipy import sparse
+
+import regrasp as rg
+from agreement import close
+from closed_form import PACKAGES, QUICK, Effort, cone_edges, paper_state
+from pairs import Pairs, quadratics
+from regrasp.closed_form.choice import EFFORT, best_squeeze
+from regrasp.planning.criteria import PEAK_RATIO
+from regrasp.planning.path_program import PathTask, path_program
+from regrasp.planning.state_program import state_program
+from regrasp.programs import Cone, Program, available_backends, solve
+from report import Measure, Report, Row
+from timing import Side
+
+PATH_SIZES = (10, 100, 1_000, 10_000)
+
+
+def overhead(effort: Effort) -> Iterator[Row]:
+    """``choose_state`` through Clarabel, audit included, against bare Clarabel with prebuilt matrices."""
+    for fingers in (2, 3, 6):
+        grasp, load = ring(fingers)
+        for objective in ("effort", "peak", "peak_normal"):
+            unit = float(abs(load.vector).max())
+            program = state_program(
+                grasp, load, objective, grasp.frictions.tolist(), [np.inf] * fingers, unit
+            )
+            bare = bare_clarabel(program)
+            ours = rg.choose_state(grasp, load, objective, method="clarabel")
+            if objective != "peak_normal":  # its best forces are not unique
+                theirs = np.array(bare(None).x)[: 2 * fingers].reshape(-1, 2) * unit
+                close(ours.forces, theirs, 1e-4, f"bare Clarabel for {objective}")
+            yield Row.of(
+                f"clarabel_{objective}_{fingers}",
+                f'`choose_state(method="clarabel")`, `{objective}`, {fingers} contacts',
+                "bare Clarabel: construct and solve, matrices prebuilt",
+                effort.of(
+                    Side(lambda _, g=grasp, w=load, o=objective: rg.choose_state(g, w, o, method="clarabel")),
+                    Side(bare),
+                ),
+                Measure.TIMES,
+                2.0,
+                "about 0.1 ms of Python that does not grow with the program: filling matrices, the audit, "
+                "moving the answer into exact equilibrium, and the values",
+            )
+
+
+def roads(effort: Effort) -> Iterator[Row]:
+    """The least effort of two fingers: the closed form, and every road to it through a solver."""
+    pairs = Pairs.random(1000).first(effort.sample)
+    programs = [quadratics(pair, "effort")[0] for pair in pairs]
+    chosen = [np.array(best_squeeze(*p, EFFORT, np.inf, np.inf, PEAK_RATIO)[1]) for p in pairs]
+    closed = Side(lambda _: [best_squeeze(*p, EFFORT, np.inf, np.inf, PEAK_RATIO) for p in pairs], len(pairs))
+    data = [program.data for program in programs]
+    directly: dict[str, tuple[Callable, list]] = {
+        "DAQP, called directly": (lambda p: p.solve()[0], programs),
+        "quadprog, called directly": (by_quadprog, [quadprog_data(d) for d in data]),
+        "OSQP, set up and solved, its default settings": (by_osqp, [osqp_data(d) for d in data]),
+        "Clarabel, constructed and solved": (by_clarabel, [clarabel_data(d) for d in data]),
+    }
+    for name, (call, arguments) in directly.items():
+        if "OSQP" not in name:  # to its default tolerance of 1e-3 it is not comparable
+            for argument, forces in zip(arguments, chosen, strict=True):
+                close(np.array(call(argument)), forces, 1e-4, name)
+        theirs = Side(
+            lambda _, c=call, each=arguments: [c(argument) for argument in each], items=len(arguments)
+        )
+        yield Row.of(
+            f"road_{name.split(',')[0].lower()}", "the closed form, one grasp, `effort`", name,
+            effort.of(closed, theirs), Measure.FASTER,
+        )  # fmt: skip
+    state = paper_state()
+    rest = state.grasp.without("P3")
+    whole = Side(lambda _: rg.choose_state(rest, state.load, "effort"))
+    for name, call in (("warm", cvxpy_warm(rest, state.load)), ("cold", cvxpy_cold(rest, state.load))):
+        close(call(None), rg.choose_state(rest, state.load, "effort").forces.ravel(), 1e-5, f"cvxpy {name}")
+        yield Row.of(
+            f"road_cvxpy_{name}", "`choose_state`, closed form, `effort`", f"cvxpy with Clarabel, {name}",
+            effort.of(whole, Side(call)), Measure.FASTER,
+        )  # fmt: skip
+
+
+def growth(effort: Effort) -> Iterator[Row]:
+    """A path program, built, solved and audited: how its cost grows with the instants."""
+    tasks = {count: path_task(count) for count in PATH_SIZES[: 3 if effort is QUICK else 4]}
+
+    def planned(count: int) -> Side:
+        return Side(lambda _: solve(path_program(tasks[count], "change"), "clarabel"))
+
+    sizes = list(tasks)
+    for small, large in ((sizes[0], sizes[-1]), (sizes[-2], sizes[-1])):
+        found = effort.of(planned(large), planned(small))
+        yield Row.growth(
+            f"growth_{small}_{large}", f"path program, {large:,} instants beside {small:,}", found,
+            (large - 2) / (small - 2), 1.1,
+            "a factorisation fills more where a few more iterations are needed",
+        )  # fmt: skip
+
+
+def path_solvers(effort: Effort) -> Iterator[Row]:
+    """The same path of 101 instants by every back end that takes it, beside Clarabel."""
+    program = path_program(path_task(101), "change")
+    best = solve(program, "clarabel")
+    for name in available_backends():
+        if name == "clarabel":
+            continue
+        answer = solve(program, name, throw=False)
+        if answer.status is not best.status:
+            continue
+        close(answer.value, best.value, 1e-4, name)
+        yield Row.of(
+            f"path_{name}", f"path of 101 instants by {name}", "by Clarabel",
+            effort.of(Side(lambda _, n=name: solve(program, n)), Side(lambda _: solve(program, "clarabel"))),
+            Measure.TIMES,
+        )  # fmt: skip
+
+
+def ring(fingers: int) -> tuple[rg.Grasp, rg.Wrench]:
+    """Contacts around a disc, facing its middle, and its weight and a torque."""
+    angles = 2 * np.pi * np.arange(fingers) / fingers + 0.2
+    contacts = [rg.Contact([np.cos(a), np.sin(a)], [-np.cos(a), -np.sin(a)], 0.6) for a in angles]
+    return rg.Grasp(contacts), rg.Wrench([0.2, -1.0], 0.1)
+
+
+def path_task(instants: int) -> PathTask:
+    """The paper's removal while the object swings, as a program needs it."""
+    start = paper_state()
+    end = rg.plan_removal(start, "P3").end
+    t = np.linspace(0, 1, instants)
+    wave = np.sin(2 * np.pi * t)
+    loads = start.load.vector + np.stack([0.2 * wave, 0.5 * wave, 0 * wave], axis=1)
+    active = np.ones((instants, 3), dtype=bool)
+    active[-1, 2] = False
+    none = np.full(3, np.inf)
+    return PathTask(
+        start.grasp, t, loads, start.forces, end.forces, active, t, start.grasp.frictions, none, none,
+        np.zeros(3), np.array([True, True, False]), 3.5,
+    )  # fmt: skip
+
+
+def bare_clarabel(program: Program) -> Callable[[object], object]:
+    """Construct and solve, as someone would who has the matrices."""
+    cones = []
+    for block in program.blocks:
+        kind = {Cone.ZERO: clarabel.ZeroConeT, Cone.NONNEGATIVE: clarabel.NonnegativeConeT}.get(block.cone)
+        cones += [kind(block.rows)] if kind else [clarabel.SecondOrderConeT(block.size)] * block.count
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    upper = sparse.triu(program.P, format="csc")
+    return lambda _: clarabel.DefaultSolver(upper, program.q, program.A, program.b, cones, settings).solve()
+
+
+def clarabel_data(data: tuple) -> tuple:
+    """Prebuilt: 3 equalities and 4 sides of cones of DAQP's form."""
+    H, f, A, upper, lower, _ = data
+    rows, b = np.vstack([A[:3], -A[3:]]), np.r_[upper[:3], -lower[3:]]
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    cones = [clarabel.ZeroConeT(3), clarabel.NonnegativeConeT(len(rows) - 3)]
+    return sparse.csc_matrix(np.triu(H)), f, sparse.csc_matrix(rows), b, cones, settings
+
+
+def by_clarabel(data: tuple) -> list[float]:
+    return clarabel.DefaultSolver(*data).solve().x
+
+
+def quadprog_data(data: tuple) -> tuple:
+    H, f, A, upper, lower, _ = data
+    return H, -f, A.T.copy(), np.r_[upper[:3], lower[3:]], 3
+
+
+def by_quadprog(data: tuple) -> np.ndarray:
+    return quadprog.solve_qp(*data)[0]
+
+
+def osqp_data(data: tuple) -> dict:
+    H, f, A, upper, lower, _ = data
+    return {"P": sparse.csc_matrix(H), "q": f, "A": sparse.csc_matrix(A), "l": lower, "u": upper}
+
+
+def by_osqp(data: dict) -> np.ndarray:
+    solver = osqp.OSQP()
+    solver.setup(**data, verbose=False)
+    return solver.solve().x
+
+
+def cvxpy_warm(grasp: rg.Grasp, load: rg.Wrench) -> Callable[[object], np.ndarray]:
+    """Parametrised and compiled beforehand."""
+    forces, given = cvxpy.Variable(4), cvxpy.Parameter(3, value=load.vector)
+    problem = cvxpy.Problem(
+        cvxpy.Minimize(cvxpy.sum_squares(forces)),
+        [grasp.matrix @ forces == -given, cone_edges(grasp) @ forces >= 0],
+    )
+
+    def call(_: object) -> np.ndarray:
+        given.value = load.vector
+        problem.solve(solver="CLARABEL", warm_start=True)
+        return forces.value
+
+    return call
+
+
+def cvxpy_cold(grasp: rg.Grasp, load: rg.Wrench) -> Callable[[object], np.ndarray]:
+    """Written down and solved anew."""
+    return lambda _: cvxpy_warm(grasp, load)(None)
+
+
+def main() -> None:
+    """Measure, print and write."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--quick", action="store_true", help="a short run; needs -o")
+    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="folder to write to")
+    options = parser.parse_args()
+    if options.quick and options.output is None:
+        parser.error("a quick run is no measurement: say where to write it with -o DIR")
+    effort = QUICK if options.quick else Effort(rounds=15)
+    rows = chain(*(part(effort) for part in (overhead, roads, growth, path_solvers)))
+    report = Report.of("programs", options.quick, rows, (*PACKAGES, "quadprog", "qpsolvers"))
+    report.write(options.output or Path(__file__).parent)
+    print(report.markdown())
+
+
+if __name__ == "__main__":
+    main()
