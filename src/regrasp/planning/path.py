@@ -81,7 +81,7 @@ def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, fa
         if reason is None:
             raise
         raise reason from None
-    below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -1e-9
+    below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -1e-7
     if answer.status is Status.SOLVED and not below:
         return answer
     raise _why_not(task, criteria, backend, facets) or SolverFailed(

@@ -12,7 +12,7 @@ instants holds between them.
 
     change        minimise sum_k |f_k+1 - f_k|^2 / (s_k+1 - s_k)     s: the phase, from 0 to 1
     effort        minimise sum_k |f_k|^2 h_k                         h: the share of time of an instant
-    force         maximise the least margin
+    force         maximise the least margin, that of the ends included
     peak          minimise t,  |f_k,i| <= t
     rate          minimise t,  |f_k+1,i - f_k,i| <= t rate_i (t_k+1 - t_k)
 
@@ -57,6 +57,15 @@ class PathTask:
     least_normals: Array
     stays: NDArray[np.bool_]
     unit: float
+
+    @property
+    def end_margin(self) -> float:
+        """The least force margin of the fingers that stay, at both ends [N]."""
+        grasp, mu = self.grasp, self.frictions
+        ends = np.stack([self.start, self.end])
+        normal, tangent = (ends * grasp.normals).sum(axis=-1), (ends * grasp.tangents).sum(axis=-1)
+        margins = (mu * normal - abs(tangent)) / np.sqrt(1 + mu**2)
+        return float(margins[:, self.stays].min())
 
     @property
     def reference(self) -> Array:
@@ -164,6 +173,9 @@ class _Builder:
             per_margin = np.where(self.task.stays, np.sqrt(1 + mu**2), 0.0)[rough][place]
             widened = -per_margin if self.objective == "force" else 0.0
             self.rows.at_least_zero(self._wide(matrix, widened), -least_margin * per_margin)
+        if self.objective == "force":
+            none = sparse.csr_matrix((1, self.columns.shape[1]))
+            self.rows.at_least_zero(self._wide(none, -1.0), self.task.end_margin / self.task.unit)
         if smooth.size:
             self.rows.equal(self._wide(self._of_fingers(t[smooth], smooth)[0]))
             self.rows.at_least_zero(self._wide(self._of_fingers(n[smooth], smooth)[0]))
