@@ -8,7 +8,7 @@ cone cut by a ball is a closed form, so every iterate lies inside the cones and 
 to reach: one step when no cone is touched. (Semismooth Newton: Qi and Sun, Math. Programming 58, 1993.)
 """
 
-from math import sqrt
+from math import hypot, sqrt
 
 import numpy as np
 
@@ -95,9 +95,9 @@ def _project(forces: Array, normals: Array, frictions: Array, limits: Array) -> 
 def _onto_cone(f: Array, n: Array, mu: float) -> tuple[Array, Array]:
     normal = float(f @ n)
     tangent = f - normal * n
-    tangential = sqrt(float(tangent @ tangent))
+    tangential = hypot(*tangent)  # squares of tiny forces would vanish
     identity = np.eye(f.size)
-    if tangential <= mu * normal:
+    if normal >= 0 and tangential <= mu * normal:  # without friction, a pull along the normal is no push
         return f, identity
     if mu * tangential <= -normal:
         return np.zeros_like(f), np.zeros_like(identity)

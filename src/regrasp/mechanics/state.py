@@ -111,7 +111,8 @@ class GraspState(ArrayValue):
             n = contact.plain[d : 2 * d]
             normal = sum(map(mul, f, n))
             tangential = dist(f, [normal * along for along in n])
-            if tangential > kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude:
+            edge = kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude
+            if normal < 0 or tangential > edge:
                 return False
             if contact.max_force is not None and magnitude > contact.max_force:
                 return False

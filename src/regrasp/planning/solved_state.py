@@ -108,7 +108,8 @@ class Chooser:
                 (forces * grasp.normals).sum(axis=1),
                 abs((forces * grasp.tangents).sum(axis=1)),
             )
-            if (tangential <= mu * normal).all() and ((forces**2).sum(axis=1) <= limit**2).all():
+            inside = (normal >= 0) & (tangential <= mu * normal) & ((forces**2).sum(axis=1) <= limit**2)
+            if inside.all():
                 return forces
         return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
 
@@ -118,8 +119,8 @@ class Chooser:
         return nearest_equilibrium(forces, g.matrix, self.load.vector, g.normals, mu, limit, g.size or 1.0)
 
     def _wanted(self, answer: Solution) -> Array:
-        wanted: Array = answer.value[: 2 * len(self.grasp)].reshape(-1, 2) * self.unit
-        return wanted
+        wanted: Array = answer.value[: 2 * len(self.grasp)].reshape(-1, 2)
+        return wanted * self.unit
 
 
 def solved_forces(
