@@ -21,7 +21,8 @@ FLOORS: dict[str, Set[str]] = {
     "programs": {"errors", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
     "planning": {"errors", "display", "mechanics", "closed_form", "programs", "planning"},
-    "verification": {"mechanics", "verification"},  # the checker shares no code with the planner
+    "verification": {"mechanics", "verification"},
+    "outline": {"errors", "mechanics", "outline"},  # the checker shares no code with the planner
     "files": {"errors", "mechanics", "closed_form", "programs", "planning", "verification", "files"},
     "plots": {"errors", "mechanics", "closed_form", "planning", "plots"},
     "cli": {"", "errors", "mechanics", "planning", "verification", "files", "plots"},
