@@ -107,7 +107,7 @@ def test_an_idle_finger_that_is_not_idle(plan: rg.Transition) -> None:
         with_state(plan, "end", forces=forces)
     )
     assert "start: P3 must carry no force" in violations(replace(plan, kind="addition"))
-    assert "kind 'swap' is neither removal nor addition" in violations(replace(plan, kind="swap"))
+    assert "kind 'swap' is none of removal, addition, rotation, exchange" in violations(replace(plan, kind="swap"))
 
 
 def test_a_pulling_force(plan: rg.Transition) -> None:
@@ -141,6 +141,8 @@ class Claimed:
     scaling: Scaling
     record: Record = field(default_factory=lambda: Record(0.0))
     course: None = None
+    turn: None = None
+    arrival: None = None
 
 
 @pytest.mark.parametrize(

@@ -13,10 +13,12 @@ from regrasp.planning.choice import choose_state
 from regrasp.planning.criteria import ChosenState
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.locus import EquilibriumLocus
+from regrasp.planning.rotation import plan_rotation
 from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.sensitivity import Sensitivity, sensitivity
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
+from regrasp.planning.turning import TurningTransition
 from regrasp.verification import Verification, verify
 
 __version__ = "0.1.0"
@@ -39,6 +41,7 @@ __all__ = [
     "SolverUnavailable",
     "TimeScaling",
     "Transition",
+    "TurningTransition",
     "Verification",
     "Wrench",
     "best_squeezes",
@@ -46,6 +49,7 @@ __all__ = [
     "locus_intervals",
     "plan_addition",
     "plan_removal",
+    "plan_rotation",
     "sensitivity",
     "verify",
 ]

@@ -15,7 +15,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.change import BALANCE_TOLERANCE
+from regrasp.planning.balancing import BALANCE_TOLERANCE
 from regrasp.planning.criteria import PEAK_RATIO, Objective
 from regrasp.planning.joined import PathObjective
 from regrasp.planning.loads import LoadSeries

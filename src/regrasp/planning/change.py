@@ -1,30 +1,32 @@
 """Planning the removal and the addition of a finger."""
 
 from collections.abc import Callable
-from functools import lru_cache
 from typing import Literal, NamedTuple, cast
 
 from numpy.typing import ArrayLike
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
-from regrasp.mechanics.state import GraspState, check_load
+from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.balancing import (
+    BALANCE_TOLERANCE,
+    balanced_start,
+    grasp_and_load,
+    limited,
+    scaling_of,
+)
 from regrasp.planning.choice import choose_forces
 from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria
-from regrasp.planning.escape import infeasible
 from regrasp.planning.joined import Demands, joined
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record, Transition
 
 LoadFunction = Callable[[float], Wrench]
-
-BALANCE_TOLERANCE = 1e-3
-"""Default largest change of a typed-in force, as a fraction of the largest force, to reach equilibrium."""
 
 
 def plan_removal(
@@ -82,13 +84,13 @@ def plan_removal(
     demands = Demands(rate_limit, min_normal, path_objective, idle_from, instants, method, facets)
     series, clock = _series_and_clock(load, duration, scaling, demands)
     first = series(0.0) if series is not None else cast(Wrench | None, load)
-    grasp, first = _grasp_and_load(start, first)
+    grasp, first = grasp_and_load(start, first)
     last = series(series.duration) if series is not None else first
     gone = grasp.index(contact)
     given_start = start if isinstance(start, GraspState) else None
     given_end = None if end is None else _remaining(end, grasp, last, gone)
     whole, rest, record = _ends(
-        _limited(grasp, max_force),
+        limited(grasp, max_force),
         gone,
         _Side("start", first, given_start, whole_criteria, method, facets, balance_tolerance),
         _Side("end", last, given_end, criteria, method, facets, balance_tolerance),
@@ -134,7 +136,7 @@ def plan_addition(
     demands = Demands(rate_limit, min_normal, path_objective, idle_until, instants, method, facets)
     series, clock = _series_and_clock(load, duration, scaling, demands)
     first = series(0.0) if series is not None else cast(Wrench | None, load)
-    before, first = _grasp_and_load(start, first)
+    before, first = grasp_and_load(start, first)
     last = series(series.duration) if series is not None else first
     grasp = before.with_contact(contact)
     if end is not None and (end.grasp != grasp or end.load != last):
@@ -144,7 +146,7 @@ def plan_addition(
         )
     given_start = start if isinstance(start, GraspState) else None
     whole, rest, record = _ends(
-        _limited(grasp, max_force),
+        limited(grasp, max_force),
         len(before),
         _Side("end", last, end, whole_criteria, method, facets, balance_tolerance),
         _Side("start", first, given_start, criteria, method, facets, balance_tolerance),
@@ -170,7 +172,7 @@ class _Side(NamedTuple):
             choice = Choice(self.label, self.criteria.objective, best.method, best.force_limits)
             return best, choice, 0.0
         given = self.given if self.given.grasp is grasp else GraspState(grasp, self.load, self.given.forces)
-        state = _balanced(given, self)
+        state = balanced_start(given, self.criteria, self.balance_tolerance, self.label)
         return state, None, 0.0 if state is given else float(abs(state.forces - given.forces).max())
 
 
@@ -191,36 +193,6 @@ def _ends(grasp: Grasp, gone: int, whole: _Side, rest: _Side) -> tuple[GraspStat
     )
 
 
-def _balanced(state: GraspState, side: _Side) -> GraspState:
-    try:
-        balanced = state.balanced(reserve=side.criteria.reserve)
-    except Infeasible:
-        raise infeasible(state.grasp, state.load, side.criteria) from None
-    if balanced is state:
-        return state
-    change, largest = float(abs(balanced.forces - state.forces).max()), float(state.magnitudes.max())
-    if change > side.balance_tolerance * largest:
-        raise InvalidInput(
-            f"{side.label}: the forces are no equilibrium inside the friction cones and limits; the nearest "
-            f"one differs by {change:.3g}, more than {side.balance_tolerance:g} of the largest force "
-            f"{largest:.4g}; correct them, or allow more by balance_tolerance"
-        )
-    return balanced
-
-
-def _grasp_and_load(start: GraspState | Grasp, load: Wrench | None) -> tuple[Grasp, Wrench]:
-    if isinstance(start, GraspState):
-        if load is not None and load != start.load:
-            raise InvalidInput(f"the start state has the load {start.load!r}; leave load out, got {load!r}")
-        return start.grasp, start.load
-    if not isinstance(start, Grasp):
-        raise InvalidInput(f"start must be a GraspState or a Grasp, got {start!r}")
-    if load is None:
-        raise InvalidInput("a plan from a grasp needs the load: load=Wrench(force=[...])")
-    check_load(start, load)
-    return start, load
-
-
 def _remaining(end: GraspState, grasp: Grasp, load: Wrench, gone: int) -> GraspState:
     """The state of the fingers that stay, from one of theirs or of the whole grasp with an idle finger."""
     rest, name = grasp.without(gone), grasp.names[gone]
@@ -237,21 +209,6 @@ def _remaining(end: GraspState, grasp: Grasp, load: Wrench, gone: int) -> GraspS
     )
 
 
-def _limited(grasp: Grasp, max_force: float | None) -> Grasp:
-    """The grasp with every force limited to ``max_force``, so that a plan carries its limits with it."""
-    if max_force is None:
-        return grasp
-    return Grasp(
-        _with_limit(contact, max_force if contact.max_force is None else min(contact.max_force, max_force))
-        for contact in grasp
-    )
-
-
-def _with_limit(contact: Contact, limit: float) -> Contact:
-    """The same contact with another force limit [N]."""
-    return Contact(contact.position, contact.normal, contact.friction, max_force=limit, name=contact.name)
-
-
 def _series_and_clock(
     load: Wrench | LoadSeries | LoadFunction | None,
     duration: float | None,
@@ -262,7 +219,7 @@ def _series_and_clock(
     if isinstance(load, LoadSeries):
         if duration is None and scaling is None:
             duration = load.duration
-        clock = _scaling(duration, scaling)
+        clock = scaling_of(duration, scaling)
         if clock.duration != load.duration:
             raise InvalidInput(
                 f"the load series lasts {load.duration:g} s, the plan {clock.duration:g} s; make them equal"
@@ -270,23 +227,7 @@ def _series_and_clock(
         return load, clock
     if demands.rate_limit is not None and duration is None and scaling is None and not callable(load):
         return None, None
-    clock = _scaling(duration, scaling)
+    clock = scaling_of(duration, scaling)
     if callable(load):
         return LoadSeries.sampled(load, clock.duration, demands.instants), clock
     return None, clock
-
-
-def _scaling(duration: float | None, scaling: TimeScaling | None) -> TimeScaling:
-    if scaling is None:
-        return _spline(1.0 if duration is None else number(duration, "duration", above=0))
-    if duration is not None:
-        raise InvalidInput("scaling has a duration of its own; give one of duration and scaling")
-    if not isinstance(scaling, TimeScaling):
-        raise InvalidInput(f"scaling must be a TimeScaling, got {scaling!r}")
-    return scaling
-
-
-@lru_cache
-def _spline(duration: float) -> TimeScaling:
-    """One value for one duration, so that its polynomials are worked out once."""
-    return TimeScaling.spline(duration)

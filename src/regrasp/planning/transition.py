@@ -17,9 +17,18 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.planning.course import Course
 from regrasp.planning.timing import TimeScaling
+from regrasp.planning.turn import Turn
 
 if TYPE_CHECKING:
     import pandas
+
+
+_BACKWARDS: dict[str, Any] = {
+    "removal": "addition",
+    "addition": "removal",
+    "rotation": "rotation",
+    "exchange": "exchange",
+}
 
 
 @dataclass(frozen=True)
@@ -66,31 +75,54 @@ class Transition(ArrayValue, Pictured):
 
     A path that is not straight is a ``SampledTransition``, which answers the same questions.
 
-    kind: ``removal`` or ``addition``. contact: the finger that leaves or arrives, idle at that end.
+    kind: ``removal``, ``addition``, ``rotation`` or ``exchange``. contact: the finger that leaves or arrives,
+    idle at that end; of an exchange the one that leaves; None for a rotation. arrival: of an exchange, the
+    finger that arrives.
     start, end: states of one grasp, every contact in play, under one load. course: None.
     """
 
-    kind: Literal["removal", "addition"]
-    contact: str
+    kind: Literal["removal", "addition", "rotation", "exchange"]
+    contact: str | None
     start: GraspState
     end: GraspState
     scaling: TimeScaling
     record: Record
     course: Course | None = field(default=None, kw_only=True)
+    arrival: str | None = field(default=None, kw_only=True)
+    turn: Turn | None = field(default=None, kw_only=True)
 
     _drawn_by = "regrasp.plots.overview:transition_png"
 
     def __post_init__(self) -> None:
         if self.start.grasp != self.end.grasp:
             raise InvalidInput("both ends of a transition must have the same grasp")
-        self.grasp.index(self.contact)
+        if (self.contact is None) != (self.kind == "rotation") or (self.arrival is None) == (
+            self.kind == "exchange"
+        ):
+            raise InvalidInput(
+                f"a {self.kind} names the wrong fingers: {self.contact!r} and {self.arrival!r}"
+            )
+        for name in (*self.idle_at_start, *self.idle_at_end):
+            self.grasp.index(name)
         self._check()
+
+    @property
+    def idle_at_start(self) -> tuple[str, ...]:
+        """Names of the fingers that carry no force at the start: the one that arrives."""
+        name = {"addition": self.contact, "exchange": self.arrival}.get(self.kind)
+        return () if name is None else (name,)
+
+    @property
+    def idle_at_end(self) -> tuple[str, ...]:
+        """Names of the fingers that carry no force at the end: the one that leaves."""
+        name = self.contact if self.kind in ("removal", "exchange") else None
+        return () if name is None else (name,)
 
     def _check(self) -> None:
         if self.start.load != self.end.load:
             raise InvalidInput("both ends of a straight path must have the same load")
-        if self.course is not None:
-            raise InvalidInput("a straight path has no course; that is a SampledTransition")
+        if self.course is not None or self.turn is not None:
+            raise InvalidInput("a straight path has no course and no turn; those are of other transitions")
 
     @property
     def grasp(self) -> Grasp:
@@ -104,11 +136,11 @@ class Transition(ArrayValue, Pictured):
 
     def forces(self, t: ArrayLike) -> Array:
         """Finger forces (n, d) at a time, (m, n, d) at m times [N]; times in [0, duration] [s]."""
-        return self._along(t, self.start.forces, self.end.forces)
+        return straight_path(self.start.forces, self.end.forces, self.scaling(t))
 
     def wrenches(self, t: ArrayLike) -> Array:
         """Finger wrenches (n, 3) or (m, n, 3), Eq. 1-3 [N, N m]; (…, 6) in space."""
-        return self._along(t, self.start.wrenches, self.end.wrenches)
+        return straight_path(self.start.wrenches, self.end.wrenches, self.scaling(t))
 
     def rates(self, t: ArrayLike) -> Array:
         """Force rates f'(t) = (f_start - f_end) T'(t), (n, d) or (m, n, d) [N/s]."""
@@ -132,6 +164,10 @@ class Transition(ArrayValue, Pictured):
         times = self.scaling(t)  # checks the times
         return np.broadcast_to(self.start.load.vector, (*times.shape, self.start.load.vector.size))
 
+    def orientation(self, t: ArrayLike) -> Array:
+        """The object's angle from the start [rad], counter-clockwise; zero here."""
+        return np.zeros_like(self.scaling(t))
+
     def margins(self, t: ArrayLike) -> Margins:
         """Margins of every contact, (n,) or (m, n); NaN where a contact carries no force."""
         return margins(self.forces(t), self.grasp.normals, self.grasp.frictions)
@@ -148,7 +184,9 @@ class Transition(ArrayValue, Pictured):
         """The same path run backwards: a removal becomes an addition."""
         choices = tuple(replace(c, end="end" if c.end == "start" else "start") for c in self.record.choices)
         return self._reversed(
-            kind="addition" if self.kind == "removal" else "removal",
+            kind=_BACKWARDS[self.kind],
+            contact=self.contact if self.arrival is None else self.arrival,
+            arrival=None if self.arrival is None else self.contact,
             start=self.end,
             end=self.start,
             scaling=self.scaling.reversed(),
@@ -179,12 +217,9 @@ class Transition(ArrayValue, Pictured):
             self.forces(t).reshape(t.size, -1), index=pandas.Index(t, name="t"), columns=columns
         )
 
-    def _along(self, t: ArrayLike, start: Array, end: Array) -> Array:
-        return straight_path(start, end, self.scaling(t))
-
     def __str__(self) -> str:
         lines = [
-            f"{self.kind} of {self.contact} in {self.duration:g} s under {self._load_in_words()}",
+            f"{self._kind_in_words()} in {self.duration:g} s under {self._load_in_words()}",
             f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
         ]
         ends = np.array([self.start.margins.angle, self.end.margins.angle])
@@ -206,6 +241,11 @@ class Transition(ArrayValue, Pictured):
         return "\n".join(lines)
 
     __repr__ = __str__
+
+    def _kind_in_words(self) -> str:
+        if self.kind == "rotation":
+            return self.kind
+        return f"{self.kind} of {self.contact}" + (f" for {self.arrival}" if self.arrival else "")
 
     def _load_in_words(self) -> str:
         return repr(self.start.load)

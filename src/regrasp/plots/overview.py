@@ -1,6 +1,7 @@
 """Every picture of a transition: one figure at a glance, and all of them by name."""
 
 from io import BytesIO
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -58,21 +59,15 @@ def png(figure: Figure) -> bytes:
 def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
     """Every figure of a transition by file stem.
 
-    ``overview``, ``states``, ``object``, ``iso_torque``, ``wrench_loop``, ``wrench_paths``, ``time_scaling``,
-    ``magnitudes``, ``angles``, ``margins``; ``load`` where it varies; ``locus`` where two contacts remain.
-    Raises ``InvalidInput`` for a grasp in space.
+    ``overview``, ``states``, ``object``, ``time_scaling``, ``magnitudes``, ``angles``, ``margins``; ``load``
+    where it varies; of a removal or an addition ``iso_torque``, ``wrench_loop``, ``wrench_paths``, and
+    ``locus`` where two contacts remain. Raises ``InvalidInput`` for a grasp in space.
     """
     refuse_space(transition.grasp.dimension)
-    fewer = transition.end if transition.kind == "removal" else transition.start
-    rest = fewer.without(transition.contact)
-    colours = contact_colours(transition.grasp)
-    drawn = {
+    drawn: dict[str, Any] = {
         "overview": transition_figure(transition, units=units),
         "states": states_figure(transition, units=units),
         "object": plot_transition(transition, units=units).figure,
-        "iso_torque": iso_torque_figure(transition, units=units),
-        "wrench_loop": plot_wrench_loop(rest, colours=colours, units=units).figure,
-        "wrench_paths": plot_wrench_paths(transition, units=units).figure,
         "time_scaling": plot_scaling(transition.scaling, control=True, units=units).figure,
         "magnitudes": plot_magnitudes(transition, units=units).figure,
         "angles": plot_angles(transition, units=units).figure,
@@ -80,11 +75,24 @@ def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
     }
     if transition.load_varies:
         drawn["load"] = plot_load(transition, units=units).figure
+    if transition.contact is not None and transition.arrival is None:
+        drawn |= _of_one_finger(transition, transition.contact, units)
+    return drawn
+
+
+def _of_one_finger(transition: Transition, moves: str, units: Units) -> dict[str, Figure]:
+    """The figures of Section III, for one finger that leaves or arrives."""
+    fewer = transition.end if transition.kind == "removal" else transition.start
+    rest, colours = fewer.without(moves), contact_colours(transition.grasp)
+    drawn = {
+        "iso_torque": iso_torque_figure(transition, units=units),
+        "wrench_loop": plot_wrench_loop(rest, colours=colours, units=units).figure,
+        "wrench_paths": plot_wrench_paths(transition, units=units).figure,
+    }
     if len(rest.grasp) == 2:
-        locus = EquilibriumLocus(rest.grasp, rest.load)
         objective, limits = _chosen_for(transition)
         drawn["locus"] = plot_locus(
-            locus,
+            EquilibriumLocus(rest.grasp, rest.load),
             objective=objective,
             chosen=rest,
             colours=colours,
@@ -99,9 +107,11 @@ def states_figure(transition: Transition, *, units: Units = SI) -> Figure:
     refuse_space(transition.grasp.dimension)
     figure = new_figure(2 * WIDTH, 3.4)
     scale = force_scale_of(transition.start, transition.end)
-    alone = "end" if transition.kind == "removal" else "start"
-    for i, (title, state) in enumerate((("start", transition.start), ("end", transition.end))):
-        absent = (transition.contact,) if title == alone else ()
+    ends = (
+        ("start", transition.start, transition.idle_at_start),
+        ("end", transition.end, transition.idle_at_end),
+    )
+    for i, (title, state, absent) in enumerate(ends):
         ax = tidy(figure.add_subplot(1, 2, i + 1))
         plot_state(state, ax, force_scale=scale, absent=absent, units=units)
         ax.set_title(title, fontsize=TEXT, loc="left")

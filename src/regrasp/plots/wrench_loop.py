@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.lines import Line2D
 
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
@@ -63,20 +64,23 @@ def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = 
     grasp = transition.grasp
     refuse_space(grasp.dimension)
     colours = contact_colours(grasp)
-    others = [name for name in grasp.names if name != transition.contact]
-    order = (*others[:-1], transition.contact, *others[-1:])
+    moves = transition.contact
+    if moves is None or transition.arrival is not None:
+        raise InvalidInput(f"wrench paths are drawn of a removal or an addition, got a {transition.kind}")
+    others = [name for name in grasp.names if name != moves]
+    order = (*others[:-1], moves, *others[-1:])
     start, end = WrenchLoop(transition.start, order), WrenchLoop(transition.end, order)
     loops = [start, end] if transition.kind == "removal" else [end, start]
-    ax = _draw_sets(ax, loops, loops[1].state.without(transition.contact), colours)
+    ax = _draw_sets(ax, loops, loops[1].state.without(moves), colours)
     for t in np.linspace(0, transition.duration, 7)[1:-1]:
         state = GraspState(grasp, transition.start.load, transition.forces(t))
         rung = WrenchLoop(state, order).vertices[-3:-1]
         ax.plot(
             *rung.T,
-            color=colours[transition.contact],
+            color=colours[moves],
             linewidth=0.7,
             zorder=2,
-            gid=f"path {transition.contact}",
+            gid=f"path {moves}",
         )
     for owner, a, b in zip((*others[:-1], others[-1]), *_corners(start, end), strict=True):
         path = np.array([a, b])

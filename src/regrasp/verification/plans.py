@@ -18,6 +18,7 @@ from regrasp.verification.exact import RESOLUTION, check_state, dot, exact
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.rows import Checked, check_rows
+from regrasp.verification.turns import check_turn
 from regrasp.verification.verdict import Verification
 
 
@@ -35,7 +36,10 @@ def verify(
     violations = _check_idle(plan) + _check_scaling(plan.scaling)
     if plan.start.grasp != plan.end.grasp:
         violations.append("start and end have different contacts")
-    found = _check_ends(plan) if plan.course is None else _check_course(plan, plan.course)
+    if plan.turn is not None:
+        found = check_turn(plan, plan.turn)
+    else:
+        found = _check_ends(plan) if plan.course is None else _check_course(plan, plan.course)
     violations += found.violations + _check_record(plan)
     gap, proven = None, False
     if load is not None:
@@ -117,12 +121,21 @@ def _check_scaling(scaling: Scaling) -> list[str]:
 
 
 def _check_idle(plan: Plan) -> list[str]:
-    if plan.kind not in ("removal", "addition"):
-        return [f"kind {plan.kind!r} is neither removal nor addition"]
-    state, when = (plan.end, "end") if plan.kind == "removal" else (plan.start, "start")
-    if plan.contact not in state.grasp.names:
-        return [f"contact {plan.contact!r} is not one of {', '.join(state.grasp.names)}"]
-    force = state.forces[state.grasp.names.index(plan.contact)].tolist()
-    if any(force):
-        return [f"{when}: {plan.contact} must carry no force, it carries {force}"]
-    return []
+    ends = {
+        "removal": ((), (plan.contact,)),
+        "addition": ((plan.contact,), ()),
+        "rotation": ((), ()),
+        "exchange": ((plan.arrival,), (plan.contact,)),
+    }
+    if plan.kind not in ends:
+        return [f"kind {plan.kind!r} is none of {', '.join(ends)}"]
+    broken = []
+    for label, state, idle in zip(("start", "end"), (plan.start, plan.end), ends[plan.kind], strict=True):
+        for name in idle:
+            if name not in state.grasp.names:
+                broken.append(f"contact {name!r} is not one of {', '.join(state.grasp.names)}")
+                continue
+            force = state.forces[state.grasp.names.index(name)].tolist()
+            if any(force):
+                broken.append(f"{label}: {name} must carry no force, it carries {force}")
+    return broken

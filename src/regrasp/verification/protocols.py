@@ -34,6 +34,18 @@ class Course(Protocol):
         """(K, 3) or (K, 6) [N, N m]."""
 
 
+class Turn(Protocol):
+    """Forces at angles of the object; between them the combination of fact 3."""
+
+    @property
+    def angles(self) -> Array:
+        """(K,) [rad]."""
+
+    @property
+    def forces(self) -> Array:
+        """(K, n, 2) [N], object frame."""
+
+
 class Record(Protocol):
     """What a plan says it keeps to."""
 
@@ -51,11 +63,19 @@ class Plan(Protocol):
 
     @property
     def kind(self) -> str:
-        """``removal`` or ``addition``."""
+        """``removal``, ``addition``, ``rotation`` or ``exchange``."""
 
     @property
-    def contact(self) -> str:
-        """Name of the finger that leaves or arrives."""
+    def contact(self) -> str | None:
+        """Name of the finger that leaves or arrives; the one that leaves in an exchange."""
+
+    @property
+    def arrival(self) -> str | None:
+        """Name of the finger that arrives in an exchange."""
+
+    @property
+    def turn(self) -> "Turn | None":
+        """States on the way of a turning object; None where it keeps its orientation."""
 
     @property
     def start(self) -> GraspState:

@@ -1,0 +1,170 @@
+"""Planning the turn of an object in its fingers' hold."""
+
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, cos, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.balancing import (
+    BALANCE_TOLERANCE,
+    balanced_start,
+    grasp_and_load,
+    limited,
+    scaling_of,
+    with_limit,
+)
+from regrasp.planning.choice import choose_forces
+from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria
+from regrasp.planning.timing import TimeScaling
+from regrasp.planning.transition import Choice, Record
+from regrasp.planning.turn import Turn, turned_load
+from regrasp.planning.turning import TurningTransition
+
+STEP = pi / 3
+"""Largest angle between two states of a turn if there are any: forces grow by 1 / cos(pi / 6) = 1.155."""
+
+# A step this near to pi lets forces grow without bound.
+_NEARLY_PI = 0.95 * pi
+
+
+def plan_rotation(
+    start: GraspState | Grasp,
+    angle: float,
+    *,
+    load: Wrench | None = None,
+    end: GraspState | None = None,
+    objective: str = "angle",
+    method: str = "auto",
+    duration: float | None = None,
+    scaling: TimeScaling | None = None,
+    max_force: float | None = None,
+    peak_ratio: float = PEAK_RATIO,
+    reserve: float = RESERVE,
+    balance_tolerance: float = BALANCE_TOLERANCE,
+) -> TurningTransition:
+    """Forces over time while the object turns and all fingers stay.
+
+    start: the state to start from; or a grasp, whose state is then chosen under ``load``.
+    angle: of the object [rad], counter-clockwise; any size. The load is a force through the centre of mass,
+    fixed in the world, such as a weight; in the object frame it turns the other way.
+    end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
+    Everything else is as for ``plan_removal``.
+
+    Two states less than pi apart hold everything between them (docs/facts.md, 5). States are chosen every
+    ``STEP`` and left out where none exists, as long as the gap is below pi.
+    Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
+    """
+    criteria = Criteria(objective, max_force, peak_ratio, reserve)
+    turn = number(angle, "angle")
+    if turn == 0:
+        raise InvalidInput("angle must not be 0: there is nothing to turn")
+    number(balance_tolerance, "balance_tolerance", least=0)
+    clock = scaling_of(duration, scaling)
+    given, load = grasp_and_load(start, load)
+    if load.torque.any():
+        raise InvalidInput(
+            f"a turning path holds a force through the centre of mass, got the torque {load.torque[0]:g}; "
+            f"plan it with a load function of time"
+        )
+    grasp = limited(given, max_force)
+    count = ceil(abs(turn) / STEP - 1e-9)
+    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2))
+    choices: list[Choice] = []
+    change = 0.0
+    first: Array
+    if isinstance(start, GraspState):
+        state = GraspState(grasp, load, start.forces)
+        balanced = balanced_start(state, criteria, balance_tolerance, "start")
+        first, change = balanced.forces, float(abs(balanced.forces - start.forces).max())
+    else:
+        best = chooser.at(0.0)
+        first = np.array(best.forces)
+        choices.append(Choice("start", objective, best.method, best.force_limits))
+    last_load = turned_load(load, turn)
+    if end is None:
+        best = chooser.at(turn)
+        last = np.array(best.forces)
+        choices.append(Choice("end", objective, best.method, best.force_limits))
+    else:
+        state = GraspState(grasp, last_load, end.forces)
+        balanced = balanced_start(state, criteria, balance_tolerance, "end")
+        last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
+    knots, forces = _on_the_way(chooser, turn, count, first, last)
+    plan = TurningTransition(
+        "rotation",
+        None,
+        GraspState(grasp, load, first),
+        GraspState(grasp, last_load, last),
+        clock,
+        Record(reserve, tuple(choices), change),
+        turn=Turn(knots, forces),
+    )
+    _refuse_high_forces(plan)
+    return plan
+
+
+class _Chooser(NamedTuple):
+    """Chooses states of one grasp at angles of the object."""
+
+    grasp: Grasp
+    load: Wrench
+    criteria: Criteria
+    method: str
+    ease: float
+    """Fraction of the force limits that leaves room for the growth of forces between two states."""
+
+    def at(self, angle: float) -> ChosenForces:
+        """The best forces after a turn by ``angle``, within eased limits if there are any."""
+        grasp, criteria, load = self.grasp, self.criteria, turned_load(self.load, angle)
+        if any(contact.max_force is not None for contact in grasp):
+            eased = [
+                c if c.max_force is None else with_limit(c, self.ease * c.max_force * (1 - 1e-9))
+                for c in grasp
+            ]
+            general = None if criteria.max_force is None else self.ease * criteria.max_force
+            try:
+                return choose_forces(Grasp(eased), load, replace(criteria, max_force=general), self.method)
+            except Infeasible:
+                pass  # the whole limits may do, and the path is checked in the end
+        return choose_forces(grasp, load, criteria, self.method)
+
+
+def _on_the_way(
+    chooser: _Chooser, turn: float, count: int, first: Array, last: Array
+) -> tuple[list[float], list[Array]]:
+    """Angles and forces at ``count`` equal steps, without those at which no state exists."""
+    knots, forces = [0.0], [first]
+    reason: Infeasible | None = None
+    for k in range(1, count):
+        angle = turn * k / count
+        try:
+            best = chooser.at(angle)
+        except Infeasible as refusal:
+            reason = reason or Infeasible(f"after a turn of {angle:.6g} rad: {refusal}", refusal.certificate)
+            continue
+        knots.append(angle)
+        forces.append(np.array(best.forces))
+    knots.append(turn)
+    forces.append(last)
+    widest = max(abs(b - a) for a, b in pairwise(knots))
+    if widest > _NEARLY_PI and reason is not None:
+        raise reason
+    return knots, forces
+
+
+def _refuse_high_forces(plan: TurningTransition) -> None:
+    for i, contact in enumerate(plan.grasp):
+        peak = float(plan.peaks[i])
+        if contact.max_force is not None and peak > contact.max_force:
+            raise Infeasible(
+                f"{contact.name} would need {peak:.4g} in the turn, above its limit {contact.max_force:g}; "
+                f"choose states with less force, or turn in smaller steps"
+            )

@@ -1,0 +1,128 @@
+"""A transition while the object turns: closed-form pieces between states at chosen angles."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.turning import turning_path, turning_peaks, turning_slope
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.wrench import torque
+from regrasp.planning.timing import TimeScaling
+from regrasp.planning.transition import Transition
+from regrasp.planning.turn import Turn
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TurningTransition(Transition):
+    """Finger forces, in the object frame, while the object turns under a force through its centre of mass.
+
+    Between the angles of ``turn`` the forces are a f_k + b f_k+1 with a, b >= 0 (docs/facts.md, 5), which
+    keeps equilibrium and cones exactly. The object's angle is turn.angle (1 - T(t)).
+    """
+
+    turn: Turn = field(kw_only=True)
+
+    def _check(self) -> None:
+        if self.start.load.torque.any():
+            raise InvalidInput(
+                "a turning path holds a force through the centre of mass; this load has a torque: plan it "
+                "with a load function of time"
+            )
+        if self.turn.forces.shape[1:] != self.start.forces.shape:
+            raise InvalidInput(f"forces of a turn must have shape (K, {len(self.grasp)}, 2)")
+
+    def orientation(self, t: ArrayLike) -> Array:
+        """The object's angle from the start [rad], counter-clockwise; of the shape of t."""
+        result: Array = self.turn.angle * (1 - self.scaling(t))
+        return result
+
+    def forces(self, t: ArrayLike) -> Array:
+        """Finger forces in the object frame, (n, 2) at a time, (m, n, 2) at m times [N]."""
+        return self._along(turning_path, t)
+
+    def wrenches(self, t: ArrayLike) -> Array:
+        """Finger wrenches (n, 3) or (m, n, 3), object frame [N, N m]."""
+        forces = self.forces(t)
+        return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
+
+    def load(self, t: ArrayLike) -> Array:
+        """The load (3,) or (m, 3) in the object frame [N, N m]."""
+        theta, (fx, fy) = self.orientation(t), self.start.load.force
+        c, s = np.cos(theta), np.sin(theta)
+        return np.stack([c * fx + s * fy, c * fy - s * fx, 0 * c], axis=-1)
+
+    def rates(self, t: ArrayLike) -> Array:
+        """Force rates in the object frame, (n, 2) or (m, n, 2) [N/s]."""
+        speed = -self.turn.angle * self.scaling.velocity(t)
+        result: Array = speed[..., None, None] * self._along(turning_slope, t)
+        return result
+
+    @property
+    def load_varies(self) -> bool:
+        """Whether the load is not the same at every instant: it turns."""
+        return True
+
+    @property
+    def peak(self) -> float:
+        """The largest |f_i| on the way, exact [N]; at most 1 / cos(step / 2) times that of ``turn``."""
+        return float(self.peaks.max())
+
+    @property
+    def peaks(self) -> Array:
+        """(n,) the largest |f_i| of each finger on the way, exact [N]."""
+        result: Array = self._peaks[:, :, 0].max(axis=0)
+        return result
+
+    @property
+    def steepest(self) -> Array:
+        """(n,) at least the fastest change of each force, max |df/dtheta| max |theta'(t)| [N/s]."""
+        result: Array = self._peaks[:, :, 1].max(axis=0) * abs(self.turn.angle) * self.scaling.steepest
+        return result
+
+    @cached_property
+    def _peaks(self) -> Array:
+        """(K - 1, n, 2) the largest |f_i| [N] and |df_i/dtheta| [N/rad] of each piece."""
+        f, g = self.turn.forces[:-1], self.turn.forces[1:]
+        products = np.stack([(f * f).sum(axis=-1), (f * g).sum(axis=-1), (g * g).sum(axis=-1)], axis=-1)
+        steps = np.diff(self.turn.angles).tolist()
+        return np.array(
+            [
+                [turning_peaks(aa, ab, bb, step) for aa, ab, bb in piece]
+                for piece, step in zip(products.tolist(), steps, strict=True)
+            ]
+        )
+
+    def fastest(self, rate_limit: ArrayLike) -> Transition:
+        """The same turn and shape in the least time with |f_i'(t)| <= rate_limit, to a bound [N/s].
+
+        rate_limit: a number or (n,). The bound is that of ``steepest``.
+        """
+        change = (self.steepest / self.scaling.steepest)[:, None]
+        return self.retimed(TimeScaling.fastest(change, rate_limit, self.scaling))
+
+    def _along(self, path: Callable[[Array, Array, float, Array], Array], t: ArrayLike) -> Array:
+        """A closed form of one piece, at times on all pieces."""
+        theta, turn = self.orientation(t), self.turn
+        flat, sign = theta.ravel(), float(np.sign(turn.angle))
+        piece = np.searchsorted(sign * turn.angles, sign * flat, side="right") - 1
+        piece = np.clip(piece, 0, turn.angles.size - 2)
+        result = np.empty((flat.size, *self.start.forces.shape))
+        for k in np.unique(piece):
+            here = piece == k
+            step = float(turn.angles[k + 1] - turn.angles[k])
+            result[here] = path(turn.forces[k], turn.forces[k + 1], step, flat[here] - turn.angles[k])
+        return result.reshape(*theta.shape, *self.start.forces.shape)
+
+    def _load_in_words(self) -> str:
+        return f"{self.start.load!r}, turning the object by {np.degrees(self.turn.angle):.6g} deg"
+
+    def _path_in_words(self) -> list[str]:
+        return [f"{self.turn.angles.size - 1} pieces in closed form, largest force {self.peak:.4g}"]
+
+    def _reversed(self, **changes: Any) -> "TurningTransition":
+        return replace(self, turn=self.turn.reversed(), **changes)

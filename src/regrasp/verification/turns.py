@@ -1,0 +1,112 @@
+"""Turning paths, decided exactly.
+
+Between two angles apart by Delta the forces are a f + b g with a = sin(Delta - theta) / sin(Delta) and
+b = sin(theta) / sin(Delta), never negative for |Delta| < pi. With f and g in their cones so are they, and
+
+    G (a f + b g) + w(theta) = a (G f + w_f) + b (G g + w_g) + (w(theta) - a w_f - b w_g):
+
+residuals at the ends grow by a + b <= 1 / cos(Delta / 2) at most, and the last term is what w_g differs from
+w_f turned by Delta. The load at each angle is the start's, turned by sines and cosines in rational
+arithmetic. The largest |a f + b g|^2 is bounded by c + |(p, q)|, the crest of its sine wave in 2 theta.
+"""
+
+from fractions import Fraction
+from itertools import pairwise
+from math import inf, sqrt
+
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.verification.exact import RESOLUTION, Vector, check_state, dot, exact
+from regrasp.verification.protocols import Plan, Turn
+from regrasp.verification.rows import Checked
+
+_TERMS = 40
+# 314159 / 100000 is a little less than pi.
+_BELOW_PI = Fraction(314159, 100000)
+
+
+def check_turn(plan: Plan, turn: Turn) -> Checked:
+    """Check the states at all angles, the load there, the steps between them and the force limits."""
+    start, angles = plan.start, exact(turn.angles.tolist())
+    broken = []
+    steps = [b - a for a, b in pairwise(angles)]
+    if angles[0] != 0 or not (all(s > 0 for s in steps) or all(s < 0 for s in steps)):
+        return Checked(["the angles of a turn must go one way from 0"], inf, 0.0, -inf)
+    if max(abs(s) for s in steps) > _BELOW_PI:
+        broken.append("a step of the turn is pi or more: no combination of its ends holds the load between")
+    if start.load.torque.any():
+        broken.append("the load has a torque, which does not turn with the object")
+    ends = ((plan.start, 0), (plan.end, -1))
+    if any((state.forces != turn.forces[k]).any() for state, k in ends):
+        broken.append("start and end are not the first and the last state of the turn")
+    fx, fy = exact(start.load.force.tolist())
+    last = exact(plan.end.load.force.tolist())
+    c, s = cosine_sine(angles[-1])
+    off = [last[0] - (c * fx + s * fy), last[1] - (c * fy - s * fx)]
+    if dot(off, off) > RESOLUTION**2 * (fx * fx + fy * fy):
+        broken.append("end: the load is not the start's, seen from the turned object")
+    residuals, slacks, angle_margins = [0.0], [inf], [inf]
+    for k, angle in enumerate(angles):
+        c, s = cosine_sine(angle)
+        load = Wrench([float(c * fx + s * fy), float(c * fy - s * fx)])
+        state = GraspState(start.grasp, load, turn.forces[k])
+        residual, slack, violations = check_state(state, f"angle {float(angle):.6g} rad")
+        residuals.append(residual)
+        slacks.append(slack)
+        angle_margins.append(state.margins.least_angle)
+        broken += violations
+    for k, step in enumerate(steps):
+        broken += _check_limits(plan, turn, k, step)
+    return Checked(broken, max(residuals), min(angle_margins), min(slacks))
+
+
+def cosine_sine(angle: Fraction) -> tuple[Fraction, Fraction]:
+    """Cosine and sine by Taylor's series, to 2^-80 for angles up to some turns, as fractions of 2^-100."""
+    cosine, sine, term = Fraction(0), Fraction(0), Fraction(1)
+    quarter = angle / 16  # then doubled four times
+    for n in range(_TERMS):
+        if n % 2:
+            sine += term * (-1) ** (n // 2)
+        else:
+            cosine += term * (-1) ** (n // 2)
+        term = _rounded(term * quarter / (n + 1))
+    for _ in range(4):
+        cosine, sine = _rounded(cosine * cosine - sine * sine), _rounded(2 * cosine * sine)
+    return cosine, sine
+
+
+def _rounded(value: Fraction) -> Fraction:
+    return Fraction(round(value * 2**120), 2**120)
+
+
+def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
+    """Whether no force exceeds its limit between two angles."""
+    broken = []
+    c, s = cosine_sine(step)
+    for i, contact in enumerate(plan.start.grasp.contacts):
+        if contact.max_force is None:
+            continue
+        limit = Fraction(contact.max_force)
+        f, g = exact(turn.forces[k, i].tolist()), exact(turn.forces[k + 1, i].tolist())
+        peak2 = _peak(f, g, c, s)
+        if peak2 > (limit * (1 + RESOLUTION)) ** 2:
+            broken.append(
+                f"force of {contact.name} reaches {sqrt(peak2):.12g} between two angles, above its limit "
+                f"{contact.max_force:.12g}"
+            )
+    return broken
+
+
+def _peak(f: Vector, g: Vector, c: Fraction, s: Fraction) -> Fraction:
+    """An upper bound of |a f + b g|^2 over a step with cosine c and sine s, tight to rounding."""
+    aa, ab, bb = dot(f, f), dot(f, g), dot(g, g)
+    # The slope of |.|^2 at both ends, times sin^2: it rises from the first and falls to the second end if the
+    # crest lies between them; else an end is the highest.
+    first, second = 2 * s * (ab - aa * c), 2 * s * (bb * c - ab)
+    sign = 1 if s > 0 else -1
+    if sign * first <= 0 or sign * second >= 0:
+        return max(aa, bb)
+    middle = (aa - 2 * ab * c + bb) / 2
+    p, q = (aa * (c * c - s * s) - 2 * ab * c + bb) / -2, s * (ab - aa * c)
+    swing = Fraction(sqrt(p * p + q * q)) * (1 + RESOLUTION)
+    return max(aa, bb, (middle + swing) / (s * s))
