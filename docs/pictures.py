@@ -5,7 +5,8 @@ from pathlib import Path
 
 import regrasp as rg
 from regrasp.files import parse_scenario, plan_scenario
-from regrasp.plots import plot_escape, plot_sensitivity, transition_figure
+from regrasp.outline import parts
+from regrasp.plots import plot_escape, plot_outline, plot_sensitivity, transition_figure
 
 IMAGES = Path(__file__).parent / "images"
 
@@ -22,3 +23,6 @@ if __name__ == "__main__":
     found = rg.sensitivity(removal.grasp, removal.start.load, "force", max_force=8)
     figure = plot_sensitivity(found).figure
     figure.savefig(IMAGES / "sensitivity.png", dpi=160, metadata={"Software": None})
+    part = parts.bracket()
+    figure = plot_outline(part, arc_lengths=part.sample(40)).figure
+    figure.savefig(IMAGES / "outline.png", dpi=160, metadata={"Software": None})

@@ -21,12 +21,13 @@ FLOORS: dict[str, Set[str]] = {
     "programs": {"errors", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
     "planning": {"errors", "display", "mechanics", "closed_form", "programs", "planning"},
-    "verification": {"mechanics", "verification"},
-    "outline": {"errors", "mechanics", "outline"},  # the checker shares no code with the planner
+    "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
+    "outline": {"errors", "mechanics", "outline"},
     "files": {"errors", "mechanics", "closed_form", "programs", "planning", "verification", "files"},
-    "plots": {"errors", "mechanics", "closed_form", "planning", "plots"},
+    "plots": {"errors", "mechanics", "outline", "closed_form", "planning", "plots"},
     "cli": {"", "errors", "mechanics", "planning", "verification", "files", "plots"},
-    "": {"errors", "mechanics", "planning", "verification"},  # regrasp/__init__.py: the public names
+    # regrasp/__init__.py: the public names
+    "": {"errors", "mechanics", "outline", "planning", "verification"},
     "__main__": {"cli"},
 }
 SOLVERS = {
@@ -44,6 +45,9 @@ HEAVY = {
     "qpsolvers",
     "click",
     "rich",
+    "shapely",
+    "svgpathtools",
+    "ezdxf",
 }
 LINES = 430
 
@@ -107,6 +111,8 @@ def may_import(module: str, package: str) -> bool:
         return module == f"regrasp.programs.{package}_backend"
     if package in ("click", "rich"):
         return here == "cli"
+    if package in ("shapely", "svgpathtools", "ezdxf"):
+        return here == "outline"
     if here in ("errors", "display", "closed_form", "mechanics", "verification"):
         return package == "numpy" or package in sys.stdlib_module_names
     return True
@@ -176,6 +182,8 @@ OFFENCES = [
     ("regrasp.planning.timing", "import matplotlib.pyplot as plt", "matplotlib"),
     ("regrasp.planning.timing", "import_module('matplotlib')", "matplotlib"),
     ("regrasp.planning.timing", "from .. import plots", "regrasp.plots"),
+    ("regrasp.planning.timing", "import shapely", "shapely"),
+    ("regrasp.outline.svg", "from ..files.source import text_of", "regrasp.files.source"),
     ("regrasp.planning.timing", "from pydantic import BaseModel", "pydantic"),
     ("regrasp.planning.timing", "if TYPE_CHECKING:\n    import regrasp.files", "regrasp.files"),
     ("regrasp.planning", "from ..plots import style", "regrasp.plots.style"),

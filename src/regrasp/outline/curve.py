@@ -1,60 +1,55 @@
-"""Smooth closed curves by arc length: periodic splines and ellipses."""
+"""A smooth closed curve by arc length, to rounding: Gauss-Legendre panels and Newton's method."""
 
+from abc import abstractmethod
 from collections.abc import Callable
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import ArrayValue
 
-# Gauss-Legendre points in a panel: exact for the areas of cubic splines, and far below rounding for lengths.
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-_PANELS = 8
-_NEWTON = 20
+_PANELS = 4  # to begin with, in each smooth stretch
+_HALVINGS, _STEPS = 30, 60
 
 Function = Callable[[Array], Array]
 
 
-class CurveBoundary:
-    """A smooth closed curve x(u), counter-clockwise, given with its first two derivatives.
+class CurveBoundary(ArrayValue):
+    """A smooth closed curve x(u), counter-clockwise, with its first two derivatives.
 
-    breaks: (k,) rising values of u, the first and last the same point; x(u) is smooth between them.
+    Between the rising ``breaks`` (k,), of which the first and the last are the same point, x(u) is smooth.
+    Panels of u are halved until the length of each is that of its halves to rounding.
     """
 
-    def __init__(self, position: Function, velocity: Function, acceleration: Function, breaks: Array) -> None:
-        self._x, self._dx, self._ddx = position, velocity, acceleration
-        self._u = np.concatenate(
-            [np.linspace(a, b, _PANELS, endpoint=False) for a, b in pairwise(breaks)] + [breaks[-1:]]
-        )
-        self._s = np.concatenate([[0.0], np.cumsum(self._integral(lambda u: np.hypot(*self._dx(u).T)))])
+    @property
+    @abstractmethod
+    def breaks(self) -> Array:
+        """(k,) rising values of u."""
 
-    @classmethod
-    def spline(cls, points: Array) -> "CurveBoundary":
-        """The periodic cubic spline through points (k, 2), by chord length."""
-        from scipy.interpolate import CubicSpline
+    @abstractmethod
+    def at(self, u: Array, order: int = 0) -> Array:
+        """(..., 2) the derivative of x of an order 0, 1 or 2."""
 
-        closed = np.vstack([points, points[:1]])
-        chords = np.hypot(*np.diff(closed, axis=0).T)
-        u = np.concatenate([[0.0], np.cumsum(chords)])
-        x = CubicSpline(u, closed, bc_type="periodic")
-        return cls(x, x.derivative(), x.derivative(2), u)
+    @cached_property
+    def _u(self) -> Array:
+        breaks = self.breaks
+        u = np.interp(np.arange(_PANELS * (breaks.size - 1) + 1) / _PANELS, np.arange(breaks.size), breaks)
+        for _ in range(_HALVINGS):
+            a, b, middle = u[:-1], u[1:], (u[:-1] + u[1:]) / 2
+            halves = _integrals(self._speed, a, middle) + _integrals(self._speed, middle, b)
+            rough = abs(_integrals(self._speed, a, b) - halves) > 1e-14 * halves.sum()
+            if not rough.any():
+                break
+            u = np.sort(np.concatenate([u, middle[rough]]))
+        return u
 
-    @classmethod
-    def ellipse(cls, a: float, b: float) -> "CurveBoundary":
-        """The ellipse of half axes a along x and b along y about the origin."""
-        axes = np.array([a, b])
-
-        def circle(u: Array) -> Array:
-            return np.stack([np.cos(u), np.sin(u)], axis=-1)
-
-        return cls(
-            lambda u: axes * circle(u),
-            lambda u: axes * circle(u + np.pi / 2),
-            lambda u: -axes * circle(u),
-            np.linspace(0, 2 * np.pi, 17),
-        )
+    @cached_property
+    def _s(self) -> Array:
+        """Arc lengths at the ends of the panels."""
+        return np.concatenate([[0.0], np.cumsum(_integrals(self._speed, self._u[:-1], self._u[1:]))])
 
     @property
     def length(self) -> float:
@@ -68,83 +63,97 @@ class CurveBoundary:
 
     @cached_property
     def moments(self) -> tuple[float, Array]:
-        """Area [m^2] and first moments (2,) [m^3], by Green's theorem."""
+        """Area [m^2] and centroid (2,) [m], by Green's theorem about a point of the curve."""
+        base = self.at(self._u[0])
 
         def density(u: Array) -> Array:
-            x, dx = self._x(u), self._dx(u)
+            x, dx = self.at(u) - base, self.at(u, 1)
             cross = x[:, 0] * dx[:, 1] - x[:, 1] * dx[:, 0]
             return np.stack([cross / 2, x[:, 0] * cross / 3, x[:, 1] * cross / 3], axis=-1)
 
-        total = self._integral(density).sum(axis=0)
-        return float(total[0]), total[1:]
+        area, *first = _integrals(density, self._u[:-1], self._u[1:]).sum(axis=0)
+        return float(area), base + np.array(first) / area
 
     def points(self, s: ArrayLike) -> Array:
         """(..., 2) points at arc lengths."""
-        return self._x(self._parameter(s))
+        return self.at(self._parameter(s))
 
     def tangents(self, s: ArrayLike) -> Array:
         """(..., 2) unit tangents."""
-        velocity = self._dx(self._parameter(s))
+        velocity = self.at(self._parameter(s), 1)
         result: Array = velocity / np.linalg.norm(velocity, axis=-1, keepdims=True)
         return result
 
     def nearest(self, point: Array) -> float:
-        """The arc length of the point nearest to ``point`` (2,): the best panel end, made exact by Newton."""
-        k = int(np.argmin(((self._x(self._u) - point) ** 2).sum(axis=1)))
-        u, step = float(self._u[k]), float(np.diff(self._u).max())
-        lo, hi = u - step, u + step
-        period = self._u[-1] - self._u[0]
-        for _ in range(_NEWTON):
-            at = np.array([self._u[0] + (u - self._u[0]) % period])
-            away, dx, ddx = self._x(at)[0] - point, self._dx(at)[0], self._ddx(at)[0]
-            slope, curvature = float(away @ dx), float(dx @ dx + away @ ddx)
-            newton = u - slope / curvature if curvature > 0 else u - np.sign(slope) * step / 4
-            u = min(max(newton, lo), hi)
-        wrapped = self._u[0] + (u - self._u[0]) % period
-        return float(self._length_to(np.array([wrapped]))[0]) % self.length
+        """The arc length of the point nearest to ``point`` (2,); one of several.
+
+        In every panel where the distance first falls and then rises Newton's method finds its least.
+        """
+
+        def slope(u: Array) -> Array:
+            result: Array = ((self.at(u) - point) * self.at(u, 1)).sum(axis=-1)
+            return result
+
+        def bend(u: Array) -> Array:
+            away, dx, ddx = self.at(u) - point, self.at(u, 1), self.at(u, 2)
+            result: Array = (dx**2 + away * ddx).sum(axis=-1)
+            return result
+
+        falls = slope(self._u)
+        k = np.flatnonzero((falls[:-1] <= 0) & (falls[1:] >= 0))
+        u = np.concatenate([self._u, _roots(slope, bend, self._u[k], self._u[k + 1])])
+        best = int(np.argmin(np.hypot(*(self.at(u) - point).T)))
+        return float(self._length_to(u[best : best + 1])[0]) % self.length
 
     def polygon(self, tolerance: float) -> Array:
         """(k, 2) points on the curve with chords within ``tolerance`` of it: sagitta h^2 |x''| / 8."""
-        bend = np.linalg.norm(self._ddx(self._u), axis=-1)
+        bend = np.linalg.norm(self.at(self._u, 2), axis=-1)
         worst = np.maximum(bend[:-1], bend[1:]) * np.diff(self._u) ** 2 / 8
         parts = np.maximum(1, np.ceil(np.sqrt(2 * worst / tolerance))).astype(int)
-        u = np.concatenate(
-            [
-                np.linspace(a, b, n, endpoint=False)
-                for a, b, n in zip(self._u[:-1], self._u[1:], parts, strict=True)
-            ]
-        )
-        return self._x(u)
+        panels = zip(self._u[:-1], self._u[1:], parts, strict=True)
+        return self.at(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in panels]))
 
-    def _integral(self, f: Function) -> Array:
-        """The integral of f over each panel."""
-        return self._quadrature(f, self._u[:-1], self._u[1:])
-
-    def _quadrature(self, f: Function, a: Array, b: Array) -> Array:
-        half = (b - a) / 2
-        u = (a + b)[:, None] / 2 + half[:, None] * _GAUSS
-        values = f(u.ravel())
-        values = values.reshape(*u.shape, *values.shape[1:])
-        scale = half.reshape(-1, *[1] * (values.ndim - 2))
-        result: Array = scale * np.tensordot(values, _WEIGHTS, axes=([1], [0]))
+    def _speed(self, u: Array) -> Array:
+        result: Array = np.hypot(*self.at(u, 1).T)
         return result
 
     def _length_to(self, u: Array) -> Array:
         """Arc length from the start to u."""
         k = np.clip(np.searchsorted(self._u, u, side="right") - 1, 0, self._u.size - 2)
-        rest: Array = self._quadrature(lambda v: np.hypot(*self._dx(v).T), self._u[k], u)
-        result: Array = self._s[k] + rest
+        result: Array = self._s[k] + _integrals(self._speed, self._u[k], u)
         return result
 
     def _parameter(self, s: ArrayLike) -> Array:
-        """The u of arc lengths, by Newton's method from linear interpolation."""
+        """The u of arc lengths."""
         wrapped = np.asarray(s, dtype=float) % self.length
         flat = wrapped.ravel()
-        u = np.interp(flat, self._s, self._u)
-        for _ in range(_NEWTON):
-            off = self._length_to(u) - flat
-            if abs(off).max(initial=0.0) <= 1e-14 * self.length:
-                break
-            u = np.clip(u - off / np.hypot(*self._dx(u).T), self._u[0], self._u[-1])
-        result: Array = u.reshape(wrapped.shape)
-        return result
+        k = np.clip(np.searchsorted(self._s, flat, side="right") - 1, 0, self._u.size - 2)
+        return _roots(lambda u: self._length_to(u) - flat, self._speed, self._u[k], self._u[k + 1]).reshape(
+            wrapped.shape
+        )
+
+
+def _integrals(f: Function, a: Array, b: Array) -> Array:
+    """(m, ...) the integrals of f from each a to each b."""
+    half = (b - a) / 2
+    u = (a + b)[:, None] / 2 + half[:, None] * _GAUSS
+    values = f(u.ravel())
+    values = values.reshape(*u.shape, *values.shape[1:])
+    scale = half.reshape(-1, *[1] * (values.ndim - 2))
+    result: Array = scale * np.tensordot(values, _WEIGHTS, axes=([1], [0]))
+    return result
+
+
+def _roots(f: Function, slope: Function, lo: Array, hi: Array) -> Array:
+    """(m,) where f, not positive at lo and not negative at hi, is zero: Newton, kept inside by bisection."""
+    u, width = (lo + hi) / 2, hi - lo
+    for _ in range(_STEPS):
+        value, rate = f(u), slope(u)
+        lo, hi = np.where(value < 0, u, lo), np.where(value > 0, u, hi)
+        step = np.divide(value, rate, out=np.full_like(u, np.inf), where=rate > 0)
+        after = np.where((u - step > lo) & (u - step < hi), u - step, (lo + hi) / 2)
+        after = np.where(value == 0, u, after)
+        moved, u = abs(after - u), after
+        if (moved <= 1e-15 * width).all():
+            break
+    return u

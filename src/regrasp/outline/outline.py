@@ -1,65 +1,102 @@
 """The outline of a planar object as a value."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike
 from pathlib import Path
+from typing import Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number, point, read_only
+from regrasp.mechanics.checks import Array, array, number, read_only
 from regrasp.mechanics.contact import Contact
-from regrasp.outline.boundary import Boundary, PolygonBoundary
-from regrasp.outline.curve import CurveBoundary
-from regrasp.outline.region import checked_polygon, refuse_crossing
+from regrasp.mechanics.value import ArrayValue
+from regrasp.outline.boundary import Boundary
+from regrasp.outline.curves import EllipseBoundary, SplineBoundary
+from regrasp.outline.polygon import PolygonBoundary
+from regrasp.outline.region import check_holes, checked_ring
 
 # Chords of a smooth outline stay this near to it, as a fraction of its length, where a polygon stands for it.
 _FLATNESS = 1e-4
+_AT_CORNER = 1e-9
+
+Hole = Union[ArrayLike, "Outline"]
 
 
-class Outline:
-    """The boundary of a planar object of uniform density: a polygon; smooth curves by ``Outline.smooth``.
+@dataclass(frozen=True, eq=False, repr=False)
+class Outline(ArrayValue):
+    """The boundary of a planar object of uniform density: a polygon; ``smooth`` and ``ellipse`` make curves.
 
-    vertices: (k, 2) [m], in either direction, closed by itself. holes: polygons inside, which count for the
-    centre of mass and not for contacts.
-    Coordinates are taken as given; contacts are placed relative to the centre of mass, as everywhere.
-    The arc length runs counter-clockwise from the first vertex.
-    Raises ``InvalidInput`` for outlines that cross themselves, have no area, or have a hole outside.
+    vertices: (k, 2) [m], in either direction, closed by itself. holes: vertices, or outlines without holes;
+    they count for the centre of mass and not for contacts.
+
+    Coordinates are taken as given; contacts are placed relative to the centre of mass, as everywhere. The
+    arc length runs counter-clockwise from the first vertex. A vertex is a corner, where no finger can touch,
+    if the boundary turns there by more than 5 degrees; a shallower one, as on a curve made of chords, takes
+    the normal of the side after it.
+
+    Raises ``InvalidInput`` for an outline that crosses or touches itself or has no area, and for a hole that
+    is not strictly inside or meets another.
     """
 
-    def __init__(self, vertices: ArrayLike, holes: Iterable[ArrayLike] = ()) -> None:
-        polygon = checked_polygon(vertices, "outline")
-        self._set(PolygonBoundary(polygon), tuple(checked_polygon(hole, "hole") for hole in holes))
+    boundary: Boundary
+    holes: tuple[Boundary, ...]
+
+    def __init__(self, vertices: ArrayLike, holes: Iterable[Hole] = ()) -> None:
+        self._set(PolygonBoundary(checked_ring(vertices, "outline")), holes)
 
     @classmethod
-    def smooth(cls, points: ArrayLike, holes: Iterable[ArrayLike] = ()) -> "Outline":
-        """The periodic cubic spline through points (k, 2), three or more."""
-        through = checked_polygon(points, "points of a smooth outline")
-        return cls._of(CurveBoundary.spline(through), holes)
+    def smooth(cls, points: ArrayLike, holes: Iterable[Hole] = ()) -> "Outline":
+        """The periodic cubic spline through points (k, 2) [m], three or more."""
+        through = checked_ring(points, "outline")
+        boundary = SplineBoundary(through)
+        if boundary.moments[0] < 0:  # few points can turn against the curve through them
+            boundary = SplineBoundary(read_only(np.roll(through[::-1], 1, axis=0)))
+        return cls._of(boundary, holes)
 
     @classmethod
-    def ellipse(cls, a: float, b: float) -> "Outline":
+    def ellipse(
+        cls, a: float, b: float, *, centre: ArrayLike = (0.0, 0.0), holes: Iterable[Hole] = ()
+    ) -> "Outline":
         """The ellipse of half axes a along x and b along y [m]; a circle where they are equal."""
-        return cls._of(CurveBoundary.ellipse(number(a, "a", above=0), number(b, "b", above=0)), ())
+        axes = np.array([number(a, "a", above=0), number(b, "b", above=0)])
+        return cls._of(EllipseBoundary(read_only(axes), array(centre, "centre", (2,))), holes)
 
     @classmethod
-    def from_file(cls, path: str | Path) -> "Outline":
-        """The outline in an SVG, DXF or coordinate file (CSV, TXT, DAT); see ``regrasp.outline.readers``."""
-        from regrasp.outline.readers import read_outline
+    def from_file(
+        cls, path: str | PathLike[str], *, scale: float = 1.0, tolerance: float | None = None
+    ) -> "Outline":
+        """The polygon in an SVG, DXF or coordinate file (CSV, TXT, DAT), in the file's units times ``scale``.
 
-        outer, holes = read_outline(Path(path))
-        return cls(outer, holes)
+        Of several closed curves the largest is the outline and those inside it are holes. Curves become
+        chords within ``tolerance`` of them [file's units], which turn by 2 degrees at most; ends of pieces
+        that near are joined. It is 1e-4 of the drawing's larger side if not given. SVG's y axis, which points
+        down, is turned up. SVG and DXF need the extra ``regrasp[outlines]``.
+        Raises ``InvalidInput`` for a file that cannot be read and for an outline that is open, crosses
+        itself, is empty or one of several; ``ImportError`` without the extra.
+        """
+        from regrasp.outline.readers import naming, read_rings
+
+        factor = number(scale, "scale", above=0)
+        within = None if tolerance is None else number(tolerance, "tolerance", above=0)
+        with naming(path):
+            outer, *holes = read_rings(Path(path), within)
+            return cls(factor * outer, [factor * hole for hole in holes])
 
     @classmethod
-    def _of(cls, boundary: Boundary, holes: Iterable[ArrayLike]) -> "Outline":
+    def _of(cls, boundary: Boundary, holes: Iterable[Hole]) -> "Outline":
         outline = cls.__new__(cls)
-        outline._set(boundary, tuple(checked_polygon(hole, "hole") for hole in holes))
+        outline._set(boundary, holes)
         return outline
 
-    def _set(self, boundary: Boundary, holes: tuple[Array, ...]) -> None:
-        self.boundary, self.holes = boundary, holes
-        refuse_crossing(boundary.polygon(_FLATNESS * boundary.length), holes)
+    def _set(self, boundary: Boundary, holes: Iterable[Hole]) -> None:
+        inner = tuple(_hole(hole, f"hole {i}") for i, hole in enumerate(holes))
+        check_holes(_chords(boundary), [_chords(hole) for hole in inner])
+        object.__setattr__(self, "boundary", boundary)
+        object.__setattr__(self, "holes", inner)
 
     # -- the object -------------------------------------------------------------------------------------
 
@@ -71,42 +108,39 @@ class Outline:
     @cached_property
     def area(self) -> float:
         """Of the material, holes left out [m^2]."""
-        return float(self._moments[0])
+        return self.boundary.moments[0] - sum(hole.moments[0] for hole in self.holes)
 
     @cached_property
     def centre_of_mass(self) -> Array:
         """(2,) [m], in the coordinates given; uniform density."""
-        area, first = self._moments
-        return read_only(first / area)
-
-    @cached_property
-    def _moments(self) -> tuple[float, Array]:
-        area, first = self.boundary.moments
-        for hole in self.holes:
-            hole_area, hole_first = PolygonBoundary(hole).moments
-            area, first = area - hole_area, first - hole_first
-        return area, first
+        _, centroid = self.boundary.moments
+        shift = np.zeros(2)
+        for area, at in (hole.moments for hole in self.holes):
+            shift += area * (centroid - at)
+        return read_only(centroid + shift / self.area)
 
     def polygon(self, tolerance: float | None = None) -> Array:
         """(k, 2) a polygon for the outer boundary, relative to the centre of mass; exact if it is one [m].
 
         tolerance: how far a chord may be from a smooth boundary [m]; 1e-4 of its length if not given.
         """
-        return self.boundary.polygon(_FLATNESS * self.length if tolerance is None else tolerance) - (
-            self.centre_of_mass
-        )
+        return _chords(self.boundary, tolerance) - self.centre_of_mass
+
+    def hole_polygons(self, tolerance: float | None = None) -> tuple[Array, ...]:
+        """The same for every hole."""
+        return tuple(_chords(hole, tolerance) - self.centre_of_mass for hole in self.holes)
 
     # -- contacts ---------------------------------------------------------------------------------------
 
     def points(self, s: ArrayLike) -> Array:
         """(..., 2) points at arc lengths, relative to the centre of mass [m]."""
-        result: Array = self.boundary.points(s) - self.centre_of_mass
+        result: Array = self.boundary.points(_finite(s)) - self.centre_of_mass
         return result
 
     def normals(self, s: ArrayLike) -> Array:
         """(..., 2) unit normals into the object at arc lengths; at a corner that of the stretch after it."""
-        t = self.boundary.tangents(s)
-        return np.stack([-t[..., 1], t[..., 0]], axis=-1)
+        t = self.boundary.tangents(_finite(s))
+        return np.stack([-t[..., 1], t[..., 0]], axis=-1) + 0.0  # no -0
 
     def contact_at(
         self,
@@ -118,39 +152,63 @@ class Outline:
     ) -> Contact:
         """The contact at an arc length [m], modulo the length. ``InvalidInput`` at a corner."""
         s = number(arc_length, "arc_length") % self.length
-        gap = self._distance_to_corners(np.array([s]))[0]
-        if gap <= 1e-9 * self.length:
-            raise InvalidInput(f"arc length {arc_length:.6g} is at a corner, where the normal is not defined")
+        if self._to_corners(np.array([s]))[0] <= _AT_CORNER * self.length:
+            raise InvalidInput(f"arc length {s:.6g} is at a corner, where no normal is defined")
         return Contact(self.points(s), self.normals(s), friction, max_force=max_force, name=name)
 
     def nearest(self, position: ArrayLike) -> float:
-        """The arc length of the boundary point nearest to ``position`` (2,), in the coordinates given [m]."""
-        where = point(position, "position")
-        if where.size != 2:
-            raise InvalidInput(f"position must have 2 numbers, got {where.size}")
-        return self.boundary.nearest(where)
+        """The arc length of the boundary point nearest to ``position`` (2,), in the coordinates given [m].
+
+        For a point relative to the centre of mass, such as a contact's, add ``centre_of_mass``.
+        """
+        return self.boundary.nearest(array(position, "position", (2,)))
 
     def sample(self, count: int, *, clearance: float | None = None) -> Array:
         """(m,) arc lengths of ``count`` evenly spread candidates, those near a corner left out [m].
 
         clearance: least distance to a corner along the boundary [m]; a quarter of the spacing if not given.
         """
-        if isinstance(count, bool) or not isinstance(count, int) or count < 3:
-            raise InvalidInput(f"count must be a whole number of at least 3, got {count!r}")
+        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
+            raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
         spacing = self.length / count
         keep = spacing / 4 if clearance is None else number(clearance, "clearance", least=0)
-        s = (np.arange(count) + 0.5) * spacing
-        return s[self._distance_to_corners(s) >= keep]
+        s: Array = (np.arange(count, dtype=np.float64) + 0.5) * spacing
+        return s[self._to_corners(s) >= max(keep, 2 * _AT_CORNER * self.length)]
 
-    def _distance_to_corners(self, s: Array) -> Array:
+    def _to_corners(self, s: Array) -> Array:
         """(m,) arc length to the nearest corner; infinite without corners."""
         corners = self.boundary.corners
         if not corners.size:
             return np.full(s.shape, np.inf)
-        away = abs(s[:, None] - corners)
-        result: Array = np.minimum(away, self.length - away).min(axis=1)
-        return result
+        i = np.searchsorted(corners, s)
+        behind, ahead = (s - corners[i - 1]) % self.length, (corners[i % corners.size] - s) % self.length
+        return np.minimum(behind, ahead)
 
     def __repr__(self) -> str:
         kind = "polygon" if isinstance(self.boundary, PolygonBoundary) else "smooth"
-        return f"Outline({kind}, length {self.length:.6g}, area {self.area:.6g}, {len(self.holes)} holes)"
+        holes = f", {len(self.holes)} hole{'s'[: len(self.holes) - 1]}" if self.holes else ""
+        return f"Outline({kind}, length {self.length:.6g}, area {self.area:.6g}{holes})"
+
+
+def _hole(hole: Hole, what: str) -> Boundary:
+    if not isinstance(hole, Outline):
+        return PolygonBoundary(checked_ring(hole, what))
+    if hole.holes:
+        raise InvalidInput(f"{what} has holes itself; what is inside a hole is another object")
+    return hole.boundary
+
+
+def _chords(boundary: Boundary, tolerance: float | None = None) -> Array:
+    if tolerance is None:
+        return boundary.polygon(_FLATNESS * boundary.length)
+    return boundary.polygon(number(tolerance, "tolerance", above=0))
+
+
+def _finite(s: ArrayLike) -> Array:
+    try:
+        values = np.asarray(s, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"arc lengths must be numbers, got {s!r}") from None
+    if not np.isfinite(values).all():
+        raise InvalidInput(f"arc lengths must be finite, got {s!r}")
+    return values

@@ -1,5 +1,6 @@
-"""Checks of polygons, by shapely."""
+"""Checks of rings: simple, with area, holes strictly inside. By shapely."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -8,29 +9,57 @@ from numpy.typing import ArrayLike
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, read_only
 
-
-def checked_polygon(vertices: ArrayLike, what: str) -> Array:
-    """(k, 2) vertices, counter-clockwise, without repeated neighbours or a last one that closes the ring."""
-    given = array(vertices, what, (None, 2))
-    apart = (given != np.roll(given, 1, axis=0)).any(axis=1)
-    polygon = given[apart] if given.size else given
-    if len(polygon) < 3:
-        raise InvalidInput(f"{what} needs three different points or more, got {len(polygon)}")
-    x, y = (polygon - polygon[0]).T
-    area = float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
-    size = float(np.ptp(polygon, axis=0).max())
-    if abs(area) <= 1e-12 * size**2:
-        raise InvalidInput(f"{what} encloses no area: its points lie on one line, or it crosses itself")
-    if area < 0:
-        polygon = polygon[::-1]
-    return read_only(polygon.copy())
+# Neighbours nearer than this, as a fraction of the ring's size, are one vertex: a ring closed up to rounding.
+_SAME = 1e-9
 
 
-def refuse_crossing(outer: Array, holes: tuple[Array, ...]) -> None:
-    """Raise ``InvalidInput`` where a boundary crosses itself or a hole is not inside."""
+def checked_ring(points: ArrayLike, what: str) -> Array:
+    """(k, 2) the points counter-clockwise from the first, without repeats and a last one that closes."""
+    given = array(points, what, (None, 2))
+    size = float(np.ptp(given, axis=0).max()) if given.size else 0.0
+    apart = np.hypot(*(np.roll(given, -1, axis=0) - given).T) > _SAME * size
+    ring = given[apart]
+    if len(ring) < 3:
+        raise InvalidInput(f"{what} needs three different points or more, got {len(ring)}")
+    if signed_area(ring) < 0:
+        ring = np.roll(ring[::-1], 1, axis=0)
+    return read_only(ring.copy())
+
+
+def signed_area(ring: Array) -> float:
+    """Positive for a counter-clockwise ring [m^2]."""
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
+
+
+def checked_region(ring: Array, what: str) -> Any:
+    """The shapely polygon of a ring (k, 2). ``InvalidInput`` where it has no area or meets itself."""
     import shapely
 
-    region: Any = shapely.Polygon(outer, holes)
+    size = float(np.ptp(ring, axis=0).max())
+    origin = ring[0]
+    unit = (ring - origin) / size
+    if np.linalg.svd(unit - unit.mean(axis=0), compute_uv=False)[1] <= _SAME:
+        raise InvalidInput(f"{what} encloses no area: its points lie on one line")
+    region = shapely.Polygon(unit)
     if not region.is_valid:
         reason = shapely.is_valid_reason(region)
-        raise InvalidInput(f"the outline is not the boundary of one region: {reason}")
+        place = re.search(r"\[(\S+) (\S+)\]", reason)
+        where = ""
+        if place:
+            x, y = origin + size * np.array([float(number) for number in place.groups()])
+            where = f" near ({x:.6g}, {y:.6g})"
+        raise InvalidInput(f"{what} crosses or touches itself{where}; it must be a simple closed curve")
+    return shapely.Polygon(ring)
+
+
+def check_holes(outer: Array, holes: list[Array]) -> None:
+    """Raise ``InvalidInput`` unless rings are simple and holes strictly inside, apart from one another."""
+    region = checked_region(outer, "outline")
+    inside = [checked_region(hole, f"hole {i}") for i, hole in enumerate(holes)]
+    for i, hole in enumerate(inside):
+        if not region.contains_properly(hole):
+            raise InvalidInput(f"hole {i} must lie inside the outline without touching it")
+        for j in range(i):
+            if not hole.disjoint(inside[j]):
+                raise InvalidInput(f"holes {j} and {i} overlap or touch; give their union as one hole")

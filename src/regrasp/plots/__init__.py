@@ -11,6 +11,7 @@ from regrasp.plots.iso_torque import plot_iso_torque
 from regrasp.plots.load_history import plot_load
 from regrasp.plots.locus import plot_locus
 from regrasp.plots.object import plot_state, plot_transition
+from regrasp.plots.outline import plot_outline
 from regrasp.plots.overview import (
     figures,
     iso_torque_figure,
@@ -40,6 +41,7 @@ __all__ = [
     "plot_locus_segment",
     "plot_magnitudes",
     "plot_margins",
+    "plot_outline",
     "plot_scaling",
     "plot_sensitivity",
     "plot_state",
