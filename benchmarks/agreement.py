@@ -37,5 +37,5 @@ def _value(pair: tuple[float, ...], forces: Array, objective: str) -> float:
         return float((f * normals).sum(axis=1).max())
     found = margins(f, normals, frictions)
     if objective == "friction_use":
-        return float(found.friction_use.max())
+        return 1 - float(found.friction_use.max())  # of the whole friction
     return float((found.angle if objective == "angle" else found.force).min())

@@ -292,8 +292,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         3,
         [
             re.compile(
-                r"the forces would have to change at 4\.\d+ times the rate limits: allow faster changes, a longer "
-                r"duration or other ends"
+                r"the forces would have to change at 4\.\d+ times the rate limits: allow faster changes, "
+                r"a longer duration or other ends"
             )
         ],
     ),

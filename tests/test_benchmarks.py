@@ -65,3 +65,16 @@ def test_a_quick_run_does_not_replace_the_results() -> None:
     done = subprocess.run([sys.executable, SCRIPT, "--quick"], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "say where to write it with -o DIR" in done.stderr
+
+
+def test_the_benchmark_of_programs_measures_every_row(tmp_path: Path) -> None:
+    script = SCRIPT.with_name("programs.py")
+    subprocess.run([sys.executable, script, "--quick", "-o", tmp_path], check=True, capture_output=True)
+    report = json.loads((tmp_path / "results" / "programs.json").read_text(encoding="utf-8"))
+    keys = {row["key"] for row in report["rows"]}
+    solved = {
+        f"clarabel_{objective}_{n}" for objective in ("effort", "peak", "peak_normal") for n in (2, 3, 6)
+    }
+    assert keys >= solved | {"growth_10_1000", "growth_100_1000", "road_cvxpy_warm", "road_cvxpy_cold"}
+    for row in report["rows"]:
+        assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "value")), row

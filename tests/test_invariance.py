@@ -84,7 +84,9 @@ def test_the_best_value(pair, frame: Frame, objective: str) -> None:
     here = rg.choose_state(pair.grasp, pair.load, objective)
     for order in ((0, 1), (1, 0)):
         there = rg.choose_state(frame.grasp(pair.grasp, order), frame.load(pair.load), objective)
-        size = frame.value(1.0, objective) * (1 if objective in ("angle", "friction_use") else here.magnitudes.max())
+        size = frame.value(1.0, objective) * (
+            1 if objective in ("angle", "friction_use") else here.magnitudes.max()
+        )
         assert there.value == pytest.approx(frame.value(here.value, objective), rel=1e-7, abs=1e-7 * size)
 
 

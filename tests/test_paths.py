@@ -301,8 +301,8 @@ FAILURES = {
         {"idle_from": 1.5}, rg.InvalidInput, r"idle time must lie inside \(0, 1\) s, got 1.5"
     ),
     "closed form cannot": (
-        {"path_objective": "change", "method": "closed-form", "end": STATE}, rg.InvalidInput,
-        "end: P3 must carry"
+        {"path_objective": "change", "method": "closed-form"}, rg.InvalidInput,
+        "Eq. 1-3 holds under a constant load, and no straight path keeps these demands"
     ),
     "unknown objective": (
         {"path_objective": "jerk"}, rg.InvalidInput,
@@ -365,3 +365,91 @@ def test_units_and_frames_change_nothing_else():
     assert there.course.forces / force == pytest.approx(plan.course.forces @ turn.T, abs=1e-4)
     assert rg.verify(there).ok
     assert inf not in there.record.rate_limits
+
+
+@pytest.mark.parametrize("backend", sorted({"highs", "scs", "clarabel"} & set(available_backends())))
+def test_a_solver_that_fails_proves_nothing(backend):
+    """The path exists: whatever a back end makes of it, it is not called impossible."""
+    options = {"duration": 1.0, "rate_limit": 5.2, "facets": 16, "instants": 61}
+    try:
+        plan = rg.plan_removal(STATE, "P3", method=backend, **options)
+    except rg.SolverFailed:
+        return
+    assert plan.steepest.max() <= 5.2
+
+
+def test_no_period_hides_between_instants():
+    def trembling(t: float) -> rg.Wrench:
+        return rg.Wrench([-1.5, -3.5 + 2 * np.sin(800 * np.pi * t)])
+
+    plan = rg.plan_removal(GRASP, "P3", load=trembling)
+    assert "differs from the plan's by up to" in str(rg.verify(plan, trembling))
+
+
+def test_a_curvature_is_not_believed_against_what_is_measured():
+    plan = rg.plan_removal(GRASP, "P3", load=swinging)
+    assert "bends more than the curvature 1 given" in str(rg.verify(plan, swinging, curvature=1.0))
+    for options, words in (
+        ({"load": swinging, "curvature": np.nan}, "curvature must be finite"),
+        ({"load": swinging, "curvature": -1.0}, "curvature must be at least 0"),
+        ({"load": swinging, "curvature": "a"}, "curvature must be"),
+        ({"curvature": 1.0}, "give load as well"),
+        ({"load": 5}, "load must be the function of time"),
+        ({"load": lambda t: np.zeros(3)}, "load must return a Wrench"),
+        ({"load": lambda t: rg.Wrench([0, 0, 0])}, "of the plan's dimension"),
+    ):
+        with pytest.raises(rg.InvalidInput, match=words):
+            rg.verify(plan, **options)
+    with pytest.raises(rg.InvalidInput, match="verify needs a plan"):
+        rg.verify(STATE)
+
+
+def test_many_instants_are_merged_quickly():
+    series = rg.LoadSeries(np.linspace(0, 1, 20_001), np.tile([-1.5, -3.5, 0.0], (20_001, 1)))
+    assert series.refined(20_001, 0.33333).times.size == 20_002
+
+
+def test_the_quickest_path_is_straight_at_any_rate():
+    planned = rg.plan_removal(STATE, "P3")
+    for rate in np.random.default_rng(0).uniform(0.1, 50, 200):
+        quickest = rg.plan_removal(planned.start, "P3", end=planned.end, rate_limit=rate)
+        assert quickest.record.path == "closed-form"
+        assert quickest.steepest.max() == pytest.approx(rate, rel=1e-12)
+
+
+def test_one_finger_left_cannot_take_up_a_torque():
+    """The gap of the load is a torque, and the finger that stays pushes through the centre of mass."""
+    grasp = rg.Grasp([rg.Contact([0, -1], [0, 1], 0.5, name="A"), rg.Contact([1, 0], [-1, 0], 0.5, name="B")])
+    state = rg.GraspState(grasp, rg.Wrench([0, -1.0]), [[0, 1], [0, 0]])
+    plan = rg.plan_removal(state, "B", end=state)
+
+    def twisted(t: float) -> rg.Wrench:
+        return rg.Wrench([0, -1], 0.05 * np.sin(np.pi * t))
+
+    assert not rg.verify(plan, twisted, curvature=0.05 * np.pi**2).ok
+
+
+def test_a_series_of_its_own_is_no_gap_even_without_any_margin():
+    grasp = rg.Grasp([*GRASP, rg.Contact([5, 0], [-1, 0], 0.0, name="P4")])
+    series = rg.LoadSeries(
+        [0.0, 0.3, 0.7, 1.0], [[-1.5, -3.5, 0], [-1, -3.5, 0], [-1.5, -4, 0.5], [-1.5, -3.5, 0]]
+    )
+    plan = rg.plan_removal(grasp, "P3", load=series, instants=21)
+    assert rg.verify(plan, series).ok
+
+
+def test_a_leaving_finger_without_friction():
+    smooth = rg.Grasp([*GRASP.without("P3"), rg.Contact([0, 8], [0, -1], 0.0, name="P3")])
+    plan = rg.plan_removal(smooth, "P3", load=swinging, idle_from=0.01, instants=11)
+    assert rg.verify(plan).ok
+    assert plan.record.path == "clarabel"
+
+
+def test_the_least_peak_is_the_same_path_in_any_frame():
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    options = {"path_objective": "peak", "rate_limit": 14.0, "duration": 1.0, "instants": 21}
+    here = rg.plan_removal(STATE, "P3", **options)
+    contacts = [rg.Contact(turn @ c.position, turn @ c.normal, c.friction, name=c.name) for c in GRASP]
+    state = rg.GraspState(rg.Grasp(contacts), rg.Wrench(turn @ STATE.load.force), STATE.forces @ turn.T)
+    there = rg.plan_removal(state, "P3", **options)
+    assert there.course.forces == pytest.approx(here.course.forces @ turn.T, abs=1e-3)

@@ -268,3 +268,40 @@ def test_distance_to_cones_measures_each_kind():
     assert moved(2, -0.25) == 0.25
     assert moved(3, -1) == 1
     assert moved([7, 8], [3, 4]) == 5
+
+
+def test_what_programs_share_cannot_be_written_to():
+    from paper import GRASP, LOAD
+    from regrasp.planning.state_program import state_program
+
+    program = state_program(GRASP, LOAD, "effort", [0.3] * 3, [np.inf] * 3, 1.0)
+    for shared in (program.q, program.P.data, program.A.indices, program.A.indptr):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 7
+
+
+def test_an_answer_of_nothing_is_not_the_optimum_because_a_bound_is_far():
+    """min 1/2 x^2 - 0.05 x with x <= 1e6: x = 0 is off by 0.05, whatever the size of the bound."""
+    from dataclasses import replace
+
+    rows = Rows(1)
+    rows.at_least_zero([[-1.0]], 1e6)
+    right = solve(rows.program([-0.05], [[1.0]]), "clarabel")
+    assert right.value[0] == pytest.approx(0.05)
+    assert replace(right, value=np.zeros(1), duals=np.zeros(1)).residual > 0.1
+    assert replace(right, value=np.full(1, 0.0501)).residual > 1e-4
+
+
+def test_matrices_in_another_format_are_refused():
+    from scipy import sparse
+
+    with pytest.raises(InvalidInput, match=r"A must be a scipy.sparse matrix in CSC format"):
+        Program(
+            sparse.csc_matrix((1, 1)),
+            np.zeros(1),
+            sparse.csr_matrix((1, 1)),
+            np.zeros(1),
+            (Block(Cone.ZERO, 1),),
+        )
+    with pytest.raises(InvalidInput, match="Clarabel has no setting 'speed'"):
+        solve(projection_on_simplex(np.ones(2))[0], "clarabel", speed=3)

@@ -3,7 +3,9 @@
 import json
 from math import inf
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
 
 from regrasp.errors import InvalidInput
 from regrasp.files.source import naming, text_of
@@ -19,6 +21,8 @@ from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record, Transition
 
 FORMAT = "regrasp plan"
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
 VERSION = 1
 
 
@@ -47,10 +51,10 @@ class _Record(Strict):
     reserve: float
     choices: list[_Choice]
     balancing: float
-    path: str
-    path_objective: str | None
-    rate_limits: list[float | None]
-    least_normals: list[float]
+    path: str = "closed-form"
+    path_objective: str | None = None
+    rate_limits: list[Positive | None] = Field(default_factory=list)
+    least_normals: list[NotNegative] = Field(default_factory=list)
 
 
 class _Course(Strict):
@@ -69,7 +73,7 @@ class _Plan(Strict):
     start: list[list[float]]
     end: list[list[float]]
     scaling: _Scaling
-    course: _Course | None  # none for the straight path
+    course: _Course | None = None  # none for the straight path
     record: _Record
 
 
@@ -78,6 +82,8 @@ def write_plan(plan: Transition, path: str | Path) -> None:
 
     Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
     """
+    if not isinstance(plan, Transition):
+        raise InvalidInput(f"write_plan writes a Transition, got {plan!r}")
     document = _document(plan)
     validated(_Plan, document, path)
     with whole_file(path) as file:
@@ -164,6 +170,10 @@ def _plan(stored: _Plan) -> Transition:
     grasp = Grasp(
         Contact(c.position, c.normal, c.friction, max_force=c.max_force, name=c.name) for c in stored.contacts
     )
+    for key in ("rate_limits", "least_normals"):
+        count = len(getattr(stored.record, key))
+        if count not in (0, len(grasp)):
+            raise InvalidInput(f"record.{key}: expected {len(grasp)} numbers or none, got {count}")
     load = Wrench.from_vector(stored.load)
     given = stored.course
     course = None if given is None else Course(given.times, given.forces, given.loads)

@@ -1,11 +1,10 @@
 """From a scenario to its plan."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from regrasp.files.scenario import Removal, Scenario
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
-from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.change import plan_addition, plan_removal
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.transition import Transition
@@ -28,25 +27,29 @@ _OPTIONS = (
 
 def plan_scenario(scenario: Scenario) -> Transition:
     """The transition a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
-    task, whole = scenario.task, scenario.grasp
-    rest = whole.without(task.contact)
-    options = {key: getattr(task, key) for key in _OPTIONS}
+    task = scenario.task
+    options: dict[str, Any] = {key: getattr(task, key) for key in _OPTIONS}
     load = scenario.external
-    options["load"], options["scaling"] = load, task.time_scaling
-    fastest = task.rate_limit if task.duration is None and isinstance(load, Wrench) else None
+    options["load"], options["rate_limit"] = load, task.rate_limit
+    options["scaling"] = task.time_scaling
     if isinstance(load, LoadSeries):
         options["scaling"] = task.scaling_lasting(load.duration)
-    if fastest is None:
-        options["rate_limit"] = task.rate_limit
+    elif task.rate_limit is not None and task.duration is None:
+        straight = options | {"rate_limit": None, "path_objective": None, "idle_time": None}
+        options["scaling"] = _planned(scenario, **straight).fastest(task.rate_limit).scaling
+    return _planned(scenario, **options, idle_time=task.idle_time)
+
+
+def _planned(scenario: Scenario, *, idle_time: float | None = None, **options: Any) -> Transition:
+    task, whole = scenario.task, scenario.grasp
+    rest = whole.without(task.contact)
     if isinstance(task, Removal):
         start, end = _given(scenario, whole, "force"), _given(scenario, rest, "end_force")
-        plan = plan_removal(start or whole, task.contact, end=end, idle_from=task.idle_time, **options)
-    else:
-        arriving = whole[task.contact]
-        after = rest.with_contact(arriving)
-        start, end = _given(scenario, rest, "force"), _given(scenario, after, "end_force")
-        plan = plan_addition(start or rest, arriving, end=end, idle_until=task.idle_time, **options)
-    return plan if fastest is None else plan.fastest(fastest)
+        return plan_removal(start or whole, task.contact, end=end, idle_from=idle_time, **options)
+    arriving = whole[task.contact]
+    after = rest.with_contact(arriving)
+    start, end = _given(scenario, rest, "force"), _given(scenario, after, "end_force")
+    return plan_addition(start or rest, arriving, end=end, idle_until=idle_time, **options)
 
 
 def _given(scenario: Scenario, grasp: Grasp, key: Literal["force", "end_force"]) -> GraspState | None:

@@ -63,7 +63,8 @@ def plan_removal(
     method, max_force, peak_ratio, reserve, facets: as for ``choose_state``.
     duration: [s], 1 if not given, or that of the load series; or ``scaling``, a whole time function.
     rate_limit: |f_i'(t)| allowed, a number or one for each contact [N/s]. Without a duration the straight
-    path takes the least time; with one, the path bends where the straight path is too fast.
+    path takes the least time (under a load in time, which has a clock, the duration is 1); with one, the path
+    bends where the straight path is too fast.
     min_normal: least normal force of every finger that stays [N].
     path_objective: what the path between the ends is planned for: ``change``, the least total change (by the
     time function, so that Eq. 1-3 is the answer where nothing bends it); ``effort``, the least sum of squares

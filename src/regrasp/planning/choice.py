@@ -37,17 +37,26 @@ def choose_state(
     Returns a ``GraspState`` with the record of its choice. Raises ``Infeasible`` with the escape twist when
     no forces exist, ``InvalidInput`` for arguments that are not what they must be.
     """
+    if not isinstance(grasp, Grasp):
+        raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
     check_load(grasp, load)
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
     return ChosenState(grasp, load, criteria, choose_forces(grasp, load, criteria, method, facets))
+
+
+def check_facets(facets: int | None) -> None:
+    """Raise ``InvalidInput`` unless ``facets`` is a number of sides, or None."""
+    if facets is not None and (not isinstance(facets, int) or isinstance(facets, bool) or facets < 3):
+        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
 
 
 def choose_forces(
     grasp: Grasp, load: Wrench, criteria: Criteria, method: str = "auto", facets: int | None = None
 ) -> ChosenForces:
     """``choose_state`` for checked criteria, before a state is made of the forces."""
-    if facets is not None and (not isinstance(facets, int) or facets < 3):
-        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
+    check_facets(facets)
+    if not isinstance(method, str):
+        raise InvalidInput(f"method must be text, such as 'auto', got {method!r}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     if method == "closed-form" and not planar_pair:
         raise InvalidInput(

@@ -11,7 +11,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, choice, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
-from regrasp.planning.choice import DEFAULT_BACKEND
+from regrasp.planning.choice import DEFAULT_BACKEND, check_facets
 from regrasp.planning.course import Course
 from regrasp.planning.criteria import Criteria
 from regrasp.planning.loads import LoadSeries
@@ -45,8 +45,15 @@ class Demands:
             choice(self.path_objective, "path_objective", PATH_OBJECTIVES)
         if isinstance(self.instants, bool) or not isinstance(self.instants, int) or self.instants < 3:
             raise InvalidInput(f"instants must be a whole number of at least 3, got {self.instants!r}")
+        check_facets(self.facets)
         if self.idle_time is not None:
             number(self.idle_time, "idle_from or idle_until", least=0)
+
+    @property
+    def bends(self) -> bool:
+        """Whether anything is asked for that a straight path may not keep."""
+        asked = (self.rate_limit, self.min_normal, self.path_objective, self.idle_time)
+        return any(demand is not None for demand in asked)
 
     def rates(self, grasp: Grasp) -> Array:
         """(n,) force-rate limits, infinite for none [N/s]."""
@@ -79,6 +86,10 @@ def joined(
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
     grasp = start.grasp
+    if grasp.dimension == 3 and (load is not None or demands.bends):
+        raise InvalidInput(
+            "paths through instants are planned for planar grasps so far; this one is in space"
+        )
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = np.arange(len(grasp)) != contact
     least[contact] = 0.0
@@ -89,7 +100,7 @@ def joined(
         plan = Transition(kind, grasp.names[contact], start, end, scaling or TimeScaling.spline(1.0), record)
         if scaling is None:
             plan = plan.fastest(rates)
-        fast_enough = not has_rates or bool((plan.steepest <= rates).all())
+        fast_enough = not has_rates or scaling is None or bool((plan.steepest <= rates * (1 + 1e-12)).all())
         if demands.path_objective is None and demands.idle_time is None and fast_enough:
             return plan
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
@@ -136,7 +147,7 @@ def _course(
     from regrasp.planning.path_program import PathTask
 
     grasp, idle = start.grasp, demands.idle_time
-    if idle is not None and not (0 < idle < scaling.duration):
+    if idle is not None and not (1e-6 < idle / scaling.duration < 1 - 1e-6):
         raise InvalidInput(
             f"the finger's idle time must lie inside (0, {scaling.duration:g}) s, got {idle:g}"
         )
@@ -176,5 +187,5 @@ def _refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
             if has < needs:
                 raise InvalidInput(
                     f"{label}: {name} pushes with a normal force of {has:.4g}, below min_normal {needs:g}; "
-                    f"give another state, choose it for 'force', or lower min_normal"
+                    f"give another state, choose it for 'force' with a higher max_force, or lower min_normal"
                 )

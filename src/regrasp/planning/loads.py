@@ -38,6 +38,8 @@ class LoadSeries(ArrayValue):
     @classmethod
     def sampled(cls, load: Callable[[float], Wrench], duration: float, instants: int = 101) -> "LoadSeries":
         """A function of time at ``instants`` equal steps from 0 to ``duration`` [s]."""
+        if not callable(load):
+            raise InvalidInput(f"load must be a function of time that returns a Wrench, got {load!r}")
         times = np.linspace(0, number(duration, "duration", above=0), instants)
         return cls(times, [_wrench_at(load, t).vector for t in times.tolist()])
 
@@ -45,11 +47,6 @@ class LoadSeries(ArrayValue):
     def duration(self) -> float:
         """[s]."""
         return float(self.times[-1])
-
-    @property
-    def is_constant(self) -> bool:
-        """Whether the load is the same at every instant."""
-        return bool((self.vectors == self.vectors[0]).all())
 
     def __call__(self, t: float) -> Wrench:
         """The load at a time in [0, duration] [s]."""
@@ -65,11 +62,13 @@ class LoadSeries(ArrayValue):
 
     def refined(self, instants: int, *also: float) -> "LoadSeries":
         """The same load known at ``instants`` equal steps, too, and at the times of ``also`` [s]."""
-        times: Array = np.array(also)
+        times: Array = np.unique(np.array(also, dtype=float))
         # Steps of rounding beside a time that is there already would make stretches of no length.
         for more in (self.times, np.linspace(0, self.duration, instants)):
-            apart = abs(more[:, None] - times).min(axis=1, initial=inf) > 1e-9 * self.duration / instants
-            times = np.union1d(times, more[apart])
+            fence = np.concatenate([[-inf], times, [inf]])
+            place = np.searchsorted(times, more)
+            away = np.minimum(more - fence[place], fence[place + 1] - more)
+            times = np.union1d(times, more[away > 1e-9 * self.duration / instants])
         return LoadSeries(times, self.at(times))
 
     def __repr__(self) -> str:

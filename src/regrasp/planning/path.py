@@ -26,9 +26,9 @@ def planned_path(
 ) -> Array:
     """The best path (K, n, 2) [N], in exact equilibrium inside cones and limits at every instant.
 
-    objective: ``change``, ``effort``, ``peak`` or ``force``; of the paths with the widest force margin, the
-    one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or the limit
-    that stands in the way.
+    objective: ``change``, ``effort``, ``peak`` or ``force``; of the paths with the least peak or the widest
+    margin the one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or
+    the limit that stands in the way.
     """
     slack = _SLACK
     for _ in range(_ATTEMPTS):
@@ -46,18 +46,24 @@ def planned_path(
 
 
 def _best(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
-    if objective != "force":
+    if objective not in ("force", "peak"):
         return _solved(task, objective, criteria, backend, facets)
-    if (task.limits == inf).any():
+    margin = 0.0
+    if objective == "peak" or (task.limits == inf).any():
         least = _solved(task, "peak", criteria, backend, facets)
-        peak = criteria.peak_ratio * float(least.value[-1]) * task.unit
-        task = replace(task, limits=np.minimum(task.limits, peak))
-    widest = _solved(task, "force", criteria, backend, facets)
-    margin = float(widest.value[-1]) * task.unit
-    program = path_program(task, "change", least_margin=margin - 1e-7 * abs(margin), facets=facets)
+        ratio = 1 + 1e-6 if objective == "peak" else criteria.peak_ratio
+        task = replace(task, limits=np.minimum(task.limits, ratio * float(least.value[-1]) * task.unit))
+    if objective == "force":
+        widest = _solved(task, "force", criteria, backend, facets)
+        margin = float(widest.value[-1]) * task.unit
+        margin -= 1e-7 * abs(margin)
+    # Many paths are as good; of these the one of least change is a matter of the problem alone.
+    program = path_program(task, "change", least_margin=margin, facets=facets)
     answer = solve(program, backend)
     if answer.status is not Status.SOLVED:
-        raise SolverFailed(f"{backend}: no path of least change at the widest margin", program, answer)
+        raise SolverFailed(
+            f"{backend}: no path of least change among the best for {objective}", program, answer
+        )
     return answer
 
 
@@ -77,44 +83,53 @@ def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, fa
     try:
         answer = solve(program, backend)
     except SolverFailed:
-        reason = _why_not(task, criteria, backend, facets)
+        reason = _why_not(task, criteria, backend, facets, proven=False)
         if reason is None:
             raise
         raise reason from None
     below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -1e-7
     if answer.status is Status.SOLVED and not below:
         return answer
-    raise _why_not(task, criteria, backend, facets) or SolverFailed(
+    proven = answer.status is Status.INFEASIBLE or below
+    raise _why_not(task, criteria, backend, facets, proven=proven) or SolverFailed(
         f"{backend}: {answer.status.advice}", program, answer
     )
 
 
-def _why_not(task: PathTask, criteria: Criteria, backend: str, facets: int | None) -> Infeasible | None:
-    """The reason in words: an instant that cannot be held at all, or the limit that cannot be kept."""
+def _why_not(
+    task: PathTask, criteria: Criteria, backend: str, facets: int | None, *, proven: bool
+) -> Infeasible | None:
+    """The reason in words: an instant that cannot be held at all, or the limit that cannot be kept.
+
+    proven: whether a certificate says that there is no path. Without one a reason must prove itself.
+    """
     for time, load, active in zip(task.times, task.loads, task.active, strict=True):
         grasp = task.grasp.subset(np.flatnonzero(active).tolist())
         wrench = Wrench.from_vector(load)
         if not _holds(task, wrench, active):
             reason = infeasible(grasp, wrench, criteria)
+            if reason.certificate is None and not proven:
+                return None
             return Infeasible(f"at t = {time:.6g} s: {reason}", reason.certificate)
     if (task.rates < inf).any():
-        freed = replace(task, rates=np.full_like(task.rates, inf))
-        if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
-            times = solve(path_program(task, "rate", facets=facets), backend, throw=False)
-            factor = (
-                f"{times.value[-1]:.4g} times the rate limits" if times.status is Status.SOLVED else "more"
-            )
+        least = solve(path_program(task, "rate", facets=facets), backend, throw=False)
+        if least.status is Status.SOLVED and least.value[-1] > 1 + 1e-6:  # itself a proof: a least value
             return Infeasible(
-                f"the forces would have to change at {factor}: allow faster changes, a longer duration or "
-                f"other ends"
+                f"the forces would have to change at {least.value[-1]:.4g} times the rate limits: allow "
+                f"faster changes, a longer duration or other ends"
             )
-    if (task.least_normals > 0).any():
+    if proven and (task.least_normals > 0).any():
         freed = replace(task, least_normals=0 * task.least_normals)
         if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
             return Infeasible(
                 f"no path keeps every normal force at {task.least_normals.max():g} or more; without "
                 f"min_normal there is one"
             )
+    if proven:
+        return Infeasible(
+            "no path keeps all of this together: every instant can be held, and no single limit is to blame; "
+            "loosen limits, allow more time, or give other ends"
+        )
     return None
 
 

@@ -139,7 +139,7 @@ class _Builder:
     def _from_origin(self, program: Program) -> Program:
         """The program in x - origin."""
         q, b = program.q + program.P @ self.origin, program.b - program.A @ self.origin
-        return replace(program, q=q, b=b)
+        return replace(program, q=q, b=b, size=1.0)  # an x of one unit matters, be the best x zero
 
     def _wide(self, matrix: sparse.spmatrix, t: Array | float = 0.0) -> sparse.csr_matrix:
         """The matrix with a last column for the unknown t, if there is one."""

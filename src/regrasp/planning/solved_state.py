@@ -21,6 +21,8 @@ from regrasp.programs import Solution, Status, solve
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
 # 1e-10 and less, is inside the reserve and not beyond it.
 _SLACK = 1e-9
+# Limits beyond this many loads bind nothing that minimises forces, and spoil the scale of a program.
+_LOOSE = 1e6
 # A solver's zero; whether forces exist is decided by finding them.
 _FEASIBLE = 1e-7
 # An answer that exact equilibrium moves by more than this fraction of the forces is not the best one.
@@ -48,12 +50,17 @@ class Chooser:
         size = grasp.size or 1.0
         self.unit = max(float(abs(load.force).max()), float(abs(load.torque).max()) / size)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
-            self.unit = min(limits) if min(limits) < inf else 1.0
+            self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
+        self.loose = _LOOSE * self.unit
+
+    def rescale(self, unit: float) -> None:
+        """Another unit of force [N]; every limit counts."""
+        self.unit, self.loose = unit, inf
 
     def of(self, contacts: Iterable[int]) -> "Chooser":
         """The same, for some of the contacts."""
-        some = Chooser(self.grasp.subset(contacts), self.load, self.backend, self.facets, [self.unit])
-        some.unit = self.unit
+        some = Chooser(self.grasp.subset(contacts), self.load, self.backend, self.facets, [])
+        some.unit, some.loose = self.unit, self.loose
         return some
 
     def solved(
@@ -66,7 +73,7 @@ class Chooser:
             self.load,
             objective,
             [kept * mu for mu in frictions],
-            [kept * limit for limit in limits],
+            [kept * limit if limit < self.loose else inf for limit in limits],
             self.unit,
             self.facets,
             weights,
@@ -146,6 +153,8 @@ def solved_forces(
 def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None) -> ChosenForces:
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
+    if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
+        chooser.rescale(max(chooser.unit, min(limits) / _LOOSE))
     if criteria.unbounded and inf in limits:
         least = chooser.best("peak", frictions, limits)
         if least is None:

@@ -79,11 +79,14 @@ def state_form(
     rows, columns, constants = places.all(varying)
     q = np.zeros(width)
     q[t:] = -1.0 if objective == "force" else 1.0
+    P = sparse.csc_matrix(2 * np.eye(width)) if objective == "effort" else sparse.csc_matrix((width, width))
+    for shared in (q, P.data, P.indices, P.indptr):  # all programs of this form have them in common
+        shared.setflags(write=False)
     return StateForm(
         Pattern((places.rows, width), rows, columns),
         constants,
         tuple(places.blocks),
-        sparse.csc_matrix(2 * np.eye(width)) if objective == "effort" else sparse.csc_matrix((width, width)),
+        P,
         q,
         rough,
         smooth,

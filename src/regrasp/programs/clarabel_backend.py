@@ -8,6 +8,7 @@ import clarabel
 import numpy as np
 from scipy import sparse
 
+from regrasp.errors import InvalidInput
 from regrasp.programs.program import Block, Cone, Program
 from regrasp.programs.solution import Solution, Status
 
@@ -56,6 +57,8 @@ def _settings(**options: Any) -> Any:
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     for key, value in {**_DEFAULTS, **options}.items():
+        if not hasattr(settings, key):
+            raise InvalidInput(f"Clarabel has no setting {key!r}")
         setattr(settings, key, value)
     return settings
 

@@ -22,6 +22,8 @@ class Pattern:
         if self._template.nnz != count:
             raise InvalidInput("a pattern must not name a place twice")
         self._order = self._template.data.astype(np.intp)
+        for shared in (self._template.indices, self._template.indptr):
+            shared.setflags(write=False)
 
     def filled(self, values: NDArray[np.float64]) -> sparse.csc_matrix:
         """The matrix with ``values`` (k,) at the places, in the order the pattern was given."""

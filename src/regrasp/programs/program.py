@@ -48,6 +48,7 @@ class Program:
 
     P: (n, n) sparse, symmetric positive semidefinite, both triangles. q: (n,).
     A: (m, n) sparse. b: (m,). blocks: the cones, covering the m rows in order.
+    size: of an x that matters, by which an answer near x = 0 is judged; 0 to judge by the answer itself.
     Raises ``InvalidInput`` for shapes that do not fit and data that are not finite.
     """
 
@@ -56,9 +57,15 @@ class Program:
     A: sparse.csc_matrix
     b: Array
     blocks: tuple[Block, ...]
+    size: float = 0.0
 
     def __post_init__(self) -> None:
         n, m = self.q.size, self.b.size
+        for name, matrix in (("P", self.P), ("A", self.A)):
+            if getattr(matrix, "format", None) != "csc":
+                raise InvalidInput(
+                    f"{name} must be a scipy.sparse matrix in CSC format, got {type(matrix).__name__}"
+                )
         if self.P.shape != (n, n) or self.A.shape != (m, n):
             raise InvalidInput(
                 f"P and A must have shapes {(n, n)} and {(m, n)}, got {self.P.shape} and {self.A.shape}"

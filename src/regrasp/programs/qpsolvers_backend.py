@@ -42,10 +42,11 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     rows = program.A.tocsr()
     matrices = [program.P, rows[~equal], rows[equal]]
     dense = name in _DENSE
-    P, G, A = (m.toarray() if dense else sparse.csc_matrix(m) for m in matrices)
+    # Copies: programs share read-only arrays, which some solvers refuse.
+    P, G, A = (m.toarray() if dense else sparse.csc_matrix(m, copy=True) for m in matrices)
     problem = qpsolvers.Problem(
         P,
-        program.q,
+        program.q.copy(),
         G if (~equal).any() else None,
         program.b[~equal] if (~equal).any() else None,
         A if equal.any() else None,

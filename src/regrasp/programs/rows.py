@@ -61,6 +61,8 @@ class Rows:
 
     def _add(self, cone: Cone, matrix: sparse.csr_matrix, offset: ArrayLike, size: int) -> None:
         rows = matrix.shape[0]
+        if not rows:
+            return
         self._offsets.append(np.broadcast_to(np.asarray(offset, dtype=float), rows))
         self._matrices.append(matrix)
         self._blocks.append(Block(cone, size, rows // size))

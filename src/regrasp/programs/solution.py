@@ -68,20 +68,18 @@ class Solution:
     def dual_residual(self) -> float:
         """Largest entry of P x + q + A'z, and distance of z to K*, relative to the terms.
 
-        The terms are those at x, and P x at an x of the size of the data, for answers near x = 0.
+        The terms are those at x, and P x at an x of the program's ``size``.
         """
         a = self._audit
-        usual = a.p * _ratio(a.b, a.a)
-        stationarity = _relative(a.stationarity, max(a.px, a.q, a.az, usual))
+        stationarity = _relative(a.stationarity, max(a.px, a.q, a.az, a.p * self.program.size))
         return max(stationarity, _relative(a.dual_violation, a.z))
 
     @cached_property
     def gap(self) -> float:
-        """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|, or to x'Px as in ``dual_residual``."""
+        """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|, or to x'Px at the program's ``size``."""
         a = self._audit
         scale = a.x_length * a.px_length + a.q_length * a.x_length + a.b_length * a.z_length
-        usual = a.p * _ratio(a.b, a.a) ** 2
-        return _relative(self.absolute_gap, max(scale, usual))
+        return _relative(self.absolute_gap, max(scale, a.p * self.program.size**2))
 
     @property
     def absolute_gap(self) -> float:

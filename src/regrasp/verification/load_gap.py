@@ -10,13 +10,14 @@ from collections.abc import Callable
 
 import numpy as np
 
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.protocols import Plan
 
-# Points between two instants where a gap without a bound is measured.
-_POINTS = 8
+# Where between two instants the gap is measured: unevenly, so that no period hides.
+_PARTS = (np.arange(1, 12) * 0.6180339887498949) % 1.0
 
 
 def check_load(
@@ -32,38 +33,47 @@ def check_load(
     grasp, name = plan.start.grasp, plan.contact
     length = grasp.size or 1.0
     scale = max(_sizes(loads, length).max(), float(abs(forces).max()))
-    off = _sizes(_at(load, times) - loads, length)
+    off = _sizes(_at(load, times, loads.shape[1]) - loads, length)
     if (off > float(RESOLUTION) * scale).any():
         k = int(off.argmax())
         broken = f"at t = {times[k]:.6g} s the load given differs from the plan's by {off[k]:.3g}"
         return float(off[k]), False, [broken]
+    between = (times[:-1, None] + _PARTS * np.diff(times)[:, None]).ravel()
+    chord = np.stack([np.interp(between, times, column) for column in loads.T], axis=-1)
+    gap = measured = float(_sizes(_at(load, between, loads.shape[1]) - chord, length).max())
     if curvature is not None:
-        gap = float(curvature) * float(np.diff(times).max()) ** 2 / 8
-    else:
-        parts = np.arange(1, _POINTS) / _POINTS
-        between = (times[:-1, None] + parts * np.diff(times)[:, None]).ravel()
-        chord = np.stack([np.interp(between, times, column) for column in loads.T], axis=-1)
-        gap = float(_sizes(_at(load, between) - chord, length).max())
+        gap = curvature * float(np.diff(times).max()) ** 2 / 8
+        if measured > gap * (1 + 1e-6) + float(RESOLUTION) * scale:
+            broken = (
+                f"the load given bends more than the curvature {curvature:g} given: between instants it "
+                f"differs from the plan's by {measured:.3g}, more than {gap:.3g}"
+            )
+            return measured, False, [broken]
     stays = [i for i, known in enumerate(grasp.names) if known != name]
     room = _room(plan, forces[:, stays], stays)
     d = grasp.dimension
     matrix = grasp.matrix.reshape(-1, len(grasp), d)[:, stays].reshape(grasp.matrix.shape[0], -1).copy()
     matrix[d:] /= length
-    least = float(np.linalg.svd(matrix, compute_uv=False)[-1])
+    rows, columns = matrix.shape
+    least = float(np.linalg.svd(matrix, compute_uv=False)[-1]) if columns >= rows else 0.0
     # Force and torque may both be off by the gap.
     change = np.sqrt(2) * gap / least if least > 1e-12 else np.inf
-    if gap > 0 and change > room:
+    if gap > float(RESOLUTION) * scale and change > room:
         broken = (
             f"between instants the load given differs from the plan's by up to {gap:.3g}: forces that "
             f"balance it may differ by {change:.3g}, more than the margins take ({room:.3g}); plan with "
-            f"more instants"
+            f"more instants, or keep a reserve"
         )
         return gap, curvature is not None, [broken]
     return gap, curvature is not None, []
 
 
-def _at(load: Callable[[float], Wrench], times: Array) -> Array:
-    return np.array([load(t).vector for t in times.tolist()])
+def _at(load: Callable[[float], Wrench], times: Array, width: int) -> Array:
+    found = [load(t) for t in times.tolist()]
+    for wrench in found:
+        if not isinstance(wrench, Wrench) or wrench.vector.size != width:
+            raise InvalidInput(f"load must return a Wrench of the plan's dimension, it returned {wrench!r}")
+    return np.array([wrench.vector for wrench in found])
 
 
 def _sizes(wrenches: Array, length: float) -> Array:
@@ -76,11 +86,13 @@ def _sizes(wrenches: Array, length: float) -> Array:
 
 
 def _room(plan: Plan, forces: Array, stays: list[int]) -> float:
-    """The least change of a force that could leave its cone or its limit."""
+    """The least change of a force that could leave its cone, its limit or its least normal force."""
     grasp = plan.start.grasp
     mu, normals = grasp.frictions[stays], grasp.normals[stays]
     normal = (forces * normals).sum(axis=-1)
     tangential = np.linalg.norm(forces - normal[..., None] * normals, axis=-1)
     edge = (mu * normal - tangential) / np.sqrt(1 + mu**2)
     spare = grasp.max_forces[stays] - np.linalg.norm(forces, axis=-1)
-    return float(min(edge.min(), spare.min()))
+    least = plan.record.least_normals
+    above = normal - np.array(least)[stays] if least else normal
+    return float(min(edge.min(), spare.min(), above.min()))

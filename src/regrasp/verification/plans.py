@@ -13,6 +13,8 @@ from math import inf
 
 import numpy as np
 
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import number
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, check_state, dot, exact
 from regrasp.verification.load_gap import check_load
@@ -30,9 +32,19 @@ def verify(
     load: a function of time [s] that the plan was made for. The plan's load is linear between its instants
     and is what the forces balance exactly; the function may differ from it between them. That gap must be
     less than the margins can take: forces that balance the function must exist inside cones and limits.
-    curvature: a bound on the second derivative of the load, |F''| and |tau''| / size [N/s^2], which proves
-    the gap; without it the gap is measured between the instants, and the verdict says so.
+    curvature: a bound on the second derivative of the load, |F''| and |tau''| / grasp.size [N/s^2], which
+    proves the gap (a measured one that is larger refutes it). Without it the gap is measured between the
+    instants, and the verdict says so.
+    Raises ``InvalidInput`` for what is no plan, no load function or no curvature.
     """
+    if not all(hasattr(plan, name) for name in ("kind", "start", "end", "scaling", "record")):
+        raise InvalidInput(f"verify needs a plan, got {plan!r}")
+    if load is not None and not callable(load):
+        raise InvalidInput(f"load must be the function of time the plan was made for, got {load!r}")
+    if curvature is not None:
+        if load is None:
+            raise InvalidInput("curvature bounds a load function: give load as well")
+        curvature = number(curvature, "curvature", least=0)
     violations = _check_idle(plan) + _check_scaling(plan.scaling)
     if plan.start.grasp != plan.end.grasp:
         violations.append("start and end have different contacts")

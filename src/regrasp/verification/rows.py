@@ -34,14 +34,19 @@ def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checke
     tangential = np.linalg.norm(forces - normal[..., None] * grasp.normals, axis=-1)
     magnitude = np.linalg.norm(forces, axis=-1)
     inside = grasp.frictions * normal - tangential > doubt * magnitude
-    inside |= magnitude == 0  # the apex, exactly
+    inside |= (forces == 0).all(axis=-1)  # the apex
     inside &= magnitude <= grasp.max_forces * (1 - doubt)
     total = np.concatenate([forces, torque(grasp.positions, forces)], axis=-1).sum(axis=1) + loads
     arm = grasp.size or 1.0
     scale = np.maximum(magnitude.max(axis=1), np.linalg.norm(loads[:, :d], axis=1))
     off = np.maximum(np.linalg.norm(total[:, :d], axis=1), np.linalg.norm(total[:, d:], axis=1) / arm)
     settled = inside.all(axis=1) & (off <= doubt / 2 * scale)
-    violations, slacks, residuals = [], [inf], [0.0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slack_of = 1 + grasp.frictions**2 - (magnitude / normal) ** 2
+        relative = np.where(scale > 0, off / scale, 0.0)[settled]
+    violations = []
+    slacks = [float(slack_of[settled][magnitude[settled] > 0].min(initial=inf))]
+    residuals = [float(relative.max(initial=0.0))]
     for row in np.flatnonzero(~settled):
         state = GraspState(grasp, Wrench.from_vector(loads[row]), forces[row])
         residual, slack, broken = check_state(state, labels.format(row))
