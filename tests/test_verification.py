@@ -107,9 +107,12 @@ def test_an_idle_finger_that_is_not_idle(plan: rg.Transition) -> None:
         with_state(plan, "end", forces=forces)
     )
     assert "start: P3 must carry no force" in violations(replace(plan, kind="addition"))
-    assert "kind 'swap' is none of removal, addition, rotation, exchange" in violations(
+    with pytest.raises(rg.InvalidInput, match="kind must be one of removal, addition, rotation, exchange"):
         replace(plan, kind="swap")
-    )
+    with pytest.raises(rg.InvalidInput, match="names the wrong fingers: 'P3' and None"):
+        replace(plan, kind="rotation")
+    claimed = Claimed("swap", "P3", plan.start, plan.end, plan.scaling)
+    assert "kind 'swap' is none of removal, addition, rotation, exchange" in violations(claimed)
 
 
 def test_a_pulling_force(plan: rg.Transition) -> None:

@@ -52,8 +52,12 @@ class Demands:
     @property
     def bends(self) -> bool:
         """Whether anything is asked for that a straight path may not keep."""
-        asked = (self.rate_limit, self.min_normal, self.path_objective, self.idle_time)
-        return any(demand is not None for demand in asked)
+        return not (
+            self.rate_limit is None
+            and self.min_normal is None
+            and self.path_objective is None
+            and self.idle_time is None
+        )
 
     def rates(self, grasp: Grasp) -> Array:
         """(n,) force-rate limits, infinite for none [N/s]."""
@@ -86,6 +90,8 @@ def joined(
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
     grasp = start.grasp
+    if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
+        return Transition(kind, grasp.names[contact], start, end, scaling, record)
     if grasp.dimension == 3 and (load is not None or demands.bends):
         raise InvalidInput(
             "paths through instants are planned for planar grasps so far; this one is in space"

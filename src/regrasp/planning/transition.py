@@ -31,6 +31,15 @@ _BACKWARDS: dict[str, Any] = {
 }
 
 
+# Whether a kind names the finger of ``contact``, and that of ``arrival``.
+_FINGERS = {
+    "removal": (True, False),
+    "addition": (True, False),
+    "rotation": (False, False),
+    "exchange": (True, True),
+}
+
+
 @dataclass(frozen=True)
 class Choice:
     """How one end of a plan was chosen.
@@ -96,14 +105,17 @@ class Transition(ArrayValue, Pictured):
     def __post_init__(self) -> None:
         if self.start.grasp != self.end.grasp:
             raise InvalidInput("both ends of a transition must have the same grasp")
-        if (self.contact is None) != (self.kind == "rotation") or (self.arrival is None) == (
-            self.kind == "exchange"
-        ):
+        wanted = _FINGERS.get(self.kind)
+        if wanted is None:
+            raise InvalidInput(f"kind must be one of {', '.join(_FINGERS)}, got {self.kind!r}")
+        if wanted != (self.contact is not None, self.arrival is not None):
             raise InvalidInput(
                 f"a {self.kind} names the wrong fingers: {self.contact!r} and {self.arrival!r}"
             )
-        for name in (*self.idle_at_start, *self.idle_at_end):
-            self.grasp.index(name)
+        if self.contact is not None:
+            self.grasp.index(self.contact)
+        if self.arrival is not None:
+            self.grasp.index(self.arrival)
         self._check()
 
     @property
