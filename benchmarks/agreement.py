@@ -17,7 +17,9 @@ def check_agreement(pairs: list[tuple[float, ...]], programs: list[list[Quadrati
     for pair, tried in zip(pairs, programs, strict=True):
         answers = [x[:4] for x, flag in (program.solve() for program in tried) if flag == 1]
         ours, theirs = (_value(pair, f, objective) for f in (chosen(pair, objective)[0], answers[-1]))
-        close(np.array(ours), np.array(theirs), TOLERANCE, f"DAQP for {objective}")
+        # A cone of little friction makes a use of 1 of a tangential force within DAQP's tolerance.
+        allowed = 10 * TOLERANCE if objective == "friction_use" else TOLERANCE
+        close(np.array(ours), np.array(theirs), allowed, f"DAQP for {objective}")
 
 
 def close(ours: Array, theirs: Array, tolerance: float, what: str) -> None:

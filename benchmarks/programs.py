@@ -110,7 +110,7 @@ def growth(effort: Effort) -> Iterator[Row]:
         yield Row.growth(
             f"growth_{small}_{large}", f"path program, {large:,} instants beside {small:,}", found,
             (large - 2) / (small - 2), 1.1,
-            "a factorisation fills more where a few more iterations are needed",
+            "a few more iterations, and factors that outgrow the processor's cache",
         )  # fmt: skip
 
 

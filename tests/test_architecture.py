@@ -106,7 +106,11 @@ def may_import(module: str, package: str) -> bool:
     if package == "pydantic":
         return here == "files"
     if package == "numba":
-        return module in ("regrasp.closed_form.compiled", "regrasp.programs.audit")
+        return module in (
+            "regrasp.closed_form.compiled",
+            "regrasp.closed_form.compiled_holds",
+            "regrasp.programs.audit",
+        )
     if package in SOLVERS:
         return module == f"regrasp.programs.{package}_backend"
     if package in ("click", "rich"):

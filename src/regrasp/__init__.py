@@ -14,6 +14,8 @@ from regrasp.planning.choice import choose_state
 from regrasp.planning.criteria import ChosenState
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.locus import EquilibriumLocus
+from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.planning.regrasping import plan_regrasp, plan_regrasps
 from regrasp.planning.rotation import plan_rotation
 from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.sensitivity import Sensitivity, sensitivity
@@ -37,6 +39,7 @@ __all__ = [
     "Margins",
     "Outline",
     "RegraspError",
+    "RegraspPlan",
     "SampledTransition",
     "Sensitivity",
     "SolverFailed",
@@ -50,6 +53,8 @@ __all__ = [
     "choose_state",
     "locus_intervals",
     "plan_addition",
+    "plan_regrasp",
+    "plan_regrasps",
     "plan_removal",
     "plan_rotation",
     "sensitivity",

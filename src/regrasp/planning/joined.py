@@ -19,6 +19,8 @@ from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Record, Transition
 
+_INSTANTS = 101
+
 PathObjective = Literal["change", "effort", "force", "peak"]
 PATH_OBJECTIVES = get_args(PathObjective)
 
@@ -34,7 +36,7 @@ class Demands:
     min_normal: float | None = None
     path_objective: str | None = None
     idle_time: float | None = None
-    instants: int = 101
+    instants: int = _INSTANTS
     method: str = "auto"
     facets: int | None = None
 
@@ -48,6 +50,23 @@ class Demands:
         check_facets(self.facets)
         if self.idle_time is not None:
             number(self.idle_time, "idle_from or idle_until", least=0)
+
+    @classmethod
+    def of(
+        cls,
+        rate_limit: ArrayLike | None,
+        min_normal: float | None,
+        path_objective: str | None,
+        idle_time: float | None,
+        instants: int,
+        method: str,
+        facets: int | None,
+    ) -> "Demands":
+        """The demands of a call; one value for the many calls without any, which take microseconds."""
+        given = (rate_limit, min_normal, path_objective, idle_time, facets)
+        if all(demand is None for demand in given) and instants == _INSTANTS and method == "auto":
+            return _NONE
+        return cls(rate_limit, min_normal, path_objective, idle_time, instants, method, facets)
 
     @property
     def bends(self) -> bool:
@@ -72,6 +91,9 @@ class Demands:
         if not (rates > 0).all():
             raise InvalidInput(f"rate_limit must be greater than 0, got {self.rate_limit!r}")
         return rates
+
+
+_NONE = Demands()
 
 
 def joined(

@@ -10,6 +10,7 @@ forces hold at every t when they hold at the instants, and a rate is one number 
 from collections.abc import Callable
 from fractions import Fraction
 from math import inf
+from typing import cast
 
 import numpy as np
 
@@ -19,15 +20,18 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, check_state, dot, exact
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.protocols import Course, Plan, Scaling
+from regrasp.verification.regrasps import Regrasp, check_joints
 from regrasp.verification.rows import Checked, check_rows
 from regrasp.verification.turns import check_turn
 from regrasp.verification.verdict import Verification
 
 
 def verify(
-    plan: Plan, load: Callable[[float], Wrench] | None = None, *, curvature: float | None = None
+    plan: Plan | Regrasp, load: Callable[[float], Wrench] | None = None, *, curvature: float | None = None
 ) -> Verification:
     """Check a transition in exact arithmetic: the ends, the path between them and the idle finger.
+
+    Of a regrasp every step is checked, and every joint between two steps.
 
     load: a function of time [s] that the plan was made for. The plan's load is linear between its instants
     and is what the forces balance exactly; the function may differ from it between them. That gap must be
@@ -37,6 +41,10 @@ def verify(
     instants, and the verdict says so.
     Raises ``InvalidInput`` for what is no plan, no load function or no curvature.
     """
+    if hasattr(plan, "steps") and hasattr(plan, "orientations"):
+        if load is not None:
+            raise InvalidInput("a regrasp holds the load it was planned for; leave load out")
+        return _verify_regrasp(cast(Regrasp, plan))
     if not all(hasattr(plan, name) for name in ("kind", "start", "end", "scaling", "record")):
         raise InvalidInput(f"verify needs a plan, got {plan!r}")
     if load is not None and not callable(load):
@@ -58,6 +66,17 @@ def verify(
         gap, proven, broken = check_load(plan, load, curvature)
         violations += broken
     return Verification(tuple(violations), *found[1:], gap, proven)
+
+
+def _verify_regrasp(plan: Regrasp) -> Verification:
+    verdicts = [verify(step) for step in plan.steps]
+    broken = [f"step {k}: {v}" for k, verdict in enumerate(verdicts, 1) for v in verdict.violations]
+    return Verification(
+        tuple(broken + check_joints(plan)),
+        max(verdict.worst_residual for verdict in verdicts),
+        min(verdict.least_angle for verdict in verdicts),
+        min(verdict.least_cone_slack for verdict in verdicts),
+    )
 
 
 def _check_ends(plan: Plan) -> Checked:

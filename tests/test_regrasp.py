@@ -1,0 +1,286 @@
+"""Whole regrasps: held at every instant by a check that knows contacts, forces, load and time only."""
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from regrasp.outline import parts
+from regrasp.planning.holds import HoldGraph, evenly, named
+from regrasp.planning.reach import MAX_TURN, Search, reachable, sequences
+
+WEIGHT = rg.Wrench([0, -3.0])
+ELLIPSE = rg.Outline.ellipse(2, 1)
+
+
+def grasp_on(outline: rg.Outline, places, friction=0.5, prefix="A") -> rg.Grasp:
+    return rg.Grasp(
+        outline.contact_at(s * outline.length, friction=friction, name=f"{prefix}{i}")
+        for i, s in enumerate(places)
+    )
+
+
+START, GOAL = grasp_on(ELLIPSE, (0.02, 0.35, 0.7)), grasp_on(ELLIPSE, (0.2, 0.5, 0.85), prefix="B")
+
+
+def check_simulated(plan, start, goal, weight, friction):
+    """Nothing of the plan is used but who touches where, which force, and the object's angle, over time."""
+    assert {tuple(c.position) for c in plan.steps[0].grasp} == {tuple(c.position) for c in start}
+    assert {tuple(c.position) for c in plan.steps[-1].grasp} == {tuple(c.position) for c in goal}
+    before = None
+    elapsed = 0.0
+    for step in plan.steps:
+        t = np.linspace(0, step.duration, 101)
+        forces, turned = step.forces(t), plan.orientation(elapsed + t)
+        positions, normals = step.grasp.positions, step.grasp.normals
+        assert len(positions) <= 3
+        load = np.stack(
+            [np.cos(turned) * weight[0] + np.sin(turned) * weight[1],
+             np.cos(turned) * weight[1] - np.sin(turned) * weight[0]], axis=-1
+        )  # fmt: skip
+        assert abs(forces.sum(axis=1) + load).max() < 1e-11
+        torque = positions[:, 0] * forces[:, :, 1] - positions[:, 1] * forces[:, :, 0]
+        assert abs(torque.sum(axis=1)).max() < 1e-11
+        normal = (forces * normals).sum(axis=-1)
+        across = abs(normals[:, 0] * forces[..., 1] - normals[:, 1] * forces[..., 0])
+        assert (across <= friction * normal + 1e-12).all()
+        here = {tuple(p): f for p, f in zip(positions.tolist(), forces.swapaxes(0, 1), strict=True)}
+        if before is not None:
+            gone, come = before.keys() - here.keys(), here.keys() - before.keys()
+            assert len(gone) <= 1 >= len(come)
+            assert all(not before[p][-1].any() for p in gone)  # it left without force
+            assert all(not here[p][0].any() for p in come)
+            for p in before.keys() & here.keys():
+                assert before[p][-1] == pytest.approx(here[p][0], abs=1e-12)
+        before = here
+        elapsed += step.duration
+    assert elapsed == pytest.approx(plan.duration)
+
+
+@pytest.mark.parametrize("orientations", [1, 24])
+@pytest.mark.parametrize("goal_orientation", [0.0, np.pi / 2, -2.0])
+def test_a_regrasp_holds_throughout(orientations, goal_orientation):
+    if orientations == 1 and goal_orientation:
+        pytest.skip("one orientation forbids turning")
+    plan = rg.plan_regrasp(
+        ELLIPSE,
+        START,
+        GOAL,
+        WEIGHT,
+        friction=0.5,
+        orientations=orientations,
+        goal_orientation=goal_orientation,
+    )
+    check_simulated(plan, START, GOAL, WEIGHT.force, 0.5)
+    assert rg.verify(plan).ok
+    assert rg.verify(plan.reversed()).ok
+    check_simulated(plan.reversed(), GOAL, START, turned(WEIGHT.force, plan.orientations[-1]), 0.5) if (
+        not plan.orientations[-1]
+    ) else None
+    assert plan.orientations[0] == 0
+    assert np.cos(plan.orientations[-1] - goal_orientation) > np.cos(np.pi / max(orientations, 2))
+    least = min(np.nanmin(step.margins(t).angle) for step in plan.steps[1:-1] for t in (0.0, step.duration))
+    assert least == pytest.approx(plan.margin, abs=1e-6)
+    if orientations == 1:
+        assert set(plan.orientations) == {0.0}
+
+
+def turned(force, angle):
+    return np.array([np.cos(angle) * force[0] + np.sin(angle) * force[1],
+                     np.cos(angle) * force[1] - np.sin(angle) * force[0]])  # fmt: skip
+
+
+@pytest.mark.parametrize("part", ["wrench", "cam", "bracket", "bottle"])
+def test_parts_are_regrasped(part):
+    outline = getattr(parts, part)()
+    rng = np.random.default_rng(0)
+    candidates = outline.sample(60)
+    found = 0
+    for _ in range(30):
+        places = rng.choice(candidates, (2, 3), replace=False) / outline.length
+        start, goal = (grasp_on(outline, p, 0.6, x) for p, x in zip(places, "AB", strict=True))
+        try:
+            plan = rg.plan_regrasp(outline, start, goal, WEIGHT, friction=0.6, orientations=12, candidates=60)
+        except rg.Infeasible:
+            continue
+        found += 1
+        check_simulated(plan, start, goal, WEIGHT.force, 0.6)
+        assert rg.verify(plan).ok
+    assert found >= 2
+
+
+def brute_force(graph, start, goal, o, max_turn):
+    """(steps, margin) of the best sequence, by trying every hold after every hold."""
+    holds = [
+        (i, j, k)
+        for i, j in combinations(range(len(graph.contacts)), 2)
+        for k in range(len(graph.angles))
+        if graph.margin(i, j, k) >= 0
+    ]
+    best = {h: graph.margin(*h) for h in holds if set(h[:2]) <= set(start) and h[2] == 0}
+    for steps in range(12):
+        ends = [m for h, m in best.items() if set(h[:2]) <= set(goal) and h[2] == o]
+        if ends:
+            return steps, max(ends)
+        following = {}
+        for h, m in best.items():
+            for g in holds:
+                turn = abs((graph.angles[g[2]] - graph.angles[h[2]] + np.pi) % (2 * np.pi) - np.pi)
+                if set(h[:2]) & set(g[:2]) and turn <= max_turn + 1e-9:
+                    value = min(m, graph.margin(*g))
+                    following[g] = max(following.get(g, -1.0), value)
+        if following == best:
+            return None
+        best = following
+    return None
+
+
+def test_no_sequence_is_shorter_or_safer():
+    rng = np.random.default_rng(3)
+    seen = {"found": 0, "impossible": 0}
+    for _ in range(25):
+        outline = rg.Outline.ellipse(1.0, rng.uniform(0.3, 1.0))
+        s = np.sort(rng.uniform(0, outline.length, 9))
+        contacts = named([outline.contact_at(x, friction=rng.uniform(0.15, 0.5)) for x in s.tolist()], "c")
+        graph = HoldGraph(tuple(contacts), WEIGHT, evenly(int(rng.integers(1, 6))))
+        start, goal = tuple(rng.choice(9, 3, replace=False)), tuple(rng.choice(9, 3, replace=False))
+        o = int(rng.integers(len(graph.angles)))
+        expected = brute_force(graph, start, goal, o, MAX_TURN)
+        found = sequences(graph, start, goal, o)
+        if expected is None:
+            assert found == []
+            seen["impossible"] += 1
+            continue
+        seen["found"] += 1
+        steps, margin = expected
+        assert len(found[0].holds) - 1 == steps
+        assert found[0].margin == pytest.approx(margin, abs=1e-7)
+        assert min(graph.margin(*h) for h in found[0].holds) == pytest.approx(margin, abs=1e-7)
+        for a, b in zip(found[0].holds[:-1], found[0].holds[1:], strict=True):
+            assert set(a[:2]) & set(b[:2])
+    assert min(seen.values()) >= 3, seen
+
+
+def test_margins_of_the_graph_are_those_of_chosen_states():
+    rng = np.random.default_rng(1)
+    contacts = named([ELLIPSE.contact_at(x, friction=0.4) for x in rng.uniform(0, ELLIPSE.length, 12)], "c")
+    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(7))
+    held = 0
+    for i, j in combinations(range(12), 2):
+        for o in (0, 3):
+            load = WEIGHT.rotated(-float(graph.angles[o]))
+            try:
+                state = rg.choose_state(rg.Grasp([contacts[i], contacts[j]]), load, reserve=0)
+            except rg.Infeasible:
+                assert graph.margin(i, j, o) < 0
+                continue
+            held += 1
+            assert graph.margin(j, i, o) == pytest.approx(state.value, abs=1e-6)
+            assert graph.row(i, o)[j] == graph.margin(i, j, o)
+    assert held > 20
+
+
+def test_components_and_reach():
+    contacts = named([ELLIPSE.contact_at(float(x), friction=0.2) for x in ELLIPSE.sample(40)], "c")
+    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(12))
+    labels = graph.components()
+    first, second = graph.pairs
+    holds = graph.margins.max(axis=0) >= 0
+    assert (labels[first[holds]] == labels[second[holds]]).all()
+    i, j = int(first[graph.margins[0] >= 0][0]), int(second[graph.margins[0] >= 0][0])
+    assert reachable(graph, (i, j)).tolist() == (labels == labels[i]).tolist()
+
+
+def test_a_filter_and_a_distance_are_kept():
+    def right(first, second, angle):
+        return first[:, 0] + second[:, 0] > -1.0
+
+    plan = rg.plan_regrasp(
+        ELLIPSE, START, GOAL, WEIGHT, friction=0.5, orientations=12, keep=right, min_distance=1.0
+    )
+    for step in plan.steps[1:-1]:
+        for state in (step.start, step.end):
+            (a, b) = (c.position for c, f in zip(step.grasp, state.forces, strict=True) if f.any())
+            assert np.hypot(*(a - b)) >= 1.0
+            assert a[0] + b[0] > -1.0
+
+
+def test_force_limits_hold_while_it_turns():
+    plan = rg.plan_regrasp(
+        ELLIPSE,
+        START,
+        GOAL,
+        WEIGHT,
+        friction=0.5,
+        orientations=24,
+        goal_orientation=np.pi / 2,
+        max_force=12.0,
+    )
+    assert all(c.max_force == 12.0 for step in plan.steps for c in step.grasp)
+    assert rg.verify(plan).ok
+
+
+def test_the_trade_off_widens_the_margin():
+    plans = rg.plan_regrasps(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, orientations=12, extra=3)
+    margins = [plan.margin for plan in plans]
+    assert margins == sorted(margins)
+    assert [len(p.steps) for p in plans] == sorted(len(p.steps) for p in plans)
+
+
+def test_the_verifier_finds_bad_joints():
+    plan = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, orientations=1)
+
+    def verdict(steps, orientations=plan.orientations):
+        return "; ".join(rg.verify(replace(plan, steps=tuple(steps), orientations=orientations)).violations)
+
+    steps = list(plan.steps)
+    assert verdict(steps) == ""
+    assert "forces jump or a finger moves under force" in verdict([steps[0], *steps[2:]], (0.0,) * len(steps))
+    assert "is not the first one seen from 0.3 rad" in verdict(steps, (*plan.orientations[:-1], 0.3))
+    assert "need 5 orientations, got 4" in verdict(steps, plan.orientations[:-1])
+    four = rg.plan_removal(rg.Grasp([*START, GOAL["B1"]]), "B1", load=WEIGHT)
+    assert "4 fingers touch the object" in verdict([four, *steps[1:]])
+    shifted = replace(steps[1], start=rg.GraspState(steps[1].grasp, WEIGHT, 2 * steps[1].start.forces))
+    assert "step 2: start: not in equilibrium" in verdict([steps[0], shifted, *steps[2:]])
+
+
+@pytest.mark.parametrize(
+    ("options", "kind", "words"),
+    [
+        ({"friction": 0.01}, rg.InvalidInput, None),
+        ({"start": START.without(0)}, rg.InvalidInput, "start must be a Grasp of three planar contacts"),
+        ({"load": rg.Wrench([0, -1], 0.2)}, rg.InvalidInput, "is a force through the centre of mass"),
+        ({"orientations": 0}, rg.InvalidInput, "orientations must be a whole number of at least 1, got 0"),
+        ({"max_turn": 4.0}, rg.InvalidInput, "max_turn must be above 0 and below pi"),
+        ({"objective": "speed"}, rg.InvalidInput, "objective must be one of"),
+        ({"candidates": 0.5}, rg.InvalidInput, "count must be a whole number"),
+        (
+            {"start": grasp_on(ELLIPSE, (0.4, 0.45, 0.5), 0.05)}, rg.Infeasible,
+            "no two fingers of the start hold the load at 0 deg",
+        ),
+    ],
+)  # fmt: skip
+def test_bad_requests(options, kind, words):
+    given = {"start": START, "goal": GOAL, "load": WEIGHT, "friction": 0.5, "orientations": 6} | options
+    if words is None:
+        assert rg.verify(rg.plan_regrasp(ELLIPSE, **given)).ok  # the grasps' own friction is enough
+        return
+    with pytest.raises(kind, match=words):
+        rg.plan_regrasp(ELLIPSE, **given)
+
+
+def test_memory_is_bounded():
+    contacts = named([ELLIPSE.contact_at(float(x), friction=0.5) for x in ELLIPSE.sample(100)], "c")
+    with pytest.raises(rg.InvalidInput, match=r"100 points at 360 orientations need 0\.00664 GiB"):
+        HoldGraph(tuple(contacts), WEIGHT, evenly(360), most_bytes=2**20)
+
+
+def test_searching_further_never_narrows_what_was_reached():
+    contacts = named([ELLIPSE.contact_at(float(x), friction=0.3) for x in ELLIPSE.sample(30)], "c")
+    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(8))
+    search = Search(graph, tuple(range(6)), MAX_TURN)
+    while search.extend():
+        assert (search.levels[-1] >= search.levels[-2] - 1e-9)[search.levels[-2] >= 0].all()
+        assert len(search.levels) < 30
