@@ -1,4 +1,4 @@
-"""The path between two equilibria while the load turns (docs/facts.md, 5).
+"""The path between two equilibria while the load turns (docs/facts.md, 6).
 
 A force of fixed size that turns by Delta < pi is, at the angle theta from the first,
 

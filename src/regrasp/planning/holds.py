@@ -1,4 +1,4 @@
-"""The hold graph: every pair of points that holds the load, at every orientation (docs/facts.md, 6)."""
+"""The hold graph: every pair of points that holds the load, at every orientation (docs/facts.md, 7)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

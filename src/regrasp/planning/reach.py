@@ -2,7 +2,7 @@
 
 A path in the hold graph goes from hold to hold over a shared point. While a finger is exchanged the object
 may turn, by less than pi, for two holds under loads that far apart hold everything between them
-(docs/facts.md, 5). So with P_k(o, v) the widest least margin of a path of k steps to a hold with point v at
+(docs/facts.md, 6). So with P_k(o, v) the widest least margin of a path of k steps to a hold with point v at
 orientation o,
 
     Q_k(o, v)     = max of P_k(o', v) over |o' - o| <= the largest turn

@@ -58,7 +58,7 @@ def plan_rotation(
     end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
     Everything else is as for ``plan_removal``.
 
-    Two states less than pi apart hold everything between them (docs/facts.md, 5). States are chosen every
+    Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
     ``STEP`` and left out where none exists, as long as the gap is below pi.
     Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
     """

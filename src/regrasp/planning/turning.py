@@ -21,7 +21,7 @@ from regrasp.planning.turn import Turn
 class TurningTransition(Transition):
     """Finger forces, in the object frame, while the object turns under a force through its centre of mass.
 
-    Between the angles of ``turn`` the forces are a f_k + b f_k+1 with a, b >= 0 (docs/facts.md, 5), which
+    Between the angles of ``turn`` the forces are a f_k + b f_k+1 with a, b >= 0 (docs/facts.md, 6), which
     keeps equilibrium and cones exactly. The object's angle is turn.angle (1 - T(t)).
     """
 
