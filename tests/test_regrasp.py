@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.closed_form.choice import ANGLE, best_squeeze
 from regrasp.outline import parts
 from regrasp.planning.holds import HoldGraph, evenly, named
 from regrasp.planning.reach import MAX_TURN, Search, reachable, sequences
@@ -273,8 +274,58 @@ def test_bad_requests(options, kind, words):
 
 def test_memory_is_bounded():
     contacts = named([ELLIPSE.contact_at(float(x), friction=0.5) for x in ELLIPSE.sample(100)], "c")
+    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(360), most_bytes=2**20)
     with pytest.raises(rg.InvalidInput, match=r"100 points at 360 orientations need 0\.00664 GiB"):
-        HoldGraph(tuple(contacts), WEIGHT, evenly(360), most_bytes=2**20)
+        graph.margin(0, 1, 0)
+    assert graph.widest().holding.shape == (360,)
+
+
+def lower_half(first, second, angle):
+    return np.cos(angle) * (first[:, 1] + second[:, 1]) < 0.1
+
+
+@pytest.mark.parametrize("keep", [None, lower_half])
+def test_the_widest_holds_are_those_of_the_table(keep):
+    contacts = named([ELLIPSE.contact_at(float(x), friction=0.4) for x in ELLIPSE.sample(120)], "c")
+    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(15), min_distance=0.4, keep=keep)
+    found = graph.widest()
+    assert (found.margins == graph.margins.max(axis=0)).all()
+    assert (found.places == graph.margins.argmax(axis=0)).all()
+    assert (found.holding == (graph.margins >= 0).sum(axis=1)).all()
+    assert 0 < (found.margins >= 0).sum() < found.margins.size
+
+
+@pytest.mark.parametrize("limited", [False, True])
+def test_compiled_margins_are_those_of_best_squeeze(limited):
+    rng = np.random.default_rng(7)
+    for scale in (1e-3, 1.0, 1e3):
+        outline = rg.Outline.ellipse(2 * scale, scale)
+        contacts = named(
+            [
+                outline.contact_at(
+                    x, friction=rng.choice([0.0, 0.1, 0.5, 2.0]), max_force=6.0 if limited else None
+                )
+                for x in (*rng.uniform(0, outline.length, 20), *outline.sample(12).tolist())
+            ],
+            "c",
+        )
+        graph = HoldGraph(tuple(contacts), WEIGHT, evenly(16))
+        for o, angle in enumerate(graph.angles.tolist()):
+            load = turned(WEIGHT.force, angle)
+            for (i, a), (j, b) in combinations(enumerate(contacts), 2):
+                _, f, _ = best_squeeze(
+                    *a.position, *a.normal, a.friction, *b.position, *b.normal, b.friction, *load, 0.0,
+                    ANGLE, *([6.0] * 2 if limited else [np.inf] * 2), graph.peak_ratio,
+                )  # fmt: skip
+                if np.isnan(f[0]):
+                    assert graph.margin(i, j, o) < 0
+                    continue
+                least = min(
+                    np.arctan(c.friction)
+                    - np.arctan2(abs(c.normal[0] * g[1] - c.normal[1] * g[0]), c.normal @ g)
+                    for c, g in ((a, f[:2]), (b, f[2:]))
+                )
+                assert graph.margin(i, j, o) == pytest.approx(max(least, 0.0), abs=1e-6)
 
 
 def test_searching_further_never_narrows_what_was_reached():
@@ -284,3 +335,47 @@ def test_searching_further_never_narrows_what_was_reached():
     while search.extend():
         assert (search.levels[-1] >= search.levels[-2] - 1e-9)[search.levels[-2] >= 0].all()
         assert len(search.levels) < 30
+
+
+def test_states_chosen_together_have_the_widest_worst_margin_and_change_least():
+    options = {"friction": 0.5, "orientations": 1}
+    each = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **options)
+    joint = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, states="joint", **options)
+    assert rg.verify(joint).ok
+    check_simulated(joint, START, GOAL, WEIGHT.force, 0.5)
+    assert [s.grasp.names for s in joint.steps] == [s.grasp.names for s in each.steps]
+
+    def worst(plan):
+        ends = [plan.steps[0].start, *(step.end for step in plan.steps)]
+        return min(state.margins.least_force for state in ends)
+
+    def change(plan):
+        return sum(((step.end.forces - step.start.forces) ** 2).sum() for step in plan.steps)
+
+    assert worst(joint) >= worst(each) - 1e-6
+    assert change(joint) < change(each)
+    best = cp_worst_margin(each)
+    assert worst(joint) == pytest.approx(best, rel=1e-5)
+
+
+def cp_worst_margin(plan):
+    """The widest worst force margin over all states of a plan, with cvxpy and none of our builders."""
+    import cvxpy as cp
+
+    t, held = cp.Variable(), []
+    states = [(plan.steps[0].start, 0)] + [(step.end, k) for k, step in enumerate(plan.steps)]
+    for k, (state, step) in enumerate(states):
+        used = [i for i, f in enumerate(state.forces) if f.any()]
+        choices = plan.steps[step].record.choices
+        limits = choices[0 if k == 0 else 1].force_limits
+        grasp = state.grasp.subset(used)
+        f = cp.Variable((len(used), 2))
+        n, s = grasp.normals, grasp.tangents
+        normal, across = cp.sum(cp.multiply(n, f), axis=1), cp.sum(cp.multiply(s, f), axis=1)
+        held += [cp.sum(f, axis=0) + state.load.force == 0]
+        held += [grasp.positions[:, 0] @ f[:, 1] - grasp.positions[:, 1] @ f[:, 0] == 0]
+        held += [0.5 * normal - cp.abs(across) >= t * np.sqrt(1.25)]
+        held += [cp.norm(f, axis=1) <= np.array(limits)]
+    problem = cp.Problem(cp.Maximize(t), held)
+    problem.solve(solver=cp.CLARABEL)
+    return problem.value

@@ -104,7 +104,11 @@ class Chooser:
 
         The least change of all forces does, unless it leaves a cone.
         """
-        grasp, wanted = self.grasp, self._wanted(answer)
+        return self.settled(self._wanted(answer), frictions, limits)
+
+    def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """Forces (n, 2) moved least into equilibrium, inside cones and limits; None if there are none."""
+        grasp = self.grasp
         forces = self._shifted(wanted)
         if forces is not None:
             normal = (forces * grasp.normals).sum(axis=1)

@@ -1,29 +1,23 @@
-"""Planning whole regrasps of a planar object: search the holds, choose the states, join the steps."""
+"""Planning whole regrasps of a planar object: the candidates, the search, and why there is none."""
 
-from dataclasses import replace
-from itertools import pairwise
-from math import cos, pi
+from math import pi
 from typing import Any
 
 import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import choice, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
-from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.balancing import with_limit
-from regrasp.planning.choice import choose_forces
 from regrasp.planning.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.holds import Filter, HoldGraph, evenly
-from regrasp.planning.reach import MAX_TURN, Hold, Sequence, sequences
+from regrasp.planning.reach import MAX_TURN, sequences
 from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.planning.regrasp_steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.timing import TimeScaling
-from regrasp.planning.transition import Choice, Record, Transition
-from regrasp.planning.turn import Turn, turned_load
-from regrasp.planning.turning import TurningTransition
 
 # Two contacts nearer than this fraction of the object are one.
 _SAME = 1e-9
@@ -40,6 +34,7 @@ def plan_regrasp(
     goal_orientation: float = 0.0,
     candidates: int = 120,
     objective: str = "angle",
+    states: str = "each",
     max_turn: float = MAX_TURN,
     min_distance: float = 0.0,
     keep: Filter | None = None,
@@ -57,7 +52,9 @@ def plan_regrasp(
     load: a force through the centre of mass, seen from the object before it turns.
     orientations: angles of the object that are tried, over a full turn; 1 forbids turning.
     goal_orientation: the object's angle in the end [rad]; rounded to the nearest of these.
-    objective: what the state of every hold is chosen for. max_turn: largest turn during one exchange [rad].
+    objective: what the state of every hold is chosen for, each by itself. states: ``each``, or ``joint``: all
+    states in one program, for the widest worst force margin and then the least change of force.
+    max_turn: largest turn during one exchange [rad].
     min_distance [m], keep: which two fingers may hold together. max_force, peak_ratio, reserve: as for
     ``choose_state``. step_duration: [s] of each step.
 
@@ -76,6 +73,7 @@ def plan_regrasp(
         goal_orientation=goal_orientation,
         candidates=candidates,
         objective=objective,
+        states=states,
         max_turn=max_turn,
         min_distance=min_distance,
         keep=keep,
@@ -97,6 +95,7 @@ def plan_regrasps(
     goal_orientation: float = 0.0,
     candidates: int = 120,
     objective: str = "angle",
+    states: str = "each",
     max_turn: float = MAX_TURN,
     min_distance: float = 0.0,
     keep: Filter | None = None,
@@ -113,6 +112,7 @@ def plan_regrasps(
     """
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
     number(step_duration, "step_duration", above=0)
+    choice(states, "states", ("each", "joint"))
     if not 0 < number(max_turn, "max_turn") < pi:
         raise InvalidInput(f"max_turn must be above 0 and below pi, got {max_turn!r}")
     angles = evenly(orientations)
@@ -132,7 +132,13 @@ def plan_regrasps(
     if not found:
         raise Infeasible(_why_not(graph, ends, last))
     scaling = TimeScaling.spline(step_duration)
-    return [_planned(sequence, contacts, ends, load, angles, criteria, scaling) for sequence in found]
+    plans = []
+    for sequence in found:
+        chosen = chosen_states(sequence, contacts, ends.start, ends.goal, load, angles, criteria)
+        if states == "joint":
+            chosen = spread_states(chosen, criteria)
+        plans.append(regrasp_of(chosen, contacts, scaling, reserve))
+    return plans
 
 
 class _Ends:
@@ -188,122 +194,3 @@ def _why_not(graph: HoldGraph, ends: _Ends, last: int) -> str:
         f"points are in component {sorted({int(component[i]) for i in ends.start})} and the goal's in "
         f"{sorted({int(component[i]) for i in ends.goal})}; try more candidates, orientations or friction"
     )
-
-
-def _planned(
-    sequence: Sequence,
-    contacts: tuple[Contact, ...],
-    ends: _Ends,
-    load: Wrench,
-    angles: Array,
-    criteria: Criteria,
-    scaling: TimeScaling,
-) -> RegraspPlan:
-    turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
-    holds = [_HoldState(hold, angle, contacts, load, criteria, _ease(turned, k))
-             for k, (hold, angle) in enumerate(zip(sequence.holds, turned, strict=True))]  # fmt: skip
-    whole = replace(criteria, objective="force")
-    first, last = holds[0], holds[-1]
-    steps: list[Transition] = []
-    steps.append(_change("removal", contacts, ends.start, first, whole, scaling))
-    for before, after in pairwise(holds):
-        steps.append(_exchange(contacts, before, after, load, scaling, criteria.reserve))
-    steps.append(_change("addition", contacts, ends.goal, last, whole, scaling))
-    return RegraspPlan(tuple(steps), (0.0, *turned, turned[-1]), sequence.margin)
-
-
-class _HoldState:
-    """The chosen state of one hold."""
-
-    def __init__(
-        self,
-        hold: Hold,
-        angle: float,
-        contacts: tuple[Contact, ...],
-        load: Wrench,
-        criteria: Criteria,
-        ease: float,
-    ) -> None:
-        self.places, self.angle, self.load = hold[:2], angle, turned_load(load, angle)
-        pair = [contacts[i] for i in self.places]
-        eased = Grasp(c if c.max_force is None else with_limit(c, ease * c.max_force) for c in pair)
-        general = None if criteria.max_force is None else ease * criteria.max_force
-        self.chosen = choose_forces(eased, self.load, replace(criteria, max_force=general))
-        self.forces = dict(zip(self.places, np.array(self.chosen.forces), strict=True))
-        self.objective = criteria.objective
-
-    def among(self, places: tuple[int, ...]) -> Array:
-        """(n, 2) forces of these contacts, zero for those that do not hold."""
-        return np.array([self.forces.get(i, np.zeros(2)) for i in places])
-
-
-def _ease(turned: list[float], k: int) -> float:
-    """The fraction of a force limit that leaves room for the growth of forces in the turns beside a hold."""
-    turns = [abs(b - a) for a, b in pairwise(turned[max(k - 1, 0) : k + 2])]
-    return cos(max(turns, default=0.0) / 2) * (1 - 1e-9)
-
-
-def _unwrapped(angles: list[float]) -> list[float]:
-    """The same angles, each at most half a turn from the one before it, the first from 0."""
-    result: list[float] = []
-    for angle in angles:
-        last = result[-1] if result else 0.0
-        result.append(last + (angle - last + pi) % (2 * pi) - pi)
-    return result
-
-
-def _change(
-    kind: Any,
-    contacts: tuple[Contact, ...],
-    places: tuple[int, ...],
-    hold: _HoldState,
-    criteria: Criteria,
-    scaling: TimeScaling,
-) -> Transition:
-    """The removal from, or the addition to, a grasp of three."""
-    grasp = Grasp(contacts[i] for i in places)
-    best = choose_forces(grasp, hold.load, criteria)
-    whole = GraspState(grasp, hold.load, best.forces)
-    rest = GraspState(grasp, hold.load, hold.among(places))
-    (other,) = (i for i in places if i not in hold.places)
-    states = (whole, rest) if kind == "removal" else (rest, whole)
-    labels = ("start", "end") if kind == "removal" else ("end", "start")
-    record = Record(
-        criteria.reserve,
-        (
-            Choice(labels[0], criteria.objective, best.method, best.force_limits),  # type: ignore[arg-type]
-            Choice(labels[1], hold.objective, hold.chosen.method, hold.chosen.force_limits),  # type: ignore[arg-type]
-        ),
-    )
-    return Transition(kind, contacts[other].name, *states, scaling, record)
-
-
-def _exchange(
-    contacts: tuple[Contact, ...],
-    before: _HoldState,
-    after: _HoldState,
-    load: Wrench,
-    scaling: TimeScaling,
-    reserve: float,
-) -> Transition:
-    """From one hold to the next, straight or turning; a rotation where both have the same fingers."""
-    places = tuple(dict.fromkeys((*before.places, *after.places)))
-    grasp = Grasp(contacts[i] for i in places)
-    start = GraspState(grasp, before.load, before.among(places))
-    end = GraspState(grasp, after.load, after.among(places))
-    record = Record(
-        reserve,
-        tuple(
-            Choice(label, hold.objective, hold.chosen.method, hold.chosen.force_limits)  # type: ignore[arg-type]
-            for label, hold in (("start", before), ("end", after))
-        ),
-    )
-    leaving = [contacts[i].name for i in before.places if i not in after.places]
-    arriving = [contacts[i].name for i in after.places if i not in before.places]
-    kind: Any = "exchange" if leaving else "rotation"
-    contact, arrival = (leaving[0], arriving[0]) if leaving else (None, None)
-    turn = after.angle - before.angle
-    if turn == 0:
-        return Transition(kind, contact, start, end, scaling, record, arrival=arrival)
-    knots = Turn([0.0, turn], [start.forces, end.forces])
-    return TurningTransition(kind, contact, start, end, scaling, record, arrival=arrival, turn=knots)

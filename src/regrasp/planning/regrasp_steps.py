@@ -1,0 +1,159 @@
+"""From a sequence of holds to the steps of a regrasp: states chosen, and joined by transitions."""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import cos, pi
+from typing import Any, Literal
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.balancing import with_limit
+from regrasp.planning.choice import choose_forces
+from regrasp.planning.criteria import Criteria
+from regrasp.planning.reach import Sequence
+from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.planning.timing import TimeScaling
+from regrasp.planning.transition import Choice, Record, Transition
+from regrasp.planning.turn import Turn, turned_load
+from regrasp.planning.turning import TurningTransition
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A state of a regrasp and how it was chosen.
+
+    places: (n,) of its contacts among all. angle: of the object [rad]. forces: (n, 2) [N]; limits: (n,) [N].
+    """
+
+    places: tuple[int, ...]
+    angle: float
+    load: Wrench
+    grasp: Grasp
+    forces: Array
+    limits: tuple[float, ...]
+    objective: str
+    method: str
+
+    def among(self, places: tuple[int, ...]) -> Array:
+        """(m, 2) forces of other contacts, zero for those that this state does not have."""
+        known = dict(zip(self.places, self.forces, strict=True))
+        return np.array([known.get(place, np.zeros(2)) for place in places])
+
+
+def chosen_states(
+    sequence: Sequence,
+    contacts: tuple[Contact, ...],
+    start: tuple[int, ...],
+    goal: tuple[int, ...],
+    load: Wrench,
+    angles: Array,
+    criteria: Criteria,
+) -> list[Chosen]:
+    """The first grasp's state, that of every hold, and the last grasp's, each chosen by itself.
+
+    Holds are chosen for the objective, whole grasps for the widest force margin: every finger works.
+    """
+    turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
+    whole = replace(criteria, objective="force")
+    states = [_chosen(start, 0.0, contacts, load, whole, 1.0)]
+    for k, ((i, j, _), angle) in enumerate(zip(sequence.holds, turned, strict=True)):
+        beside = [abs(b - a) for a, b in pairwise(turned[max(k - 1, 0) : k + 2])]
+        ease = cos(max(beside, default=0.0) / 2) * (1 - 1e-9)  # forces grow while the object turns
+        states.append(_chosen((i, j), angle, contacts, load, criteria, ease))
+    return [*states, _chosen(goal, turned[-1], contacts, load, whole, 1.0)]
+
+
+def spread_states(states: list[Chosen], criteria: Criteria) -> list[Chosen]:
+    """The same sequence with the forces of all states chosen together, under the limits of each."""
+    from regrasp.planning.sequence_program import SequenceState, spread_forces
+
+    unit = float(abs(states[0].load.force).max())
+    together = spread_forces(
+        [
+            SequenceState(
+                s.grasp, s.load, s.places, criteria.frictions(s.grasp), list(s.limits), _in_use(s.forces)
+            )
+            for s in states
+        ],
+        unit,
+    )
+    return [
+        replace(state, forces=forces, objective="joint force", method="clarabel")
+        for state, forces in zip(states, together, strict=True)
+    ]
+
+
+def regrasp_of(
+    states: list[Chosen], contacts: tuple[Contact, ...], scaling: TimeScaling, reserve: float
+) -> RegraspPlan:
+    """The steps between states that follow one another."""
+    steps = [_step(a, b, contacts, scaling, reserve) for a, b in pairwise(states)]
+    holds = [GraspState(s.grasp, s.load, s.forces) for s in states[1:-1]]
+    margin = min(hold.margins.least_angle for hold in holds)
+    return RegraspPlan(tuple(steps), tuple(s.angle for s in states), margin)
+
+
+def _chosen(
+    places: tuple[int, ...],
+    angle: float,
+    contacts: tuple[Contact, ...],
+    load: Wrench,
+    criteria: Criteria,
+    ease: float,
+) -> Chosen:
+    """The best forces of some contacts within a fraction ``ease`` of their limits."""
+    seen, given = turned_load(load, angle), [contacts[i] for i in places]
+    eased = Grasp(c if c.max_force is None else with_limit(c, ease * c.max_force) for c in given)
+    general = None if criteria.max_force is None else ease * criteria.max_force
+    best = choose_forces(eased, seen, replace(criteria, max_force=general))
+    forces = np.array(best.forces)
+    return Chosen(
+        places, angle, seen, Grasp(given), forces, best.force_limits, criteria.objective, best.method
+    )
+
+
+def _step(
+    before: Chosen, after: Chosen, contacts: tuple[Contact, ...], scaling: TimeScaling, reserve: float
+) -> Transition:
+    """From one state to the next: a finger leaves, arrives or is exchanged, or only the object turns."""
+    places = max(before.places, after.places, key=len)
+    if len(before.places) == len(after.places):
+        places = tuple(dict.fromkeys((*before.places, *after.places)))
+    grasp = Grasp(contacts[i] for i in places)
+    start = GraspState(grasp, before.load, before.among(places))
+    end = GraspState(grasp, after.load, after.among(places))
+    leaving = [contacts[i].name for i in places if i not in after.places]
+    arriving = [contacts[i].name for i in places if i not in before.places]
+    kinds = {(1, 0): "removal", (0, 1): "addition", (1, 1): "exchange", (0, 0): "rotation"}
+    kind: Any = kinds[len(leaving), len(arriving)]
+    contact = (leaving or arriving or [None])[0]
+    arrival = arriving[0] if kind == "exchange" else None
+    record = Record(reserve, (_choice("start", before), _choice("end", after)))
+    turn = after.angle - before.angle
+    if turn == 0:
+        return Transition(kind, contact, start, end, scaling, record, arrival=arrival)
+    knots = Turn([0.0, turn], [start.forces, end.forces])
+    return TurningTransition(kind, contact, start, end, scaling, record, arrival=arrival, turn=knots)
+
+
+def _in_use(forces: Array) -> tuple[bool, ...]:
+    sizes = np.hypot(*forces.T)
+    return tuple((sizes > 1e-9 * sizes.max()).tolist())
+
+
+def _choice(label: Literal["start", "end"], state: Chosen) -> Choice:
+    return Choice(label, state.objective, state.method, state.limits)
+
+
+def _unwrapped(angles: list[float]) -> list[float]:
+    """The same angles, each at most half a turn from the one before it, the first from 0."""
+    result: list[float] = []
+    for angle in angles:
+        last = result[-1] if result else 0.0
+        result.append(last + (angle - last + pi) % (2 * pi) - pi)
+    return result
