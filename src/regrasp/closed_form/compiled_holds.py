@@ -1,10 +1,11 @@
 """Holds by the million: margins of every pair of points under every load direction, and steps between holds.
 
-Compiled by Numba from the formulas of ``best`` and ``choice``. Margins are laid out (orientations, pairs), so
-that each thread writes one stretch of memory at a time.
+Compiled by Numba from the formulas of ``best`` and ``choice``. The orientations are the inner loop: what does
+not depend on them is then computed once per pair, and the sixteen pairs of one block share cache lines of a
+table that is laid out (orientations, pairs).
 """
 
-from math import atan, atan2
+from math import atan2
 from typing import Any
 
 import numpy as np
@@ -13,44 +14,67 @@ from numba import njit, prange
 from regrasp.closed_form.choice import ANGLE
 from regrasp.closed_form.compiled import _best_squeeze, _digest
 
-# Pairs whose geometry stays in the cache while the orientations go by.
-_BLOCK = 512
+_BLOCK = 16  # pairs whose margins share a cache line
+STRETCH = 4096
+"""Pairs that a thread takes at a time where only the widest margin of each is kept."""
 NO_HOLD = -1.0
 """In the place of the margin of a pair that cannot hold the load."""
 
 
 @njit(error_model="numpy", forceinline=True)
-def _margin(nx, ny, mu, fx, fy):  # type: ignore[no-untyped-def]
-    return atan(mu) - atan2(abs(nx * fy - ny * fx), nx * fx + ny * fy)
+def _side(nx, ny, half, fx, fy):  # type: ignore[no-untyped-def]
+    return half - atan2(abs(nx * fy - ny * fx), nx * fx + ny * fy)
 
 
-def _loops(digest: str) -> Any:
+@njit(error_model="numpy", forceinline=True)
+def _margin(candidates, i, j, fx, fy):  # type: ignore[no-untyped-def]
+    """Widest least angle margin of a pair under a force through the origin, or ``NO_HOLD``."""
+    points, normals, mu, limits, ratio, half = candidates
+    _, f, _ = _best_squeeze(
+        points[i, 0], points[i, 1], normals[i, 0], normals[i, 1], mu[i],
+        points[j, 0], points[j, 1], normals[j, 0], normals[j, 1], mu[j],
+        fx, fy, 0.0, ANGLE, limits[i], limits[j], ratio,
+    )  # fmt: skip
+    if f[0] != f[0]:
+        return np.float32(NO_HOLD)
+    a = _side(normals[i, 0], normals[i, 1], half[i], f[0], f[1])
+    b = _side(normals[j, 0], normals[j, 1], half[j], f[2], f[3])
+    return np.float32(max(min(a, b), 0.0))
+
+
+def _loops(digest: str) -> tuple[Any, Any]:
     @njit(error_model="numpy", parallel=True, cache=True)
-    def margins(first, second, points, normals, mu, loads, limits, ratio, result):  # type: ignore[no-untyped-def]
-        """Widest least angle margin of each pair under each load; ``NO_HOLD`` where there is none."""
+    def margins(first, second, loads, candidates, result):  # type: ignore[no-untyped-def]
+        """The margin of each pair under each load; candidates as ``_margin`` takes them."""
         _ = digest
         for block in prange((first.size + _BLOCK - 1) // _BLOCK):
-            begin = block * _BLOCK
-            end = min(begin + _BLOCK, first.size)
-            for o in range(len(loads)):
-                for p in range(begin, end):
-                    i, j = first[p], second[p]
-                    _, f, _ = _best_squeeze(
-                        points[i, 0], points[i, 1], normals[i, 0], normals[i, 1], mu[i],
-                        points[j, 0], points[j, 1], normals[j, 0], normals[j, 1], mu[j],
-                        loads[o, 0], loads[o, 1], 0.0, ANGLE, limits[i], limits[j], ratio,
-                    )  # fmt: skip
-                    if f[0] == f[0]:
-                        a = _margin(normals[i, 0], normals[i, 1], mu[i], f[0], f[1])
-                        b = _margin(normals[j, 0], normals[j, 1], mu[j], f[2], f[3])
-                        result[o, p] = max(min(a, b), 0.0)
-                    else:
-                        result[o, p] = NO_HOLD
+            for p in range(block * _BLOCK, min((block + 1) * _BLOCK, first.size)):
+                i, j = first[p], second[p]
+                for o in range(len(loads)):
+                    result[o, p] = _margin(candidates, i, j, loads[o, 0], loads[o, 1])
 
-    return margins
+    @njit(error_model="numpy", parallel=True, cache=True)
+    def widest(  # type: ignore[no-untyped-def]
+        first, second, loads, candidates, allowed, place, best, where, counts
+    ):
+        """Widens the best margins of allowed pairs by these loads, the first of them number ``place``.
+
+        counts (stretches, loads): how many pairs of a stretch hold, to be summed over the stretches.
+        """
+        _ = digest
+        for stretch in prange(len(counts)):
+            for p in range(stretch * STRETCH, min((stretch + 1) * STRETCH, first.size)):
+                i, j = first[p], second[p]
+                for o in range(len(loads) if allowed[p] else 0):
+                    m = _margin(candidates, i, j, loads[o, 0], loads[o, 1])
+                    counts[stretch, o] += m >= 0.0
+                    if m > best[p]:
+                        best[p], where[p] = m, place + o
+
+    return margins, widest
 
 
-hold_margins = _loops(_digest)
+hold_margins, widest_margins = _loops(_digest)
 
 
 @njit(error_model="numpy", parallel=True, cache=True)

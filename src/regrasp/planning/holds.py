@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,14 +24,27 @@ MOST_BYTES = 2 * 2**30
 
 
 @dataclass(frozen=True, eq=False)
+class WidestHolds:
+    """The widest hold of every pair over the angles of a graph.
+
+    margins: (P,) [rad]; negative where a pair holds at no angle. places: (P,) of the angles where they are
+    reached, the first of equals. holding: (O,) how many pairs hold at each angle.
+    """
+
+    margins: NDArray[np.float32]
+    places: NDArray[np.int32]
+    holding: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
 class HoldGraph:
     """Pairs of contacts that hold a load through the centre of mass while the object has one of some angles.
 
     contacts: candidates. load: at angle 0. angles: (O,) of the object [rad]. A hold's margin is the widest
     least angle margin [rad] of its states, with forces below the contacts' own limits or, without one,
     ``peak_ratio`` times the least peak force. min_distance: between two fingers [m]. keep: a filter of pairs
-    by reach or collision. Memory is 4 bytes per pair and angle; ``InvalidInput`` where that is more than
-    ``most_bytes``.
+    by reach or collision. ``margins`` takes 4 bytes per pair and angle, and raises ``InvalidInput`` where
+    that is more than ``most_bytes``; ``widest`` does without.
     """
 
     contacts: tuple[Contact, ...]
@@ -48,13 +62,6 @@ class HoldGraph:
             raise InvalidInput(
                 f"the load of a hold graph is a force through the centre of mass, got {self.load!r}"
             )
-        count = len(self.contacts)
-        needed = 2 * count * (count - 1) * len(self.angles)
-        if needed > self.most_bytes:
-            raise InvalidInput(
-                f"{count} points at {len(self.angles)} orientations need {needed / 2**30:.3g} GiB, more than "
-                f"{self.most_bytes / 2**30:.3g}; take fewer, or allow more by most_bytes"
-            )
 
     @cached_property
     def pairs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -68,21 +75,66 @@ class HoldGraph:
         """(O, P) margins [rad]; negative where a pair cannot hold the load or is not allowed."""
         from regrasp.closed_form.compiled_holds import NO_HOLD, hold_margins
 
+        count, needed = len(self.contacts), 4 * self.pairs[0].size * len(self.angles)
+        if needed > self.most_bytes:
+            raise InvalidInput(
+                f"{count} points at {len(self.angles)} orientations need {needed / 2**30:.3g} GiB, more than "
+                f"{self.most_bytes / 2**30:.3g}; take fewer, allow more by most_bytes, or ask for widest()"
+            )
+        result = np.empty((len(self.angles), self.pairs[0].size), dtype=np.float32)
+        hold_margins(*self.pairs, self._loads, self._candidates, result)
+        result[:, ~self._apart] = NO_HOLD
+        if self.keep is not None:
+            for o, row in enumerate(result):
+                row[~self._kept(o)] = NO_HOLD
+        return result
+
+    def widest(self) -> WidestHolds:
+        """The widest hold of every pair over all angles, in memory that does not grow with the angles."""
+        from regrasp.closed_form.compiled_holds import NO_HOLD, STRETCH, widest_margins
+
+        size = self.pairs[0].size
+        margins, places = np.full(size, NO_HOLD, dtype=np.float32), np.zeros(size, dtype=np.int32)
+        holding = []
+        together = len(self.angles) if self.keep is None else 1  # a filter is asked for each angle
+        for o in range(0, len(self.angles), together):
+            loads = self._loads[o : o + together]
+            counts = np.zeros((-(-size // STRETCH), len(loads)), dtype=np.int64)
+            allowed = self._apart if self.keep is None else self._apart & self._kept(o)
+            widest_margins(*self.pairs, loads, self._candidates, allowed, o, margins, places, counts)
+            holding.append(counts.sum(axis=0))
+        return WidestHolds(margins, places, np.concatenate(holding))
+
+    @cached_property
+    def _points(self) -> Array:
+        return np.array([c.position for c in self.contacts])
+
+    @cached_property
+    def _apart(self) -> NDArray[np.bool_]:
+        """(P,) whether two contacts are far enough from each other."""
         first, second = self.pairs
-        points, normals = (
-            np.array([getattr(c, what) for c in self.contacts]) for what in ("position", "normal")
-        )
+        least = max(self.min_distance, 1e-9 * abs(self._points).max())
+        apart: NDArray[np.bool_] = np.hypot(*(self._points[first] - self._points[second]).T) >= least
+        return apart
+
+    def _kept(self, o: int) -> NDArray[np.bool_]:
+        """(P,) what the filter says at an orientation."""
+        assert self.keep is not None
+        first, second = self.pairs
+        kept = self.keep(self._points[first], self._points[second], float(self.angles[o]))
+        return np.asarray(kept, dtype=np.bool_)
+
+    @property
+    def _candidates(self) -> tuple[Any, ...]:
+        """Points, normals, frictions, limits, peak ratio and cone angles, as the compiled loops take them."""
         mu = np.array([c.friction for c in self.contacts])
         limits = np.array([inf if c.max_force is None else c.max_force for c in self.contacts])
-        loads = np.array([turned_load(self.load, a).force for a in self.angles.tolist()])
-        result = np.empty((len(loads), first.size), dtype=np.float32)
-        hold_margins(first, second, points, normals, mu, loads, limits, float(self.peak_ratio), result)
-        apart = np.hypot(*(points[first] - points[second]).T)
-        result[:, apart < max(self.min_distance, 1e-9 * abs(points).max())] = NO_HOLD
-        if self.keep is not None:
-            for row, angle in zip(result, self.angles.tolist(), strict=True):
-                row[~np.asarray(self.keep(points[first], points[second], angle), dtype=bool)] = NO_HOLD
-        return result
+        normals = np.array([c.normal for c in self.contacts])
+        return self._points, normals, mu, limits, float(self.peak_ratio), np.arctan(mu)
+
+    @property
+    def _loads(self) -> Array:
+        return np.array([turned_load(self.load, a).force for a in self.angles.tolist()])
 
     def pair(self, i: int, j: int) -> int:
         """The place of a pair of contacts in ``pairs``."""
