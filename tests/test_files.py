@@ -321,8 +321,11 @@ def put(value: Any, *keys: str | int) -> Callable[[dict[str, Any]], None]:
         (lambda data: data.pop("load"), "load: a required key is missing"),
         (lambda data: data["record"].pop("reserve"), "record.reserve: a required key is missing"),
         (put("fast", "speed"), "speed: unknown key; known here: format, version, kind, contact, load, "
-                               "contacts, start, end, scaling, course, record"),
-        (put("regrasp", "kind"), "kind: expected 'removal' or 'addition', got 'regrasp'"),
+                               "contacts, start, end, scaling, course, record, arrival, turn"),
+        (put("removing", "kind"), "kind: expected 'removal', 'addition', 'rotation' or 'exchange', "
+                                  "got 'removing'"),
+        (put("rotation", "kind"), "a rotation names the wrong fingers: 'P3' and None"),
+        (put("P2", "arrival"), "a removal names the wrong fingers: 'P3' and 'P2'"),
         (put("P9", "contact"), "no contact 'P9' in this grasp; it has P1, P2, P3"),
         (put("1", "start", 0, 1), "start[0][1]: expected a number, got '1'"),
         (put(nan, "start", 0, 1), "start[0][1]: expected a finite number, got nan"),

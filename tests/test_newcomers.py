@@ -52,7 +52,7 @@ def test_a_duration_is_given_once() -> None:
 def test_set_points_are_read_back_and_checked(tmp_path: Path) -> None:
     plan, file = removal(), tmp_path / "setpoints.csv"
     write_setpoints(plan, file, 50.0)
-    times, forces = read_setpoints(file, plan)
+    ((_, times, _, forces),) = read_setpoints(file, plan)
     np.testing.assert_array_equal(times, plan.times(50.0))
     np.testing.assert_array_equal(forces, plan.forces(times))
     text = file.read_text()

@@ -86,18 +86,18 @@ def verify(path: Path) -> None:
     """
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
-    from regrasp.files.setpoints import read_setpoints
-    from regrasp.verification import verify_setpoints
+    from regrasp.files.setpoints import checked, read_setpoints
 
     path = path / "plan.json" if path.is_dir() else path
-    transition = read_plan(path)
-    click.echo(transition)
-    click.echo(_verified(verdict_on(transition), path))
+    planned = read_plan(path)
+    click.echo(planned)
+    click.echo(_verified(verdict_on(planned), path))
     table = path.with_name("setpoints.csv")
     if table.exists():
-        times, forces = read_setpoints(table, transition)
-        _verified(verify_setpoints(transition, forces, times), table)
-        click.echo(f"each of {times.size} set-points in {table} verified too")
+        steps = read_setpoints(table, planned)
+        for rows in steps:
+            _verified(checked(planned, rows), table)
+        click.echo(f"each of {sum(rows.times.size for rows in steps)} set-points in {table} verified too")
 
 
 @commands.command()
@@ -152,18 +152,18 @@ def _work(
 ) -> None:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
     from regrasp.files import plan_scenario, write_plan, write_setpoints
-    from regrasp.files.setpoints import setpoint_blocks
+    from regrasp.files.setpoints import checked, setpoint_blocks
     from regrasp.files.source import naming
     from regrasp.files.staging import whole_folder
-    from regrasp.verification import verify, verify_setpoints
+    from regrasp.verification import verify
 
     rate, count = scenario.task.rate, 0
     with naming(name):
         transition = plan_scenario(scenario)
         verdict = _verified(verify(transition), name)
-        for times, forces in setpoint_blocks(transition, rate):
-            _verified(verify_setpoints(transition, forces, times), name)
-            count += times.size
+        for rows in setpoint_blocks(transition, rate):
+            _verified(checked(transition, rows), name)
+            count += rows.times.size
     click.echo(f"{scenario.title}\n\n{transition}" if scenario.title else transition)
     click.echo(f"{verdict}\neach of {count} set-points verified too")
 

@@ -1,4 +1,7 @@
-"""A plan as a JSON file: self-contained, versioned, and read back as the equal plan, bit for bit."""
+"""A plan as a JSON file: self-contained, versioned, and read back as the equal plan, bit for bit.
+
+A whole regrasp is of kind ``regrasp`` and lists its steps, each as the plan of a transition.
+"""
 
 import json
 from math import inf
@@ -16,9 +19,12 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.course import Course
+from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record, Transition
+from regrasp.planning.turn import Turn
+from regrasp.planning.turning import TurningTransition
 
 FORMAT = "regrasp plan"
 Positive = Annotated[float, Field(gt=0)]
@@ -63,11 +69,15 @@ class _Course(Strict):
     loads: list[list[float]]  # force, then torque
 
 
-class _Plan(Strict):
-    format: Literal["regrasp plan"]
-    version: Literal[1]
-    kind: Literal["removal", "addition"]
-    contact: str
+class _Turn(Strict):
+    angles: list[float]
+    forces: list[list[list[float]]]
+    end_load: list[float]  # force, then torque; in the object frame after the turn
+
+
+class _Transition(Strict):
+    kind: Literal["removal", "addition", "rotation", "exchange"]
+    contact: str | None  # none for a rotation
     load: list[float]  # force, then torque; at the start
     contacts: list[_Contact]
     start: list[list[float]]
@@ -75,23 +85,46 @@ class _Plan(Strict):
     scaling: _Scaling
     course: _Course | None = None  # none for the straight path
     record: _Record
+    arrival: str | None = None  # of an exchange
+    turn: _Turn | None = None  # of an object that turns
 
 
-def write_plan(plan: Transition, path: str | Path) -> None:
+class _Header(Strict):
+    format: Literal["regrasp plan"]
+    version: Literal[1]
+
+
+class _Plan(_Transition, _Header):
+    pass
+
+
+class _Regrasp(_Header):
+    kind: Literal["regrasp"]
+    steps: list[_Transition] = Field(min_length=1)
+    orientations: list[float]
+    margin: float
+
+
+def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
     """Write a plan with everything needed to read it back and verify it.
 
     Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
     """
-    if not isinstance(plan, Transition):
-        raise InvalidInput(f"write_plan writes a Transition, got {plan!r}")
-    document = _document(plan)
-    validated(_Plan, document, path)
+    header = {"format": FORMAT, "version": VERSION}
+    if isinstance(plan, RegraspPlan):
+        document = header | _regrasp_document(plan)
+        validated(_Regrasp, document, path)
+    elif isinstance(plan, Transition):
+        document = header | _document(plan)
+        validated(_Plan, document, path)
+    else:
+        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {plan!r}")
     with whole_file(path) as file:
         json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
         file.write("\n")
 
 
-def read_plan(path: str | Path) -> Transition:
+def read_plan(path: str | Path) -> Transition | RegraspPlan:
     """The plan of a file that ``write_plan`` wrote; judge it with ``regrasp.verify``.
 
     Raises one ``InvalidInput`` that names the file and what is wrong in it.
@@ -109,16 +142,42 @@ def read_plan(path: str | Path) -> Transition:
             f"{path}: version: expected {VERSION}, got {data.get('version')!r}; "
             f"a plan of a newer regrasp needs that regrasp to be read"
         )
+    if data.get("kind") == "regrasp":
+        whole = validated(_Regrasp, data, path)
+        with naming(path):
+            return _regrasp(whole)
     stored = validated(_Plan, data, path)
     with naming(path):
         return _plan(stored)
 
 
+def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:
+    return {
+        "kind": "regrasp",
+        "orientations": list(plan.orientations),
+        "margin": plan.margin,
+        "steps": [_document(step) for step in plan.steps],
+    }
+
+
+def _regrasp(stored: _Regrasp) -> RegraspPlan:
+    steps = []
+    for k, step in enumerate(stored.steps):
+        with naming(f"steps[{k}]"):
+            steps.append(_plan(step))
+    count = len(stored.orientations)
+    if count != len(steps) + 1:
+        raise InvalidInput(
+            f"orientations: expected {len(steps) + 1} angles, one more than the steps, got {count}"
+        )
+    plan = RegraspPlan(tuple(steps), tuple(stored.orientations), stored.margin)
+    _ = plan.moves  # raises where a step has more fingers than the first
+    return plan
+
+
 def _document(plan: Transition) -> dict[str, Any]:
     scaling, record, course = plan.scaling, plan.record, plan.course
-    return {
-        "format": FORMAT,
-        "version": VERSION,
+    document: dict[str, Any] = {
         "kind": plan.kind,
         "contact": plan.contact,
         "load": plan.start.load.vector.tolist(),
@@ -164,9 +223,18 @@ def _document(plan: Transition) -> dict[str, Any]:
             "least_normals": list(record.least_normals),
         },
     }
+    if plan.arrival is not None:
+        document["arrival"] = plan.arrival
+    if plan.turn is not None:
+        document["turn"] = {
+            "angles": plan.turn.angles.tolist(),
+            "forces": plan.turn.forces.tolist(),
+            "end_load": plan.end.load.vector.tolist(),
+        }
+    return document
 
 
-def _plan(stored: _Plan) -> Transition:
+def _plan(stored: _Transition) -> Transition:
     grasp = Grasp(
         Contact(c.position, c.normal, c.friction, max_force=c.max_force, name=c.name) for c in stored.contacts
     )
@@ -175,16 +243,24 @@ def _plan(stored: _Plan) -> Transition:
         if count not in (0, len(grasp)):
             raise InvalidInput(f"record.{key}: expected {len(grasp)} numbers or none, got {count}")
     load = Wrench.from_vector(stored.load)
-    given = stored.course
+    given, turned = stored.course, stored.turn
+    if given is not None and turned is not None:
+        raise InvalidInput("a plan has a course or a turn, not both")
     course = None if given is None else Course(given.times, given.forces, given.loads)
-    last = load if course is None else Wrench.from_vector(course.loads[-1])
+    turn = None if turned is None else Turn(turned.angles, turned.forces)
+    last = load
+    if course is not None:
+        last = Wrench.from_vector(course.loads[-1])
+    elif turned is not None:
+        last = Wrench.from_vector(turned.end_load)
     ends = GraspState(grasp, load, stored.start), GraspState(grasp, last, stored.end)
     scaling = TimeScaling(stored.scaling.duration, tuple(stored.scaling.control), stored.scaling.degree)
-    if course is None:
-        return Transition(stored.kind, stored.contact, *ends, scaling, _read_record(stored.record))
-    return SampledTransition(
-        stored.kind, stored.contact, *ends, scaling, _read_record(stored.record), course=course
-    )
+    kind, contact, record = stored.kind, stored.contact, _read_record(stored.record)
+    if course is not None:
+        return SampledTransition(kind, contact, *ends, scaling, record, arrival=stored.arrival, course=course)
+    if turn is not None:
+        return TurningTransition(kind, contact, *ends, scaling, record, arrival=stored.arrival, turn=turn)
+    return Transition(kind, contact, *ends, scaling, record, arrival=stored.arrival)
 
 
 def _read_record(record: _Record) -> Record:

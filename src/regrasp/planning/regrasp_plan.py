@@ -82,7 +82,9 @@ class RegraspPlan(ArrayValue):
             for name in grasp.names:
                 if name in places:
                     continue
-                idle = next(i for i, at in enumerate(places) if at not in grasp.names)
+                idle = next((i for i, at in enumerate(places) if at not in grasp.names), None)
+                if idle is None:
+                    raise InvalidInput(f"step {k + 1} has more contacts than there are fingers: {name}")
                 origin = str(places[idle])
                 moves.append(FingerMove(k, idle, where[origin], grasp[name].position, origin, name))
                 places[idle] = name

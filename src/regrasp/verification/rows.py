@@ -58,16 +58,23 @@ def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checke
     return Checked(violations, max(residuals), float(angles.min(initial=inf)), min(slacks))
 
 
-def verify_setpoints(plan: Plan, forces: Array, times: Array | None = None) -> Verification:
+def verify_setpoints(
+    plan: Plan, forces: Array, times: Array | None = None, angles: Array | None = None
+) -> Verification:
     """Check sampled forces (m, n, d) of a plan, the numbers that a controller will be given.
 
     times: (m,) [s], needed where the plan's load varies; it is taken as linear between the plan's instants.
+    angles: (m,) of the object from the start [rad], needed where it turns; the load turns the other way.
     """
     start = plan.start
     n, d = start.forces.shape
     if forces.ndim != 3 or forces.shape[1:] != (n, d):
         return Verification((f"set-points must have shape (m, {n}, {d}), got {forces.shape}",), inf, 0, 0)
-    if plan.course is None:
+    if plan.turn is not None:
+        if angles is None:
+            return Verification(("set-points of an object that turns need its angles",), inf, 0, 0)
+        loads = _turned_loads(start.load, angles)
+    elif plan.course is None:
         loads = np.broadcast_to(start.load.vector, (len(forces), start.load.vector.size))
     elif times is None:
         return Verification(("set-points under a load that varies need their times",), inf, 0, 0)
@@ -78,3 +85,10 @@ def verify_setpoints(plan: Plan, forces: Array, times: Array | None = None) -> V
     return Verification(
         tuple(found.violations), found.worst_residual, found.least_angle, found.least_cone_slack
     )
+
+
+def _turned_loads(load: Wrench, angles: Array) -> Array:
+    """(m, 3) a planar load seen from an object at these angles."""
+    (fx, fy), torques = load.force, np.full(angles.shape, load.torque[0])
+    c, s = np.cos(angles), np.sin(angles)
+    return np.stack([c * fx + s * fy, c * fy - s * fx, torques], axis=-1)
