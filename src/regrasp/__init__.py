@@ -12,6 +12,7 @@ from regrasp.planning.batch import best_squeezes, locus_intervals
 from regrasp.planning.change import plan_addition, plan_removal
 from regrasp.planning.choice import choose_state
 from regrasp.planning.criteria import ChosenState
+from regrasp.planning.directions import HeldDirections, held_directions
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.locus import EquilibriumLocus
 from regrasp.planning.regrasp_plan import RegraspPlan
@@ -33,6 +34,7 @@ __all__ = [
     "EscapeTwist",
     "Grasp",
     "GraspState",
+    "HeldDirections",
     "Infeasible",
     "InvalidInput",
     "LoadSeries",
@@ -51,6 +53,7 @@ __all__ = [
     "Wrench",
     "best_squeezes",
     "choose_state",
+    "held_directions",
     "locus_intervals",
     "plan_addition",
     "plan_regrasp",
