@@ -5,8 +5,10 @@ what it draws. New axes belong to a figure of their own (``ax.figure``), as wide
 N, m and s unless ``units`` names others; numbers are never converted.
 """
 
+from regrasp.plots.directions import plot_directions
 from regrasp.plots.escape import plot_escape
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
+from regrasp.plots.hold_map import plot_hold_map
 from regrasp.plots.iso_torque import plot_iso_torque
 from regrasp.plots.load_history import plot_load
 from regrasp.plots.locus import plot_locus
@@ -34,7 +36,9 @@ __all__ = [
     "figures",
     "iso_torque_figure",
     "plot_angles",
+    "plot_directions",
     "plot_escape",
+    "plot_hold_map",
     "plot_iso_torque",
     "plot_load",
     "plot_locus",
