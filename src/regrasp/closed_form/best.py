@@ -12,7 +12,7 @@ the two best points where both are equal: a root of a linear or quadratic equati
 first); the others are bounded by themselves.
 """
 
-from math import atan, atan2, sqrt
+from math import inf, sqrt
 
 Line = tuple[float, float, float, float, float]
 """(p, q, g, h, mu) of a contact."""
@@ -47,9 +47,21 @@ def clamp(x: float, lo: float, hi: float) -> float:
 
 
 def angle_margin(line: Line, x: float) -> float:
-    """atan(mu) less the angle between the contact's force at x and its normal [rad]."""
+    """The tangent of atan(mu) less the angle of the contact's force at x, in its cone, to its normal."""
     p, q, g, h, mu = line
-    return atan(mu) - atan2(abs(g * x + h), p * x + q)
+    return margin_tangent(p * x + q, abs(g * x + h), mu)
+
+
+def margin_tangent(n: float, t: float, mu: float) -> float:
+    """tan(atan(mu) - atan2(t, n)) of normal force n and tangential force t >= 0; mu for no force.
+
+    It grows with the angle margin up to far outside the cone, where it is -inf, and is one division in place
+    of two arctangents.
+    """
+    below = n + mu * t
+    if below > 0.0:
+        return (mu * n - t) / below
+    return mu if n == 0.0 and t == 0.0 else -inf
 
 
 def best_angle(lo: float, hi: float, phi: float, a: float, b: float, first: Line, second: Line) -> float:

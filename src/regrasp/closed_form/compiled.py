@@ -41,6 +41,7 @@ def _compiled() -> dict[str, Any]:
 _names = _compiled()
 _squeeze_interval = _names["squeeze_interval"]
 _best_squeeze = _names["best_squeeze"]
+_margin_tangent = _names["margin_tangent"]
 
 # Numba's cache watches this file only; the digest in the loops' closures makes it watch the formulas too.
 _digest = sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in _MODULES)).hexdigest()

@@ -5,14 +5,14 @@ not depend on them is then computed once per pair, and the sixteen pairs of one 
 table that is laid out (orientations, pairs).
 """
 
-from math import atan2
+from math import atan
 from typing import Any
 
 import numpy as np
 from numba import njit, prange
 
 from regrasp.closed_form.choice import ANGLE
-from regrasp.closed_form.compiled import _best_squeeze, _digest
+from regrasp.closed_form.compiled import _best_squeeze, _digest, _margin_tangent
 
 _BLOCK = 16  # pairs whose margins share a cache line
 STRETCH = 4096
@@ -22,14 +22,14 @@ NO_HOLD = -1.0
 
 
 @njit(error_model="numpy", forceinline=True)
-def _side(nx, ny, half, fx, fy):  # type: ignore[no-untyped-def]
-    return half - atan2(abs(nx * fy - ny * fx), nx * fx + ny * fy)
+def _side(nx, ny, mu, fx, fy):  # type: ignore[no-untyped-def]
+    return _margin_tangent(nx * fx + ny * fy, abs(nx * fy - ny * fx), mu)
 
 
 @njit(error_model="numpy", forceinline=True)
 def _margin(candidates, i, j, fx, fy):  # type: ignore[no-untyped-def]
     """Widest least angle margin of a pair under a force through the origin, or ``NO_HOLD``."""
-    points, normals, mu, limits, ratio, half = candidates
+    points, normals, mu, limits, ratio = candidates
     _, f, _ = _best_squeeze(
         points[i, 0], points[i, 1], normals[i, 0], normals[i, 1], mu[i],
         points[j, 0], points[j, 1], normals[j, 0], normals[j, 1], mu[j],
@@ -37,9 +37,9 @@ def _margin(candidates, i, j, fx, fy):  # type: ignore[no-untyped-def]
     )  # fmt: skip
     if f[0] != f[0]:
         return np.float32(NO_HOLD)
-    a = _side(normals[i, 0], normals[i, 1], half[i], f[0], f[1])
-    b = _side(normals[j, 0], normals[j, 1], half[j], f[2], f[3])
-    return np.float32(max(min(a, b), 0.0))
+    a = _side(normals[i, 0], normals[i, 1], mu[i], f[0], f[1])
+    b = _side(normals[j, 0], normals[j, 1], mu[j], f[2], f[3])
+    return np.float32(atan(max(min(a, b), 0.0)))
 
 
 def _loops(digest: str) -> tuple[Any, Any]:

@@ -126,11 +126,11 @@ class HoldGraph:
 
     @property
     def _candidates(self) -> tuple[Any, ...]:
-        """Points, normals, frictions, limits, peak ratio and cone angles, as the compiled loops take them."""
+        """Points, normals, frictions, limits and peak ratio, as the compiled loops take them."""
         mu = np.array([c.friction for c in self.contacts])
         limits = np.array([inf if c.max_force is None else c.max_force for c in self.contacts])
         normals = np.array([c.normal for c in self.contacts])
-        return self._points, normals, mu, limits, float(self.peak_ratio), np.arctan(mu)
+        return self._points, normals, mu, limits, float(self.peak_ratio)
 
     @property
     def _loads(self) -> Array:
