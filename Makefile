@@ -19,6 +19,7 @@ test: $(VENV)/installed-dev
 bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py
 	$(BIN)/python benchmarks/programs.py
+	$(BIN)/python benchmarks/regrasps.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

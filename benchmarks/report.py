@@ -23,6 +23,9 @@ class Measure(Enum):
     FASTER = "{:.3g}x faster"
     RATE = "{:.3g} of the rate"
     SLOPE = "log-log slope {:.3g}"
+    SECONDS = "{:.3g} s"
+    BYTES = "{:.3g} bytes"
+    GIB = "{:.3g} GiB"
 
 
 @dataclass(frozen=True)
@@ -72,14 +75,19 @@ class Row:
         measure = Measure.SLOPE.name
         return cls(key, what, "itself", measure, ours, theirs, value, best, goal, value <= goal, limit)
 
+    @classmethod
+    def alone(cls, key: str, what: str, value: float, measure: Measure, goal: float, limit: str) -> "Row":
+        """A number that is compared with nothing but the most it may be."""
+        return cls(key, what, "", measure.name, value, value, value, value, goal, value <= goal, limit)
+
     def cells(self) -> tuple[str, ...]:
         """The row as text, one cell per column of ``COLUMNS``."""
         written = Measure[self.measure].value.format
         goal, verdict = "", ""
         if self.goal is not None:
-            bound = "at most" if self.measure in ("TIMES", "SLOPE") else "at least"
+            bound = "at least" if self.measure in ("FASTER", "RATE") else "at most"
             goal, verdict = f"{bound} {written(self.goal)}", "yes" if self.met else "**no**"
-        times = (_seconds(self.ours), _seconds(self.theirs))
+        times = (_seconds(self.ours), _seconds(self.theirs)) if self.against else ("", "")
         return (
             self.what,
             self.against,

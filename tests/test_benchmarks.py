@@ -78,3 +78,15 @@ def test_the_benchmark_of_programs_measures_every_row(tmp_path: Path) -> None:
     assert keys >= solved | {"growth_10_1000", "growth_100_1000", "road_cvxpy_warm", "road_cvxpy_cold"}
     for row in report["rows"]:
         assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "value")), row
+
+
+def test_the_benchmark_of_regrasps_measures_every_row(tmp_path: Path) -> None:
+    script = SCRIPT.with_name("regrasps.py")
+    subprocess.run([sys.executable, script, "--quick", "-o", tmp_path], check=True, capture_output=True)
+    report = json.loads((tmp_path / "results" / "regrasps.json").read_text(encoding="utf-8"))
+    assert [row["key"] for row in report["rows"]] == [
+        "sweep_numpy", "sweep_highs", "growth_points", "growth_orientations", "sequence", "bytes",
+        "widest_time", "widest_memory",
+    ]  # fmt: skip
+    for row in report["rows"]:
+        assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "goal")), row
