@@ -23,7 +23,16 @@ FLOORS: dict[str, Set[str]] = {
     "planning": {"errors", "display", "mechanics", "closed_form", "programs", "planning"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
-    "files": {"errors", "mechanics", "closed_form", "programs", "planning", "verification", "files"},
+    "files": {
+        "errors",
+        "mechanics",
+        "outline",
+        "closed_form",
+        "programs",
+        "planning",
+        "verification",
+        "files",
+    },
     "plots": {"errors", "mechanics", "outline", "closed_form", "planning", "plots"},
     "cli": {"", "errors", "mechanics", "planning", "verification", "files", "plots"},
     # regrasp/__init__.py: the public names

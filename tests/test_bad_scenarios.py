@@ -223,12 +223,12 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "kind missing": (
         edited(('kind = "removal"', "")),
         2,
-        ["task.kind: expected 'removal' or 'addition', found no such key"],
+        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', found no such key"],
     ),
     "kind not planned yet": (
-        edited(('kind = "removal"', 'kind = "rotation"')),
+        edited(('kind = "removal"', 'kind = "juggling"')),
         2,
-        ["task.kind: expected 'removal' or 'addition', got 'rotation'"],
+        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', got 'juggling'"],
     ),
     "unknown contact": (
         edited(('contact = "P3"', 'contact = "P4"')),
@@ -252,9 +252,9 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(("duration = 1.0", "time = 1.0")),
         2,
         [
-            "task.time: unknown key; known here: contact, objective, whole_objective, method, duration, "
-            "rate_limit, min_normal, path_objective, idle_time, instants, facets, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, kind"
+            "task.time: unknown key; known here: objective, method, duration, rate, scaling, control, "
+            "max_force, peak_ratio, reserve, balance_tolerance, contact, whole_objective, rate_limit, "
+            "min_normal, path_objective, idle_time, instants, facets, kind"
         ],
     ),
     "no duration": (
@@ -347,9 +347,9 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "contacts[0].normal[1]: expected a finite number, got nan",
             "contacts[0].friction: expected a number of at least 0, got -1",
             "task.rate: expected a number greater than 0, got 0",
-            "task.kin: unknown key; known here: contact, objective, whole_objective, method, duration, "
-            "rate_limit, min_normal, path_objective, idle_time, instants, facets, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, kind",
+            "task.kin: unknown key; known here: objective, method, duration, rate, scaling, control, "
+            "max_force, peak_ratio, reserve, balance_tolerance, contact, whole_objective, rate_limit, "
+            "min_normal, path_objective, idle_time, instants, facets, kind",
         ],
     ),
     # -- infeasible -------------------------------------------------------------------------------------

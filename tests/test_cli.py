@@ -309,7 +309,11 @@ def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
 def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = regrasp(capsys, "schema")
     assert (status, err) == (0, "")
-    assert set(json.loads(out)["required"]) == {"load", "contacts", "task"}
+    kinds = [json.loads(out)["$defs"][of["$ref"].rpartition("/")[2]] for of in json.loads(out)["anyOf"]]
+    assert [set(kind["required"]) for kind in kinds] == [
+        {"load", "contacts", "task"},
+        {"friction", "load", "outline", "start", "goal", "task"},
+    ]
 
 
 def test_command_line_starts_light(tmp_path: Path) -> None:

@@ -10,7 +10,10 @@ from regrasp import __version__
 from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverUnavailable
 
 if TYPE_CHECKING:
-    from regrasp.files import Scenario
+    from rich.progress import Progress
+
+    from regrasp.files import AnyScenario
+    from regrasp.planning.regrasp_plan import RegraspPlan
     from regrasp.planning.transition import Transition
     from regrasp.verification import Verification
 
@@ -68,7 +71,7 @@ def demo(output: Path) -> None:
 )
 @click.option("--no-figures", is_flag=True, help="Write plan.json and setpoints.csv only.")
 def plan(scenario: Path, output: Path, no_figures: bool) -> None:
-    """Plan the change of grasp in a SCENARIO.
+    """Plan the change of grasp, the turn or the whole regrasp in a SCENARIO.
 
     SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
     """
@@ -108,9 +111,9 @@ def schema() -> None:
     """
     import json
 
-    from regrasp.files import Scenario
+    from regrasp.files import scenario_schema
 
-    click.echo(json.dumps(Scenario.model_json_schema(), indent=2))
+    click.echo(json.dumps(scenario_schema(), indent=2))
 
 
 def main() -> None:
@@ -148,7 +151,7 @@ def _status(error: RegraspError) -> int:
 
 
 def _work(
-    scenario: "Scenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
+    scenario: "AnyScenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
 ) -> None:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
     from regrasp.files import plan_scenario, write_plan, write_setpoints
@@ -158,22 +161,26 @@ def _work(
     from regrasp.verification import verify
 
     rate, count = scenario.task.rate, 0
-    with naming(name):
-        transition = plan_scenario(scenario)
-        verdict = _verified(verify(transition), name)
-        for rows in setpoint_blocks(transition, rate):
-            _verified(checked(transition, rows), name)
+    with naming(name), _progress() as progress:
+        task = progress.add_task("planning", total=None)
+        planned = plan_scenario(scenario)
+        progress.update(task, description="verifying")
+        verdict = _verified(verify(planned), name)
+        progress.update(task, total=planned.duration * rate)
+        for rows in setpoint_blocks(planned, rate):
+            _verified(checked(planned, rows), name)
             count += rows.times.size
-    click.echo(f"{scenario.title}\n\n{transition}" if scenario.title else transition)
+            progress.update(task, completed=count)
+    click.echo(f"{scenario.title}\n\n{planned}" if scenario.title else planned)
     click.echo(f"{verdict}\neach of {count} set-points verified too")
 
     with whole_folder(output) as folder:
-        write_plan(transition, folder / "plan.json")
-        write_setpoints(transition, folder / "setpoints.csv", rate)
+        write_plan(planned, folder / "plan.json")
+        write_setpoints(planned, folder / "setpoints.csv", rate)
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:
-            _draw(transition, folder)
+            _draw(planned, folder)
         written = sorted(file.name for file in folder.iterdir())
     click.echo("")
     for file in written:
@@ -189,17 +196,25 @@ def _verified(verdict: "Verification", name: str | Path) -> "Verification":
     raise _Unverified("\n  ".join([f"{name}: does not verify:", *lines]))
 
 
-def _draw(transition: "Transition", folder: Path) -> None:
-    """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
+def _progress() -> "Progress":
+    """A display of how far something is, on stderr if that is a terminal."""
     from rich.console import Console
     from rich.progress import Progress
 
     console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("drawing figures", total=None)
-        from regrasp.plots.overview import figures
+    return Progress(console=console, transient=True, disable=not console.is_terminal)
 
-        drawn = figures(transition)
+
+def _draw(planned: "Transition | RegraspPlan", folder: Path) -> None:
+    """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
+    with _progress() as progress:
+        task = progress.add_task("drawing figures", total=None)
+        from regrasp.plots import overview
+
+        if hasattr(planned, "steps"):
+            drawn = {f"step_{k}": overview.transition_figure(step) for k, step in enumerate(planned.steps, 1)}
+        else:
+            drawn = overview.figures(planned)
         progress.update(task, total=len(drawn))
         for stem, figure in drawn.items():
             figure.savefig(folder / f"{stem}.png")

@@ -2,15 +2,19 @@
 
 from regrasp.files.plan_file import read_plan, write_plan
 from regrasp.files.planned import plan_scenario
-from regrasp.files.scenario import Scenario, parse_scenario, read_scenario
+from regrasp.files.regrasp_scenario import RegraspScenario
+from regrasp.files.scenario import AnyScenario, Scenario, parse_scenario, read_scenario, scenario_schema
 from regrasp.files.setpoints import write_setpoints
 
 __all__ = [
+    "AnyScenario",
+    "RegraspScenario",
     "Scenario",
     "parse_scenario",
     "plan_scenario",
     "read_plan",
     "read_scenario",
+    "scenario_schema",
     "write_plan",
     "write_setpoints",
 ]

@@ -1,12 +1,19 @@
 """From a scenario to its plan."""
 
+from math import radians
 from typing import Any, Literal
 
-from regrasp.files.scenario import Removal, Scenario
+from regrasp.files.regrasp_scenario import RegraspScenario
+from regrasp.files.scenario import AnyScenario, Change, Removal, Rotation, Scenario
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.change import plan_addition, plan_removal
 from regrasp.planning.loads import LoadSeries
+from regrasp.planning.reach import MAX_TURN
+from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.planning.regrasping import plan_regrasp
+from regrasp.planning.rotation import plan_rotation
 from regrasp.planning.transition import Transition
 
 # Keys of a task that the planner takes under the same name.
@@ -25,23 +32,66 @@ _OPTIONS = (
 )
 
 
-def plan_scenario(scenario: Scenario) -> Transition:
-    """The transition a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
-    task = scenario.task
+def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
+    """What a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
+    if isinstance(scenario, RegraspScenario):
+        return _regrasp(scenario)
+    task, load = scenario.task, scenario.external
+    if isinstance(task, Rotation):
+        return _rotation(scenario, task)
     options: dict[str, Any] = {key: getattr(task, key) for key in _OPTIONS}
-    load = scenario.external
     options["load"], options["rate_limit"] = load, task.rate_limit
     options["scaling"] = task.time_scaling
     if isinstance(load, LoadSeries):
         options["scaling"] = task.scaling_lasting(load.duration)
     elif task.rate_limit is not None and task.duration is None:
         straight = options | {"rate_limit": None, "path_objective": None, "idle_time": None}
-        options["scaling"] = _planned(scenario, **straight).fastest(task.rate_limit).scaling
-    return _planned(scenario, **options, idle_time=task.idle_time)
+        options["scaling"] = _planned(scenario, task, **straight).fastest(task.rate_limit).scaling
+    return _planned(scenario, task, **options, idle_time=task.idle_time)
 
 
-def _planned(scenario: Scenario, *, idle_time: float | None = None, **options: Any) -> Transition:
-    task, whole = scenario.task, scenario.grasp
+def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
+    task = scenario.task
+    return plan_regrasp(
+        scenario.outline.value,
+        scenario.start_grasp,
+        scenario.goal_grasp,
+        Wrench(scenario.load.force),
+        friction=scenario.friction,
+        orientations=task.orientations,
+        goal_orientation=radians(task.goal_degrees),
+        candidates=task.candidates,
+        objective=task.objective,
+        min_distance=task.min_distance,
+        max_force=task.max_force,
+        peak_ratio=task.peak_ratio,
+        reserve=task.reserve,
+        step_duration=task.step_duration,
+        max_turn=MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
+    )
+
+
+def _rotation(scenario: Scenario, task: Rotation) -> Transition:
+    whole = scenario.grasp
+    return plan_rotation(
+        _given(scenario, whole, "force") or whole,
+        task.angle,
+        load=scenario.wrench("start"),
+        end=_given(scenario, whole, "end_force"),
+        objective=task.objective,
+        method=task.method,
+        scaling=task.time_scaling,
+        max_force=task.max_force,
+        peak_ratio=task.peak_ratio,
+        reserve=task.reserve,
+        balance_tolerance=task.balance_tolerance,
+    )
+
+
+def _planned(
+    scenario: Scenario, task: Change, *, idle_time: float | None = None, **options: Any
+) -> Transition:
+    whole = scenario.grasp
     rest = whole.without(task.contact)
     if isinstance(task, Removal):
         start, end = _given(scenario, whole, "force"), _given(scenario, rest, "end_force")

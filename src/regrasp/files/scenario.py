@@ -2,15 +2,17 @@
 
 import tomllib
 from functools import cached_property
+from math import radians
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter, model_validator
 
 from regrasp.errors import InvalidInput
+from regrasp.files.keys import Control, Load, LoadEntry, Method, Name, Positive, Vector
+from regrasp.files.regrasp_scenario import RegraspScenario
 from regrasp.files.source import text_of
 from regrasp.files.strict import Strict, validated
-from regrasp.mechanics.checks import choice
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -20,40 +22,7 @@ from regrasp.planning.criteria import PEAK_RATIO, Objective
 from regrasp.planning.joined import PathObjective
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.timing import PAPER_CONTROL, TimeScaling
-from regrasp.programs import available_backends
-
-
-def _falling(values: list[float]) -> list[float]:
-    TimeScaling.spline(1.0, values)
-    return values
-
-
-def _known_method(value: str) -> str:
-    return choice(value, "method", ("auto", "closed-form", *available_backends()))
-
-
-Positive = Annotated[float, Field(gt=0)]
-Vector = Annotated[list[float], Field(min_length=2, max_length=2)]
-Control = Annotated[list[float], AfterValidator(_falling)]
-Name = Annotated[str, Field(min_length=1)]
-Method = Annotated[str, AfterValidator(_known_method)]
-
-
-class Load(Strict):
-    """The external wrench on the object, about its centre of mass."""
-
-    shape: ClassVar[str] = "table"
-
-    force: Vector = Field(description="[N], x and y in the object frame")
-    torque: float = Field(0.0, description="[N m], counter-clockwise")
-
-
-class LoadEntry(Load):
-    """The external wrench at a time; linear between entries."""
-
-    shape: ClassVar[str] = "list"
-
-    time: float = Field(ge=0, description="[s], from 0 to the end of the plan, rising")
+from regrasp.planning.turn import turned_load
 
 
 class ContactEntry(Strict):
@@ -85,30 +54,12 @@ class ContactEntry(Strict):
         return self
 
 
-class Change(Strict):
-    """What removal and addition have in common."""
+class Task(Strict):
+    """What all changes of one grasp have in common."""
 
-    contact: Name = Field(description="name of the finger that leaves or arrives")
-    objective: Objective = Field("angle", description="what the state without the finger is chosen for")
-    whole_objective: Objective = Field("force", description="what the state with it is chosen for")
+    objective: Objective = Field("angle", description="what states are chosen for")
     method: Method = Field("auto", description="'auto', 'closed-form' or a back end's name")
-    duration: Positive | None = Field(None, description="[s]; 1 unless rate_limit sets it")
-    rate_limit: Positive | None = Field(
-        None,
-        description="fastest change of any force [N/s]; without a duration the shortest is used",
-    )
-    min_normal: Annotated[float, Field(ge=0)] | None = Field(
-        None, description="least normal force of the fingers that stay [N]"
-    )
-    path_objective: PathObjective | None = Field(
-        None, description="what the path is planned for, instant by instant; Eq. 1-3 if absent and enough"
-    )
-    idle_time: Positive | None = Field(
-        None,
-        description="time [s] from which the leaving finger, or up to which the arriving one, has no force",
-    )
-    instants: int = Field(101, ge=3, description="instants of a path that is not straight")
-    facets: int | None = Field(None, ge=3, description="sides of polygons in the place of circles")
+    duration: Positive | None = Field(None, description="[s]; 1 unless something else sets it")
     rate: Positive = Field(1000.0, description="set-points per second")
     scaling: Literal["spline", "minimum_jerk", "linear"] = Field("spline", description="shape of T(t)")
     control: Control | None = Field(
@@ -144,10 +95,35 @@ class Change(Strict):
         return TimeScaling.spline(duration, PAPER_CONTROL if self.control is None else self.control)
 
     @model_validator(mode="after")
-    def _one_way_to_say_it(self) -> "Change":
+    def _one_way_to_say_it(self) -> "Task":
         if self.control is not None and self.scaling != "spline":
             raise ValueError(f"control belongs to scaling 'spline', got scaling {self.scaling!r}")
         return self
+
+
+class Change(Task):
+    """What removal and addition have in common."""
+
+    contact: Name = Field(description="name of the finger that leaves or arrives")
+    objective: Objective = Field("angle", description="what the state without the finger is chosen for")
+    whole_objective: Objective = Field("force", description="what the state with it is chosen for")
+    duration: Positive | None = Field(None, description="[s]; 1 unless rate_limit or the load sets it")
+    rate_limit: Positive | None = Field(
+        None,
+        description="fastest change of any force [N/s]; without a duration the shortest is used",
+    )
+    min_normal: Annotated[float, Field(ge=0)] | None = Field(
+        None, description="least normal force of the fingers that stay [N]"
+    )
+    path_objective: PathObjective | None = Field(
+        None, description="what the path is planned for, instant by instant; Eq. 1-3 if absent and enough"
+    )
+    idle_time: Positive | None = Field(
+        None,
+        description="time [s] from which the leaving finger, or up to which the arriving one, has no force",
+    )
+    instants: int = Field(101, ge=3, description="instants of a path that is not straight")
+    facets: int | None = Field(None, ge=3, description="sides of polygons in the place of circles")
 
 
 class Removal(Change):
@@ -162,8 +138,31 @@ class Addition(Change):
     kind: Literal["addition"]
 
 
+def _turned(degrees: float) -> float:
+    if degrees == 0:
+        raise ValueError("expected an angle other than 0, there is nothing to turn")
+    return degrees
+
+
+class Rotation(Task):
+    """The object turns in the hold of all its fingers."""
+
+    degrees: Annotated[float, AfterValidator(_turned)] = Field(
+        description="turn of the object, counter-clockwise, of any size"
+    )
+    kind: Literal["rotation"]
+
+    @property
+    def angle(self) -> float:
+        """The turn [rad]."""
+        return radians(self.degrees)
+
+
 class Scenario(Strict):
     """A planar object held by fingers under a load, and the change of grasp to plan."""
+
+    # Kinds of task that are planned from a scenario of another shape.
+    other_kinds: ClassVar[tuple[str, ...]] = ("regrasp",)
 
     title: str | None = Field(None, description="shown above the plan")
     load: Annotated[
@@ -171,7 +170,7 @@ class Scenario(Strict):
         Discriminator(lambda load: "list" if isinstance(load, list) else "table"),
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     contacts: list[ContactEntry] = Field(min_length=2)
-    task: Annotated[Removal | Addition, Field(discriminator="kind")]
+    task: Annotated[Removal | Addition | Rotation, Field(discriminator="kind")]
 
     @cached_property
     def grasp(self) -> Grasp:
@@ -189,6 +188,8 @@ class Scenario(Strict):
         """The load at an end of the task."""
         external = self.external
         if isinstance(external, Wrench):
+            if isinstance(self.task, Rotation) and end == "end":
+                return turned_load(external, self.task.angle)
             return external
         return external(0.0 if end == "start" else external.duration)
 
@@ -198,30 +199,45 @@ class Scenario(Strict):
             names = self.grasp.names
         except InvalidInput as error:
             raise ValueError(f"contacts: {error}") from None
-        if self.task.contact not in names:
-            raise ValueError(f"task.contact: expected one of {', '.join(names)}, got {self.task.contact!r}")
-        idle = "end_force" if self.task.kind == "removal" else "force"
+        task = self.task
+        if isinstance(task, Change) and task.contact not in names:
+            raise ValueError(f"task.contact: expected one of {', '.join(names)}, got {task.contact!r}")
         try:
             external = self.external
         except InvalidInput as error:
             raise ValueError(f"load: {error}") from None
-        if isinstance(external, LoadSeries) and self.task.duration not in (None, external.duration):
-            raise ValueError(
-                f"task.duration: expected {external.duration:g}, the last time of the load, or nothing; "
-                f"got {self.task.duration:g}"
-            )
-        problems = [*self._gaps("force", idle), *self._gaps("end_force", idle)]
+        problems = self._unfit_load(external)
+        idle = {"removal": "end_force", "addition": "force"}.get(task.kind)
+        problems += [*self._gaps("force", idle), *self._gaps("end_force", idle)]
         if problems:
             raise ValueError("\n".join(problems))
         return self
 
-    def _gaps(self, key: Literal["force", "end_force"], idle: str) -> list[str]:
+    def _unfit_load(self, external: Wrench | LoadSeries) -> list[str]:
+        """What keeps this load from going with this task."""
+        task = self.task
+        if isinstance(task, Rotation):
+            if isinstance(external, LoadSeries):
+                return ["load: a rotation needs one load, [load], which turns as seen from the object"]
+            if external.torque.any():
+                return [
+                    f"load.torque: a rotation needs a force through the centre of mass, without a torque; "
+                    f"got {external.torque[0]:g}"
+                ]
+        elif isinstance(external, LoadSeries) and task.duration not in (None, external.duration):
+            return [
+                f"task.duration: expected {external.duration:g}, the last time of the load, or nothing; "
+                f"got {task.duration:g}"
+            ]
+        return []
+
+    def _gaps(self, key: Literal["force", "end_force"], idle: str | None) -> list[str]:
         """Forces given for some of the contacts that need one, or for the finger that has none."""
         place: dict[bool, list[int]] = {True: [], False: []}
         problems = []
         for i, entry in enumerate(self.contacts):
             given = getattr(entry, key) is not None
-            if key == idle and entry.name == self.task.contact:
+            if key == idle and isinstance(self.task, Change) and entry.name == self.task.contact:
                 if given:
                     verb = "leaves, so it ends" if key == "end_force" else "arrives, so it starts"
                     problems.append(f"contacts[{i}].{key}: {entry.name} {verb} without force; leave it out")
@@ -235,7 +251,10 @@ class Scenario(Strict):
         return problems
 
 
-def read_scenario(path: str | Path) -> Scenario:
+AnyScenario = Scenario | RegraspScenario
+
+
+def read_scenario(path: str | Path) -> AnyScenario:
     """The scenario of a TOML file.
 
     Raises one ``InvalidInput`` that names the file and lists every problem, each with its key, what was
@@ -245,10 +264,21 @@ def read_scenario(path: str | Path) -> Scenario:
     return parse_scenario(text_of(path, "a scenario in TOML"), path)
 
 
-def parse_scenario(text: str, file: str | Path = "scenario") -> Scenario:
-    """The scenario of a text in TOML; ``file`` is the name that errors give. Raises as ``read_scenario``."""
+def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
+    """The scenario of a text in TOML; ``file`` is the name that errors give. Raises as ``read_scenario``.
+
+    Files that the text names are relative to the folder of ``file``.
+    """
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{file}: not TOML: {error}") from None
+    task = data.get("task")
+    if isinstance(task, dict) and task.get("kind") == "regrasp":
+        return validated(RegraspScenario, data, file)
     return validated(Scenario, data, file)
+
+
+def scenario_schema() -> dict[str, Any]:
+    """The JSON Schema of scenarios of every kind."""
+    return TypeAdapter(AnyScenario).json_schema()

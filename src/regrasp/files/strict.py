@@ -36,9 +36,12 @@ _EXPECTED = {
 
 
 def validated(model: type[Model], data: Any, file: str | Path) -> Model:
-    """``data`` as a ``model``. Raises one ``InvalidInput`` that lists every problem, a line each."""
+    """``data`` as a ``model``. Raises one ``InvalidInput`` that lists every problem, a line each.
+
+    Validators find the folder of ``file`` in their context.
+    """
     try:
-        return model.model_validate(data)
+        return model.model_validate(data, context={"folder": Path(file).parent})
     except ValidationError as error:
         lines = [
             f"{file}: {line}" for problem in error.errors() for line in _in_words(model, problem).splitlines()
@@ -56,7 +59,8 @@ def _in_words(model: type[BaseModel], problem: Mapping[str, Any]) -> str:
     if kind == "extra_forbidden":
         return f"{where}unknown key; known here: {', '.join(models[0].model_fields)}"
     if kind in ("union_tag_invalid", "union_tag_not_found"):
-        tags, name = [_tag(m) for m in models], context["discriminator"].strip("'")
+        tags = [*(_tag(m) for m in models), *getattr(model, "other_kinds", ())]
+        name = context["discriminator"].strip("'")
         got = f", got {context['tag']!r}" if "tag" in context else ", found no such key"
         return f"{where.removesuffix(': ')}.{name}: expected {' or '.join(map(repr, tags))}{got}"
     if kind in _EXPECTED:

@@ -1,0 +1,207 @@
+"""The scenario of a whole regrasp: an outline, where the fingers start and where they are to be."""
+
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+
+from regrasp.errors import InvalidInput
+from regrasp.files.keys import Positive, Vector
+from regrasp.files.strict import Strict
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.outline.outline import Outline
+from regrasp.outline.parts import PARTS
+from regrasp.planning.criteria import PEAK_RATIO, Objective
+from regrasp.planning.reach import MAX_TURN
+
+Ring = Annotated[list[Vector], Field(min_length=3)]
+
+_SHAPES = ("vertices", "points", "ellipse", "part", "file")
+
+# A position farther from the outline than this fraction of its length is in other coordinates or units.
+_NEAR = 0.05
+
+# A goal this near to one of the orientations is that one [degrees].
+_SAME_DEGREES = 1e-6
+
+
+class Weight(Strict):
+    """The external force on the object, through its centre of mass and fixed in the world."""
+
+    force: Vector = Field(description="[N], x and y in the object frame before it turns")
+
+
+class OutlineEntry(Strict):
+    """The boundary of the object, in one of five ways."""
+
+    vertices: Ring | None = Field(None, description="[m], of a polygon, in either direction")
+    points: Ring | None = Field(None, description="[m], of a smooth curve through them")
+    ellipse: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = Field(
+        None, description="[m], half axes along x and y"
+    )
+    part: Literal["wrench", "cam", "gear", "bracket", "bottle", "puzzle_piece"] | None = Field(
+        None, description="a part that comes with regrasp"
+    )
+    file: Annotated[str, Field(min_length=1)] | None = Field(
+        None, description="SVG, DXF or coordinates (CSV, TXT, DAT), relative to the scenario"
+    )
+    holes: list[Ring] = Field(
+        [], description="[m], vertices of holes, of an outline from vertices, points or ellipse"
+    )
+    scale: Positive | None = Field(None, description="metres per unit of the file; 1 if absent")
+
+    _value: Outline = PrivateAttr()
+
+    @property
+    def value(self) -> Outline:
+        """The outline."""
+        return self._value
+
+    @model_validator(mode="after")
+    def _is_an_outline(self, info: ValidationInfo) -> "OutlineEntry":
+        given = [shape for shape in _SHAPES if getattr(self, shape) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"expected exactly one of {', '.join(_SHAPES)}, found {', '.join(given) or 'none of them'}"
+            )
+        problems = []
+        if self.holes and given[0] in ("part", "file"):
+            problems.append(f"holes go with vertices, points or ellipse; a {given[0]} has its own")
+        if self.scale is not None and given[0] != "file":
+            problems.append(f"scale goes with file, found {given[0]}")
+        if problems:
+            raise ValueError("\n".join(problems))
+        try:
+            self._value = self._made((info.context or {}).get("folder", Path()))
+        except (InvalidInput, ImportError) as error:
+            raise ValueError(str(error)) from None
+        return self
+
+    def _made(self, folder: Path) -> Outline:
+        if self.vertices is not None:
+            return Outline(self.vertices, self.holes)
+        if self.points is not None:
+            return Outline.smooth(self.points, self.holes)
+        if self.ellipse is not None:
+            return Outline.ellipse(*self.ellipse, holes=self.holes)
+        if self.part is not None:
+            return PARTS[self.part]()
+        return Outline.from_file(folder / str(self.file), scale=1.0 if self.scale is None else self.scale)
+
+
+class Places(Strict):
+    """Where three fingers touch: by arc lengths or by positions."""
+
+    arc_lengths: Annotated[list[float], Field(min_length=3, max_length=3)] | None = Field(
+        None, description="[m], counter-clockwise along the outline from its first vertex"
+    )
+    positions: Annotated[list[Vector], Field(min_length=3, max_length=3)] | None = Field(
+        None, description="[m], relative to the centre of mass; fingers touch at the nearest boundary points"
+    )
+
+    @model_validator(mode="after")
+    def _one_way_to_say_it(self) -> "Places":
+        if (self.arc_lengths is None) == (self.positions is None):
+            found = "neither" if self.positions is None else "both"
+            raise ValueError(f"expected either arc_lengths or positions, found {found}")
+        return self
+
+
+class RegraspTask(Strict):
+    """How to get from the start to the goal."""
+
+    kind: Literal["regrasp"]
+    orientations: int = Field(72, ge=1, description="angles of the object that are tried; 1 forbids turning")
+    goal_degrees: float = Field(
+        0.0, description="the object's angle in the end, counter-clockwise; one of the orientations"
+    )
+    candidates: int = Field(120, ge=1, description="points on the outline where fingers may touch")
+    max_turn_degrees: Annotated[float, Field(gt=0, lt=180)] | None = Field(
+        None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"
+    )
+    min_distance: float = Field(0.0, ge=0, description="[m], between two fingers that hold the object")
+    objective: Objective = Field("angle", description="what the state of every hold is chosen for")
+    max_force: Positive | None = Field(None, description="limit on every force [N]")
+    peak_ratio: float = Field(
+        PEAK_RATIO,
+        ge=1,
+        description="without max_force, forces stay below this multiple of the least peak force that holds",
+    )
+    reserve: float = Field(
+        RESERVE, ge=0, lt=1, description="fraction of the friction that planning keeps back"
+    )
+    step_duration: Positive = Field(1.0, description="[s] of each step")
+    rate: Positive = Field(1000.0, description="set-points per second")
+
+    @model_validator(mode="after")
+    def _goal_is_tried(self) -> "RegraspTask":
+        step = 360 / self.orientations
+        if abs((self.goal_degrees + step / 2) % step - step / 2) > _SAME_DEGREES:
+            raise ValueError(
+                f"goal_degrees must be a multiple of 360 / orientations = {step:g}, got {self.goal_degrees:g}"
+            )
+        return self
+
+
+class RegraspScenario(Strict):
+    """A planar object with its outline, three fingers on it, and where they are to be."""
+
+    title: str | None = Field(None, description="shown above the plan")
+    friction: float = Field(ge=0, description="Coulomb coefficient all along the outline")
+    load: Weight
+    outline: OutlineEntry
+    start: Places
+    goal: Places
+    task: RegraspTask
+
+    @cached_property
+    def start_grasp(self) -> Grasp:
+        """The three contacts before the regrasp."""
+        return Grasp(self._contacts("start"))
+
+    @cached_property
+    def goal_grasp(self) -> Grasp:
+        """The three contacts after it."""
+        return Grasp(self._contacts("goal"))
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> "RegraspScenario":
+        problems = []
+        for end in ("start", "goal"):
+            try:
+                _ = self.start_grasp if end == "start" else self.goal_grasp
+            except InvalidInput as error:
+                lines = str(error).splitlines()
+                problems += [line if line.startswith(end) else f"{end}: {line}" for line in lines]
+        if problems:
+            raise ValueError("\n".join(problems))
+        return self
+
+    def _contacts(self, end: Literal["start", "goal"]) -> list[Contact]:
+        places: Places = getattr(self, end)
+        contacts, problems = [], []
+        key = "positions" if places.arc_lengths is None else "arc_lengths"
+        for i, place in enumerate(getattr(places, key)):
+            try:
+                s = place if key == "arc_lengths" else self._nearest(place)
+                contacts.append(self.outline.value.contact_at(s, friction=self.friction))
+            except InvalidInput as error:
+                problems.append(f"{end}.{key}[{i}]: {error}")
+        if problems:
+            raise InvalidInput("\n".join(problems))
+        return contacts
+
+    def _nearest(self, position: list[float]) -> float:
+        outline = self.outline.value
+        s = outline.nearest(np.array(position) + outline.centre_of_mass)
+        off = float(np.linalg.norm(outline.points(s) - position))
+        if off > _NEAR * outline.length:
+            raise InvalidInput(
+                f"({position[0]:g}, {position[1]:g}) is {off:.3g} m from the outline; "
+                f"positions are relative to its centre of mass, in metres"
+            )
+        return s
