@@ -5,6 +5,7 @@ what it draws. New axes belong to a figure of their own (``ax.figure``), as wide
 N, m and s unless ``units`` names others; numbers are never converted.
 """
 
+from regrasp.plots.animation import animate
 from regrasp.plots.directions import plot_directions
 from regrasp.plots.escape import plot_escape
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
@@ -32,6 +33,7 @@ from regrasp.plots.wrench_space import plot_locus_segment, plot_wrench_cone, plo
 __all__ = [
     "SI",
     "Units",
+    "animate",
     "contact_colours",
     "figures",
     "iso_torque_figure",
