@@ -175,7 +175,9 @@ def test_another_first_vertex_shifts_the_arc_length(radii, k) -> None:
 def test_samples_keep_their_clearance(radii, count, clearance) -> None:
     outline = rg.Outline(star(radii))
     evenly = (np.arange(count) + 0.5) * outline.length / count
-    away = abs(evenly[:, None] - np.append(outline.boundary.corners, outline.length)).min(axis=1)
+    corners = outline.boundary.corners
+    around = np.concatenate([corners - outline.length, corners, corners + outline.length])
+    away = abs(evenly[:, None] - around).min(axis=1)
     s = outline.sample(count, clearance=clearance)
     kept = np.isclose(evenly[:, None], s, rtol=1e-12).any(axis=1)
     assert (away[kept] >= clearance * (1 - 1e-12)).all()
