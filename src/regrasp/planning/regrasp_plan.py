@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import ArrayValue
@@ -29,7 +30,7 @@ class FingerMove(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RegraspPlan(ArrayValue):
+class RegraspPlan(ArrayValue, Pictured):
     """Transitions that carry an object from one three-finger grasp to another.
 
     steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most three.
@@ -40,6 +41,8 @@ class RegraspPlan(ArrayValue):
     steps: tuple[Transition, ...]
     orientations: tuple[float, ...]
     margin: float
+
+    _drawn_by = "regrasp.plots.regrasp:regrasp_png"
 
     @property
     def duration(self) -> float:

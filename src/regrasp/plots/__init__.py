@@ -23,6 +23,7 @@ from regrasp.plots.overview import (
     transition_figure,
     transition_png,
 )
+from regrasp.plots.regrasp import plot_regrasp
 from regrasp.plots.sensitivity import plot_sensitivity
 from regrasp.plots.style import contact_colours
 from regrasp.plots.timing import plot_scaling
@@ -48,6 +49,7 @@ __all__ = [
     "plot_magnitudes",
     "plot_margins",
     "plot_outline",
+    "plot_regrasp",
     "plot_scaling",
     "plot_sensitivity",
     "plot_state",

@@ -48,7 +48,8 @@ class Moment:
 class Stage:
     """What every moment of a plan is drawn with: the object's shape, and scales that fit all of it."""
 
-    def __init__(self, steps: Sequence[Transition], outline: Outline | None) -> None:
+    def __init__(self, steps: Sequence[Transition], outline: Outline | None, heads: float = 9.0) -> None:
+        self.heads = heads
         points = np.concatenate([step.grasp.positions for step in steps])
         if outline is None:
             self.rings: list[Array] = []
@@ -68,8 +69,8 @@ class Stage:
             for f in [*forces, *(s.load(0.0)[:2] for s in steps)]
         )
         self.scale = _LONGEST * self.size / (longest or 1.0)
-        heads = [step.grasp.positions + self.scale * f for step, f in zip(steps, forces, strict=True)]
-        out = max(float(np.hypot(*np.moveaxis(h, -1, 0)).max()) for h in heads)
+        reached = [step.grasp.positions + self.scale * f for step, f in zip(steps, forces, strict=True)]
+        out = max(float(np.hypot(*np.moveaxis(h, -1, 0)).max()) for h in reached)
         load = self.scale * max(float(np.hypot(*s.load(0.0)[:2])) for s in steps)
         self.reach = 1.06 * max(self.radius * 1.2, out, load)
 
@@ -80,7 +81,15 @@ class Stage:
         self._object(ax, moment)
         ax.plot(0, 0, "o", color="white", markeredgecolor=INK, markersize=4, zorder=4)
         if moment.load.any():
-            arrow(ax, (0, 0), self.scale * moment.load, gid="load", color=INK, zorder=4, linewidth=1.0)
+            arrow(
+                ax,
+                (0, 0),
+                self.scale * moment.load,
+                gid="load",
+                color=INK,
+                zorder=4,
+                mutation_scale=self.heads,
+            )
         for finger in moment.fingers:
             self._finger(ax, finger)
 
@@ -123,6 +132,7 @@ class Stage:
                 gid=f"force {finger.number}",
                 color=colour,
                 zorder=6,
+                mutation_scale=self.heads,
             )
 
     def label(self, ax: Axes, finger: Finger, text: str) -> None:

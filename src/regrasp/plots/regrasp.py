@@ -1,0 +1,109 @@
+"""A whole regrasp, step by step."""
+
+from math import ceil, degrees
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.outline.outline import Outline
+from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.plots.arrows import arrow
+from regrasp.plots.overview import png
+from regrasp.plots.style import (
+    GREY,
+    SMALL,
+    TEXT,
+    WIDTH,
+    label_axis,
+    new_figure,
+    note,
+    refuse_space,
+    short,
+    tidy,
+)
+from regrasp.plots.units import SI, Units
+from regrasp.plots.world import Finger, Stage, moment_of
+
+_COLUMNS = 4
+_PANEL = WIDTH / 2  # [in]
+_ROOM = 1.5  # for the words beside the fingers
+
+
+def plot_regrasp(plan: RegraspPlan, outline: Outline | None = None, *, units: Units = SI) -> Figure:
+    """Every step of a regrasp side by side in the world frame, each as it begins, and the end.
+
+    Beside the fingers stands who leaves and who arrives in the step; a grey arc is the turn of the object
+    during it. A filled finger pushes: arrows are its force on the object, all at one scale; black is the
+    load. Without an outline the hull of all contacts stands for the object. Raises ``InvalidInput`` for a
+    grasp in space.
+    """
+    if not isinstance(plan, RegraspPlan):
+        raise InvalidInput(f"plan must be a RegraspPlan, got {type(plan).__name__}; see plot_transition")
+    refuse_space(plan.steps[0].grasp.dimension)
+    stage, count = Stage(plan.steps, outline, heads=6), len(plan.steps) + 1
+    rows = ceil(count / _COLUMNS)
+    columns = ceil(count / rows)
+    side = _ROOM * stage.reach
+    figure = new_figure(_PANEL * columns, (_PANEL + 0.25) * rows)
+    for k in range(count):
+        ax = tidy(figure.add_subplot(rows, columns, k + 1))
+        ax.set_gid(f"step {k + 1}")
+        if k < len(plan.steps):
+            _step(ax, plan, k, stage)
+        else:
+            stage.draw(ax, moment_of(plan, k - 1, plan.steps[-1].duration))
+            ax.set_title("end" + _at(plan.orientations[-1]), fontsize=TEXT, loc="left")
+        first, last = k % columns == 0, k >= count - columns
+        ax.tick_params(labelsize=SMALL - 1, labelleft=first, labelbottom=last)
+        if first:
+            label_axis(ax.yaxis, "$y$", units.length, stage.size)
+        if last:
+            label_axis(ax.xaxis, "$x$", units.length, stage.size)
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+        ax.set(xlim=(-side, side), ylim=(-side, side))
+    return figure
+
+
+def regrasp_png(plan: RegraspPlan) -> bytes:
+    """``plot_regrasp`` as a PNG image, for display in notebooks."""
+    return png(plot_regrasp(plan))
+
+
+def _step(ax: Axes, plan: RegraspPlan, k: int, stage: Stage) -> None:
+    step = plan.steps[k]
+    moment = moment_of(plan, k, 0.0)
+    stage.draw(ax, moment)
+    for finger, name in _named(moment.fingers, plan.fingers[k]):
+        if name in step.idle_at_end:
+            stage.label(ax, finger, "leaves")
+        elif name in step.idle_at_start:
+            stage.label(ax, finger, "arrives")
+    turn = plan.orientations[k + 1] - plan.orientations[k]
+    if turn:
+        _draw_turn(ax, moment.angle, turn, 0.3 * stage.size)
+    title = f"{k + 1} {step.kind}" + _at(plan.orientations[k])
+    ax.set_title(title, fontsize=TEXT, loc="left")
+
+
+def _named(fingers: tuple[Finger, ...], names: tuple[str | None, ...]) -> list[tuple[Finger, str]]:
+    return [(finger, str(names[finger.number])) for finger in fingers]
+
+
+def _at(angle: float) -> str:
+    return f", {short(round(degrees(angle), 1))}\N{DEGREE SIGN}" if angle else ""
+
+
+def _draw_turn(ax: Axes, start: float, turn: float, radius: float) -> None:
+    """An arc from the object's x axis to where it will be."""
+    angles = start + np.linspace(0, turn, max(8, ceil(abs(turn) / 0.05)))
+    arc: Array = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    ax.plot(*arc[:-2].T, color=GREY, linewidth=1.4, zorder=3)
+    arrow(ax, arc[-3], arc[-1], gid="turn", color=GREY, zorder=3, mutation_scale=7)
+    middle = arc[len(arc) // 2]
+    sign = "+" if turn > 0 else ""
+    note(ax, f"{sign}{short(round(degrees(turn), 1))}\N{DEGREE SIGN}", middle, middle, gap=3, color=GREY)
