@@ -34,7 +34,7 @@ FLOORS: dict[str, Set[str]] = {
         "files",
     },
     "plots": {"errors", "mechanics", "outline", "closed_form", "planning", "plots"},
-    "cli": {"", "errors", "mechanics", "planning", "verification", "files", "plots"},
+    "cli": {"", "errors", "mechanics", "outline", "planning", "verification", "files", "plots"},
     # regrasp/__init__.py: the public names
     "": {"errors", "mechanics", "outline", "planning", "verification"},
     "__main__": {"cli"},

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
     from regrasp.files import AnyScenario
+    from regrasp.outline.outline import Outline
     from regrasp.planning.regrasp_plan import RegraspPlan
     from regrasp.planning.transition import Transition
     from regrasp.verification import Verification
@@ -154,7 +155,7 @@ def _work(
     scenario: "AnyScenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
 ) -> None:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
-    from regrasp.files import plan_scenario, write_plan, write_setpoints
+    from regrasp.files import RegraspScenario, plan_scenario, write_plan, write_setpoints
     from regrasp.files.setpoints import checked, setpoint_blocks
     from regrasp.files.source import naming
     from regrasp.files.staging import whole_folder
@@ -180,7 +181,8 @@ def _work(
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:
-            _draw(planned, folder)
+            outline = scenario.outline.value if isinstance(scenario, RegraspScenario) else None
+            _draw(planned, outline, folder)
         written = sorted(file.name for file in folder.iterdir())
     click.echo("")
     for file in written:
@@ -205,17 +207,23 @@ def _progress() -> "Progress":
     return Progress(console=console, transient=True, disable=not console.is_terminal)
 
 
-def _draw(planned: "Transition | RegraspPlan", folder: Path) -> None:
+def _draw(planned: "Transition | RegraspPlan", outline: "Outline | None", folder: Path) -> None:
     """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
     with _progress() as progress:
         task = progress.add_task("drawing figures", total=None)
+        from regrasp.planning.regrasp_plan import RegraspPlan
         from regrasp.plots import overview
 
-        if hasattr(planned, "steps"):
-            drawn = {f"step_{k}": overview.transition_figure(step) for k, step in enumerate(planned.steps, 1)}
+        if isinstance(planned, RegraspPlan):
+            from regrasp.plots.regrasp import plot_regrasp
+
+            drawn = {"overview": plot_regrasp(planned, outline)}
+            for k, step in enumerate(planned.steps, 1):
+                drawn[f"step_{k}"] = overview.transition_figure(step)
+                progress.update(task, total=len(planned.steps), completed=k)
         else:
             drawn = overview.figures(planned)
-        progress.update(task, total=len(drawn))
+        progress.update(task, description="saving figures", total=len(drawn), completed=0)
         for stem, figure in drawn.items():
             figure.savefig(folder / f"{stem}.png")
             progress.advance(task)

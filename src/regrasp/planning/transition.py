@@ -109,8 +109,9 @@ class Transition(ArrayValue, Pictured):
         if wanted is None:
             raise InvalidInput(f"kind must be one of {', '.join(_FINGERS)}, got {self.kind!r}")
         if wanted != (self.contact is not None, self.arrival is not None):
+            article = "an" if self.kind[0] in "ae" else "a"
             raise InvalidInput(
-                f"a {self.kind} names the wrong fingers: {self.contact!r} and {self.arrival!r}"
+                f"{article} {self.kind} names the wrong fingers: {self.contact!r} and {self.arrival!r}"
             )
         if self.contact is not None:
             self.grasp.index(self.contact)
