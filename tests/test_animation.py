@@ -88,6 +88,12 @@ def test_a_transition_and_a_page(tmp_path):
     assert moments(as_regrasp(turn), 4, 0.5, 2.0)[-1][1].load == pytest.approx(STATE.load.force)
 
 
+def test_titles_tell_the_time_in_its_unit():
+    removal = rg.plan_removal(STATE, "P3", duration=2e-4)
+    titles = [title for title, _ in moments(as_regrasp(removal), 2e4, 0.5, 9.0, plots.Units(time="ms"))]
+    assert titles == [f"{t} ms: removal of P3" for t in ("0", "5e−05", "0.0001", "0.00015", "0.0002")]
+
+
 def test_bad_requests(tmp_path, monkeypatch):
     removal = rg.plan_removal(STATE, "P3")
     with pytest.raises(rg.InvalidInput, match=r"path must end in \.gif, \.html or \.mp4"):

@@ -1,7 +1,7 @@
 """A plan as a film: GIF, HTML page or MP4."""
 
 from collections.abc import Sequence
-from math import ceil, pi
+from math import ceil, floor, log10, pi
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -50,7 +50,7 @@ def animate(
     whole = as_regrasp(plan)
     refuse_space(whole.steps[0].grasp.dimension)
     stage = Stage(whole.steps, outline)
-    frames = moments(whole, rate, number(move_time, "move_time", least=0), stage.radius)
+    frames = moments(whole, rate, number(move_time, "move_time", least=0), stage.radius, units)
     film = _film(stage, frames, rate, units)
     if ending == ".html":
         target.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
@@ -60,7 +60,9 @@ def animate(
     return target
 
 
-def moments(plan: RegraspPlan, rate: float, move_time: float, radius: float) -> list[tuple[str, Moment]]:
+def moments(
+    plan: RegraspPlan, rate: float, move_time: float, radius: float, units: Units = SI
+) -> list[tuple[str, Moment]]:
     """What every frame shows: a title and a moment; fingers move before the step they are needed in.
 
     radius: of the object [m], around which they move.
@@ -77,7 +79,7 @@ def moments(plan: RegraspPlan, rate: float, move_time: float, radius: float) -> 
                 move.target - lift * normals[move.target_name],
             ]
             count = max(2, ceil(move_time * rate)) if move_time else 0
-            title = f"{short(round(elapsed, 2))} s: a finger moves"
+            title = f"{short(_rounded(elapsed, plan))} {units.time}: a finger moves"
             frames += [
                 (title, _moving(plan, k, idle, move, _way(ends[0], ends[1], far, u)))
                 for u in np.linspace(0, 1, count).tolist()
@@ -86,13 +88,19 @@ def moments(plan: RegraspPlan, rate: float, move_time: float, radius: float) -> 
         what = step.kind if step.contact is None else f"{step.kind} of {step.contact}"
         what += f" for {step.arrival}" if step.arrival else ""
         for t in np.linspace(0, step.duration, max(2, ceil(step.duration * rate) + 1)).tolist():
-            title = f"{short(round(elapsed + t, 2))} s: {what}".replace("$", r"\$")
+            title = f"{short(_rounded(elapsed + t, plan))} {units.time}: {what}".replace("$", r"\$")
             frames.append((title, moment_of(plan, k, t, idle)))
         elapsed += step.duration
         for number_, name in enumerate(plan.fingers[k]):
             if name is not None and name in step.idle_at_end:
                 idle[number_] = step.grasp[name].position - lift * normals[name]
     return frames
+
+
+def _rounded(t: float, plan: RegraspPlan) -> float:
+    """A time to show, to a thousandth of the plan's."""
+    step = 10.0 ** floor(log10(plan.duration) - 2)
+    return float(f"{round(t / step) * step:.6g}")
 
 
 def _moving(plan: RegraspPlan, k: int, idle: dict[int, Array], move: FingerMove, at: Array) -> Moment:
