@@ -159,3 +159,14 @@ def test_a_peak_ratio_of_one_is_the_least_peak(objective: str) -> None:
 
 def test_idle_means_the_same_to_formulas_and_margins() -> None:
     assert best.IDLE == margins.IDLE == 2.0**-40  # type: ignore[attr-defined]
+
+
+def test_a_finger_that_rounding_would_make_pull_is_idle() -> None:
+    """The load passes through P1; P2 can push nothing and its force across is 7e-16 on the wrong side."""
+    outline = rg.Outline.ellipse(2, 1)
+    grasp = rg.Grasp(outline.contact_at(s * outline.length, friction=0.5) for s in (0.5, 0.85))
+    for load in (rg.Wrench([-3, 0]), rg.Wrench([0, -3.0]).rotated(-np.pi / 2)):
+        state = rg.choose_state(grasp, load)
+        assert state.in_use == ("P1",)
+        assert not state.forces[1].any()
+        assert state.is_balanced()

@@ -80,7 +80,12 @@ def best_squeeze(
                 x = best_friction_use(lo, hi, phi, a, b, first, second)
             else:
                 x = best_force(lo, hi, first, second)
-    # Each force by its own bounds: rounding of a large force would carry a small one out of its cone.
-    x = clamp(x, lo1, hi1)
+    # Each force by its own bounds: rounding of a large force would carry a small one out of its cone. Where
+    # rounding of the force across leaves no bounds at all, only the apex is left: that finger is idle.
     y = clamp(-(x + phi), lo2, hi2)
+    x = clamp(x, lo1, hi1)
+    if lo1 > hi1:
+        x, a = 0.0, 0.0
+    if lo2 > hi2:
+        y, b = 0.0, 0.0
     return x, (x * ux - a * uy, x * uy + a * ux, y * ux - b * uy, y * uy + b * ux), (limit1, limit2)
