@@ -20,7 +20,7 @@ from regrasp.planning.balancing import (
     scaling_of,
 )
 from regrasp.planning.choice import choose_forces
-from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria
+from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria, criteria_of
 from regrasp.planning.joined import Demands, joined
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.timing import TimeScaling
@@ -79,8 +79,8 @@ def plan_removal(
     Raises ``Infeasible`` with the escape twist where the fingers cannot hold the load, or with the limit that
     no path keeps, and ``InvalidInput`` for given states that are no equilibrium inside the cones.
     """
-    criteria = Criteria(objective, max_force, peak_ratio, reserve)
-    whole_criteria = Criteria(whole_objective, max_force, peak_ratio, reserve)
+    criteria = criteria_of(objective, max_force, peak_ratio, reserve)
+    whole_criteria = criteria_of(whole_objective, max_force, peak_ratio, reserve)
     number(balance_tolerance, "balance_tolerance", least=0)
     demands = Demands.of(rate_limit, min_normal, path_objective, idle_from, instants, method, facets)
     series, clock = _series_and_clock(load, duration, scaling, demands)
@@ -131,8 +131,8 @@ def plan_addition(
     """
     if not isinstance(contact, Contact):
         raise InvalidInput(f"contact must be the Contact that arrives, got {contact!r}")
-    criteria = Criteria(objective, max_force, peak_ratio, reserve)
-    whole_criteria = Criteria(whole_objective, max_force, peak_ratio, reserve)
+    criteria = criteria_of(objective, max_force, peak_ratio, reserve)
+    whole_criteria = criteria_of(whole_objective, max_force, peak_ratio, reserve)
     number(balance_tolerance, "balance_tolerance", least=0)
     demands = Demands.of(rate_limit, min_normal, path_objective, idle_until, instants, method, facets)
     series, clock = _series_and_clock(load, duration, scaling, demands)

@@ -5,7 +5,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria
+from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria, criteria_of
 from regrasp.planning.locus import best_forces
 
 DEFAULT_BACKEND = "clarabel"
@@ -40,7 +40,7 @@ def choose_state(
     if not isinstance(grasp, Grasp):
         raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
     check_load(grasp, load)
-    criteria = Criteria(objective, max_force, peak_ratio, reserve)
+    criteria = criteria_of(objective, max_force, peak_ratio, reserve)
     return ChosenState(grasp, load, criteria, choose_forces(grasp, load, criteria, method, facets))
 
 

@@ -1,7 +1,7 @@
 """What a state is chosen for, and under which limits."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import inf
 from typing import Literal, NamedTuple
 
@@ -71,6 +71,19 @@ class Criteria:
                 f"objective {self.objective!r} under a zero load needs max_force: any squeeze holds it, "
                 f"so no force follows from the load"
             )
+
+
+@lru_cache(maxsize=256, typed=True)
+def _known(objective: str, max_force: float | None, peak_ratio: float, reserve: float) -> Criteria:
+    return Criteria(objective, max_force, peak_ratio, reserve)
+
+
+def criteria_of(objective: str, max_force: float | None, peak_ratio: float, reserve: float) -> Criteria:
+    """``Criteria``, checked once for the same arguments: planning takes microseconds."""
+    try:
+        return _known(objective, max_force, peak_ratio, reserve)
+    except TypeError:  # not hashable: the check says what is wrong
+        return Criteria(objective, max_force, peak_ratio, reserve)
 
 
 class ChosenForces(NamedTuple):
