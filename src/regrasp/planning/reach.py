@@ -22,6 +22,9 @@ from numpy.typing import NDArray
 from regrasp.mechanics.checks import Array
 from regrasp.planning.holds import HoldGraph
 
+# Margins of a graph are in single precision.
+_ALIKE = 1e-6
+
 Hold = tuple[int, int, int]
 """Two contacts and an orientation, by their places in the graph."""
 
@@ -75,9 +78,14 @@ class Search:
         """The sequence of one step a level to a hold within ``goal`` at orientation ``o``, or None."""
         k = len(self.levels) - 1
         ends = [(self._value(k, (i, j, o)), (i, j, o)) for i, j in combinations(sorted(goal), 2)]
-        value, hold = max(ends, default=(-1.0, None))
-        if hold is None or value < 0:
+        value = max(reached for reached, _ in ends)
+        if value < 0:
             return None
+        # Of holds that are as good but for rounding, the widest; of these the first.
+        good = [hold for reached, hold in ends if reached >= value - _ALIKE]
+        widest = max(self.graph.margin(*hold) for hold in good)
+        hold = next(hold for hold in good if self.graph.margin(*hold) >= widest - _ALIKE)
+        value = self._value(k, hold)
         holds = [hold]
         while k > 0:
             hold = self._before(k, hold, value)
@@ -103,7 +111,7 @@ class Search:
         enough = value - 1e-9
         for v in (i, j):
             there = np.flatnonzero(self.near[o] & (level[:, v] >= enough))
-            found += [(self.apart[o, at], v, int(at)) for at in there]
+            found += [(round(self.apart[o, at], 9), v, int(at)) for at in there]
         for _, v, at in sorted(found):
             if k == 1:
                 others = [a + b - v for a, b, _ in self.start if v in (a, b) and at == 0]
