@@ -379,3 +379,17 @@ def cp_worst_margin(plan):
     problem = cp.Problem(cp.Maximize(t), held)
     problem.solve(solver=cp.CLARABEL)
     return problem.value
+
+
+def test_a_margin_asked_for_is_kept_or_its_bound_told():
+    options = {"friction": 0.5, "orientations": 12}
+    usual = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **options)
+    safe = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, least_margin=0.9 * usual.margin, **options)
+    assert safe.margin >= 0.9 * usual.margin
+    with pytest.raises(rg.Infeasible, match="the widest worst margin on the sampled points") as refused:
+        rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, least_margin=0.46, **options)
+    widest = float(str(refused.value).split()[-2])
+    plans = rg.plan_regrasps(ELLIPSE, START, GOAL, WEIGHT, extra=12, **options)
+    assert widest == pytest.approx(plans[-1].margin, rel=1e-3)
+    with pytest.raises(rg.InvalidInput, match="least_margin must be at least 0"):
+        rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, least_margin=-1.0, **options)

@@ -32,6 +32,10 @@ MAX_TURN = 2 * pi / 3
 """Default largest turn during one exchange [rad]: forces grow by 1 / cos(turn / 2) = 2 at most on the way."""
 
 
+MOST_STEPS = 12
+"""Most steps between two holds that are searched."""
+
+
 @dataclass(frozen=True)
 class Sequence:
     """Holds one after the other, and the least of their margins [rad]."""
@@ -131,7 +135,7 @@ def sequences(
     goal_orientation: int = 0,
     *,
     max_turn: float = MAX_TURN,
-    most_exchanges: int = 12,
+    most_steps: int = MOST_STEPS,
     extra: int = 0,
 ) -> list[Sequence]:
     """The sequence of fewest steps from a hold within ``start`` to one within ``goal``, of widest margin.
@@ -141,7 +145,7 @@ def sequences(
     search = Search(graph, start, max_turn)
     found: list[Sequence] = []
     more = bool(search.start)
-    for _ in range(most_exchanges + 1):
+    for _ in range(most_steps + 1):
         sequence = search.best(goal, goal_orientation)
         if sequence is not None and (not found or sequence.margin > found[-1].margin + 1e-9):
             found.append(sequence)

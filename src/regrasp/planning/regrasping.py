@@ -14,7 +14,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.balancing import with_limit
 from regrasp.planning.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.holds import Filter, HoldGraph, evenly
-from regrasp.planning.reach import MAX_TURN, sequences
+from regrasp.planning.reach import MAX_TURN, MOST_STEPS, sequences
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.regrasp_steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.timing import TimeScaling
@@ -36,6 +36,7 @@ def plan_regrasp(
     objective: str = "angle",
     states: str = "each",
     max_turn: float = MAX_TURN,
+    least_margin: float = 0.0,
     min_distance: float = 0.0,
     keep: Filter | None = None,
     max_force: float | None = None,
@@ -55,6 +56,7 @@ def plan_regrasp(
     objective: what the state of every hold is chosen for, each by itself. states: ``each``, or ``joint``: all
     states in one program, for the widest worst force margin and then the least change of force.
     max_turn: largest turn during one exchange [rad].
+    least_margin: angle margin [rad] that every hold must have at the least; more steps may be needed for it.
     min_distance [m], keep: which two fingers may hold together. max_force, peak_ratio, reserve: as for
     ``choose_state``. step_duration: [s] of each step.
 
@@ -75,6 +77,7 @@ def plan_regrasp(
         objective=objective,
         states=states,
         max_turn=max_turn,
+        least_margin=least_margin,
         min_distance=min_distance,
         keep=keep,
         max_force=max_force,
@@ -97,6 +100,7 @@ def plan_regrasps(
     objective: str = "angle",
     states: str = "each",
     max_turn: float = MAX_TURN,
+    least_margin: float = 0.0,
     min_distance: float = 0.0,
     keep: Filter | None = None,
     max_force: float | None = None,
@@ -128,9 +132,19 @@ def plan_regrasps(
     )
     graph = HoldGraph(kept, load, angles, peak_ratio, number(min_distance, "min_distance", least=0), keep)
     last = int(np.argmin(abs((angles - goal_orientation + pi) % (2 * pi) - pi)))
-    found = sequences(graph, ends.start, ends.goal, last, max_turn=max_turn, extra=extra)
+    least = number(least_margin, "least_margin", least=0)
+    found = sequences(
+        graph, ends.start, ends.goal, last, max_turn=max_turn, extra=extra if least == 0 else MOST_STEPS
+    )
     if not found:
         raise Infeasible(_why_not(graph, ends, last))
+    safe = [sequence for sequence in found if sequence.margin >= least]
+    if not safe:
+        raise Infeasible(
+            f"no sequence of holds keeps angle margins of {least:.4g} rad; the widest worst margin on the "
+            f"sampled points and orientations is {found[-1].margin:.4g} rad"
+        )
+    found = [sequence for sequence in safe if len(sequence.holds) <= len(safe[0].holds) + extra]
     scaling = TimeScaling.spline(step_duration)
     plans = []
     for sequence in found:
