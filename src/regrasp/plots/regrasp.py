@@ -30,7 +30,7 @@ from regrasp.plots.world import Finger, Stage, moment_of
 
 _COLUMNS = 4
 _PANEL = WIDTH / 2  # [in]
-_ROOM = 1.5  # for the words beside the fingers
+_ROOM = 1.15  # for the words beside the fingers
 
 
 def plot_regrasp(plan: RegraspPlan, outline: Outline | None = None, *, units: Units = SI) -> Figure:
