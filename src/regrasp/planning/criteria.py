@@ -30,8 +30,9 @@ class Criteria:
     (least largest force), ``peak_normal`` (least largest normal force), ``friction_use`` (least largest
     fraction of the friction available).
     max_force: a limit on every force [N] besides the contacts' own, or None.
-    peak_ratio: where a contact has no limit, ``angle``, ``force`` and ``friction_use`` limit it to this
-    multiple (at least 1) of the least peak force with which the grasp holds the load.
+    peak_ratio: where any contact has no limit, ``angle``, ``force`` and ``friction_use`` limit all of them
+    to this multiple (at least 1) of the least peak force with which the grasp holds the load, or to a
+    contact's own limit if that is smaller.
     reserve: fraction of every friction coefficient kept back.
     """
 
