@@ -20,7 +20,7 @@ FLOORS: dict[str, Set[str]] = {
     "closed_form": {"closed_form"},
     "programs": {"errors", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
-    "planning": {"errors", "display", "mechanics", "closed_form", "programs", "planning"},
+    "planning": {"errors", "display", "mechanics", "closed_form", "outline", "programs", "planning"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "files": {

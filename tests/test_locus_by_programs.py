@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from cones import distance_to_cones, slack
 from paper import GRASP, LOAD, STATE
 from regrasp.planning.locus_program import locus_program, solved_interval
 from regrasp.programs import Cone, available_backends
@@ -71,8 +72,8 @@ def test_the_program_in_numbers():
     assert program.q.tolist() == [1.0, 0.0, 0.0, 0.0]
     assert [block.cone for block in program.blocks] == [Cone.ZERO, Cone.NONNEGATIVE]
     at_end = np.array([2.0, 1.0, -2.0, 1.0]) / 2
-    assert program.distance_to_cones(program.slack(at_end)) < 1e-15
-    assert program.distance_to_cones(program.slack(0.99 * at_end)) > 1e-3
+    assert distance_to_cones(program, slack(program, at_end)) < 1e-15
+    assert distance_to_cones(program, slack(program, 0.99 * at_end)) > 1e-3
     same(solved_interval(locus), (2.0, np.inf), 1e-8, 1.0)
     with pytest.raises(rg.InvalidInput, match="end must be one of lo, hi; got 'top'"):
         locus_program(locus, "top")

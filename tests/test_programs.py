@@ -3,6 +3,7 @@ import logging
 import numpy as np
 import pytest
 
+from cones import distance_to_cones, slack
 from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
 from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
 from regrasp.programs import backends as table
@@ -256,12 +257,12 @@ def test_distance_to_cones_measures_each_kind():
     rows.second_order(np.zeros((6, 1)), size=3)
     program = rows.program([0.0])
     inside = np.array([0.0, 1.0, 0.0, 5.0, 3.0, 4.0, 0.0, 0.0, 0.0])
-    assert program.distance_to_cones(inside) == 0
+    assert distance_to_cones(program, inside) == 0
 
     def moved(place, by, dual=False):
         outside = inside.copy()
         outside[place] += by
-        return program.distance_to_cones(outside, dual=dual)
+        return distance_to_cones(program, outside, dual=dual)
 
     assert moved(0, 0.5) == 0.5
     assert moved(0, 0.5, dual=True) == 0
@@ -305,3 +306,26 @@ def test_matrices_in_another_format_are_refused():
         )
     with pytest.raises(InvalidInput, match="Clarabel has no setting 'speed'"):
         solve(projection_on_simplex(np.ones(2))[0], "clarabel", speed=3)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_compiled_audit_measures_what_numpy_does(seed):
+    from regrasp.programs.audit import audited
+
+    rng = np.random.default_rng(seed)
+    rows = Rows(5)
+    rows.equal(rng.normal(size=(2, 5)), rng.normal(size=2))
+    rows.at_least_zero(rng.normal(size=(3, 5)), rng.normal(size=3))
+    rows.second_order(rng.normal(size=(6, 5)), rng.normal(size=6), size=3)
+    root = rng.normal(size=(5, 5))
+    program = rows.program(rng.normal(size=5), root @ root.T)
+    x, z = rng.normal(size=5), rng.normal(size=11)
+    found = audited(program, x, z)
+    px, az = program.P @ x, program.A.T @ z
+    assert found.slack_violation == pytest.approx(distance_to_cones(program, slack(program, x)))
+    assert found.ray_violation == pytest.approx(distance_to_cones(program, -(program.A @ x)))
+    assert found.dual_violation == pytest.approx(distance_to_cones(program, z, dual=True))
+    assert found.stationarity == pytest.approx(abs(px + program.q + az).max())
+    assert (found.px, found.az) == pytest.approx((abs(px).max(), abs(az).max()))
+    assert (found.xpx, found.qx, found.bz) == pytest.approx((x @ px, program.q @ x, program.b @ z))
+    assert found.z_length == pytest.approx(np.linalg.norm(z))

@@ -597,8 +597,8 @@ def test_parts_of_scenarios_are_the_parts_there_are() -> None:
 
 START_POINT = "[-0.01, -0.007]"
 TASK_KEYS = (
-    "kind, orientations, goal_degrees, candidates, max_turn_degrees, min_distance, objective, max_force, "
-    "peak_ratio, reserve, step_duration, rate"
+    "kind, orientations, goal_degrees, candidates, max_turn_degrees, min_distance, objective, states, "
+    "least_margin_degrees, max_force, peak_ratio, reserve, step_duration, rate"
 )
 
 
@@ -704,3 +704,11 @@ def test_examples_from_file_to_files(name: str, capsys: pytest.CaptureFixture[st
     status, _, err = regrasp(capsys, "verify", tmp_path / "out")
     assert status == 1
     assert "not in equilibrium" in err
+
+
+def test_states_together_and_a_least_margin_reach_the_planner() -> None:
+    kind = 'kind = "regrasp"'
+    joint = plan_scenario(scenario((kind, f'{kind}\nstates = "joint"')))
+    assert joint.steps[1].record.choices[0].objective == "joint force"
+    with pytest.raises(rg.Infeasible, match=r"keeps angle margins of 1\.396 rad"):
+        plan_scenario(scenario((kind, f"{kind}\nleast_margin_degrees = 80.0")))

@@ -71,6 +71,18 @@ def test_given_ends_are_kept():
     assert plan.record.choices == ()
 
 
+@pytest.mark.parametrize("load", [WEIGHT, turned_load(WEIGHT, -0.5), 2 * turned_load(WEIGHT, 0.5)])
+def test_an_end_under_another_load_or_of_other_contacts_is_refused(load):
+    for end in (
+        rg.choose_state(GRASP, load),
+        rg.choose_state(GRASP.subset(["B", "A"]), turned_load(WEIGHT, 0.5)),
+    ):
+        with pytest.raises(
+            rg.InvalidInput, match="end must be a state of the same contacts under the load seen"
+        ):
+            rg.plan_rotation(GRASP, 0.5, load=WEIGHT, end=end)
+
+
 def test_a_turn_through_orientations_that_cannot_be_held():
     """Fact 3: two states less than pi apart hold what no state chosen between them was asked for."""
     shelf = rg.Grasp([rg.Contact([-1, -1], [0, 1], 0.9), rg.Contact([1, -1], [0, 1], 0.9)])
@@ -96,6 +108,8 @@ def test_force_limits_hold_on_the_way():
 
 def test_the_verifier_finds_a_wrong_turn():
     plan = rg.plan_rotation(GRASP, 2.0, load=WEIGHT)
+    with pytest.raises(rg.InvalidInput, match="a turning path holds the load that turns with it"):
+        rg.verify(plan, lambda t: WEIGHT)
     angles, forces = plan.turn.angles, plan.turn.forces
 
     def verdict(**changes):

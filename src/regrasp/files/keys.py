@@ -23,6 +23,14 @@ Positive = Annotated[float, Field(gt=0)]
 Vector = Annotated[list[float], Field(min_length=2, max_length=2)]
 Control = Annotated[list[float], AfterValidator(_falling)]
 Name = Annotated[str, Field(min_length=1)]
+PeakRatio = Annotated[
+    float,
+    Field(
+        ge=1,
+        description="without max_force, forces stay below this multiple of the least peak force that holds",
+    ),
+]
+Reserve = Annotated[float, Field(ge=0, lt=1, description="fraction of the friction that planning keeps back")]
 Method = Annotated[str, AfterValidator(_known_method)]
 
 

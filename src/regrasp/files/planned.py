@@ -17,18 +17,25 @@ from regrasp.planning.rotation import plan_rotation
 from regrasp.planning.transition import Transition
 
 # Keys of a task that the planner takes under the same name.
-_OPTIONS = (
-    "objective",
+_STATE_OPTIONS = ("objective", "method", "max_force", "peak_ratio", "reserve", "balance_tolerance")
+_CHANGE_OPTIONS = (
+    *_STATE_OPTIONS,
     "whole_objective",
-    "method",
-    "max_force",
-    "peak_ratio",
-    "reserve",
-    "balance_tolerance",
     "min_normal",
     "path_objective",
     "instants",
     "facets",
+)
+_REGRASP_OPTIONS = (
+    "orientations",
+    "candidates",
+    "objective",
+    "states",
+    "min_distance",
+    "max_force",
+    "peak_ratio",
+    "reserve",
+    "step_duration",
 )
 
 
@@ -39,7 +46,7 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
     task, load = scenario.task, scenario.external
     if isinstance(task, Rotation):
         return _rotation(scenario, task)
-    options: dict[str, Any] = {key: getattr(task, key) for key in _OPTIONS}
+    options = _taken(task, _CHANGE_OPTIONS)
     options["load"], options["rate_limit"] = load, task.rate_limit
     options["scaling"] = task.time_scaling
     if isinstance(load, LoadSeries):
@@ -58,16 +65,10 @@ def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
         scenario.goal_grasp,
         Wrench(scenario.load.force),
         friction=scenario.friction,
-        orientations=task.orientations,
         goal_orientation=radians(task.goal_degrees),
-        candidates=task.candidates,
-        objective=task.objective,
-        min_distance=task.min_distance,
-        max_force=task.max_force,
-        peak_ratio=task.peak_ratio,
-        reserve=task.reserve,
-        step_duration=task.step_duration,
+        least_margin=radians(task.least_margin_degrees),
         max_turn=MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
+        **_taken(task, _REGRASP_OPTIONS),
     )
 
 
@@ -78,14 +79,13 @@ def _rotation(scenario: Scenario, task: Rotation) -> Transition:
         task.angle,
         load=scenario.wrench("start"),
         end=_given(scenario, whole, "end_force"),
-        objective=task.objective,
-        method=task.method,
         scaling=task.time_scaling,
-        max_force=task.max_force,
-        peak_ratio=task.peak_ratio,
-        reserve=task.reserve,
-        balance_tolerance=task.balance_tolerance,
+        **_taken(task, _STATE_OPTIONS),
     )
+
+
+def _taken(task: Any, keys: tuple[str, ...]) -> dict[str, Any]:
+    return {key: getattr(task, key) for key in keys}
 
 
 def _planned(

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from regrasp.errors import InvalidInput
-from regrasp.files.keys import Positive, Vector
+from regrasp.files.keys import PeakRatio, Positive, Reserve, Vector
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -125,15 +125,11 @@ class RegraspTask(Strict):
     )
     min_distance: float = Field(0.0, ge=0, description="[m], between two fingers that hold the object")
     objective: Objective = Field("angle", description="what the state of every hold is chosen for")
+    states: Literal["each", "joint"] = Field("each", description="chosen each by itself, or all together")
+    least_margin_degrees: float = Field(0.0, ge=0, description="angle margin every hold must have")
     max_force: Positive | None = Field(None, description="limit on every force [N]")
-    peak_ratio: float = Field(
-        PEAK_RATIO,
-        ge=1,
-        description="without max_force, forces stay below this multiple of the least peak force that holds",
-    )
-    reserve: float = Field(
-        RESERVE, ge=0, lt=1, description="fraction of the friction that planning keeps back"
-    )
+    peak_ratio: PeakRatio = PEAK_RATIO
+    reserve: Reserve = RESERVE
     step_duration: Positive = Field(1.0, description="[s] of each step")
     rate: Positive = Field(1000.0, description="set-points per second")
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter, model_validator
 
 from regrasp.errors import InvalidInput
-from regrasp.files.keys import Control, Load, LoadEntry, Method, Name, Positive, Vector
+from regrasp.files.keys import Control, Load, LoadEntry, Method, Name, PeakRatio, Positive, Reserve, Vector
 from regrasp.files.regrasp_scenario import RegraspScenario
 from regrasp.files.source import text_of
 from regrasp.files.strict import Strict, validated
@@ -67,14 +67,8 @@ class Task(Strict):
         description=f"control values of the spline, falling from 1 to 0; {list(PAPER_CONTROL)} if absent",
     )
     max_force: Positive | None = Field(None, description="limit on every force [N]")
-    peak_ratio: float = Field(
-        PEAK_RATIO,
-        ge=1,
-        description="without max_force, forces stay below this multiple of the least peak force that holds",
-    )
-    reserve: float = Field(
-        RESERVE, ge=0, lt=1, description="fraction of the friction that planning keeps back"
-    )
+    peak_ratio: PeakRatio = PEAK_RATIO
+    reserve: Reserve = RESERVE
     balance_tolerance: float = Field(
         BALANCE_TOLERANCE,
         ge=0,

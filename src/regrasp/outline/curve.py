@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import ArrayValue
 
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _PANELS = 4  # to begin with, in each smooth stretch
 _HALVINGS, _STEPS = 30, 60
 
@@ -136,11 +135,12 @@ class CurveBoundary(ArrayValue):
 def _integrals(f: Function, a: Array, b: Array) -> Array:
     """(m, ...) the integrals of f from each a to each b."""
     half = (b - a) / 2
-    u = (a + b)[:, None] / 2 + half[:, None] * _GAUSS
+    gauss, weights = _gauss()
+    u = (a + b)[:, None] / 2 + half[:, None] * gauss
     values = f(u.ravel())
     values = values.reshape(*u.shape, *values.shape[1:])
     scale = half.reshape(-1, *[1] * (values.ndim - 2))
-    result: Array = scale * np.tensordot(values, _WEIGHTS, axes=([1], [0]))
+    result: Array = scale * np.tensordot(values, weights, axes=([1], [0]))
     return result
 
 
@@ -157,3 +157,10 @@ def _roots(f: Function, slope: Function, lo: Array, hi: Array) -> Array:
         if (moved <= 1e-15 * width).all():
             break
     return u
+
+
+@cache
+def _gauss() -> tuple[Array, Array]:
+    """Points and weights on [-1, 1]; worked out when the first curve is, not at import."""
+    points, weights = np.polynomial.legendre.leggauss(12)
+    return points, weights

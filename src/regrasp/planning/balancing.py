@@ -58,6 +58,11 @@ def limited(grasp: Grasp, max_force: float | None) -> Grasp:
     )
 
 
+def eased(grasp: Grasp, fraction: float) -> Grasp:
+    """The grasp with a fraction of every force limit, which leaves room for forces to grow in a turn."""
+    return Grasp(c if c.max_force is None else with_limit(c, fraction * c.max_force) for c in grasp)
+
+
 def with_limit(contact: Contact, limit: float) -> Contact:
     """The same contact with another force limit [N]."""
     return Contact(contact.position, contact.normal, contact.friction, max_force=limit, name=contact.name)

@@ -16,7 +16,7 @@ from regrasp.programs import Solution, Status, solve
 
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
 # 1e-10 and less, is inside the reserve and not beyond it.
-_SLACK = 1e-9
+SLACK = 1e-9
 # Limits beyond this many loads bind nothing that minimises forces, and spoil the scale of a program.
 LOOSE = 1e6
 # A solver's zero; whether forces exist is decided by finding them.
@@ -25,6 +25,11 @@ FEASIBLE = 1e-7
 _MOVED = 1e-5
 # A force below this fraction of the largest is a solver's noise at a finger that carries none.
 _IDLE = 1e-8
+
+
+def force_unit(grasp: Grasp, load: Wrench) -> float:
+    """The size of the load as a force [N], torque divided by the grasp's size; 0 without a load."""
+    return max(float(abs(load.force).max()), float(abs(load.torque).max()) / (grasp.size or 1.0))
 
 
 class Found(NamedTuple):
@@ -45,7 +50,7 @@ class Chooser:
         self.matrix, self.vector = grasp.matrix.copy(), load.vector.copy()  # torques divided by the size
         self.matrix[2] /= size
         self.vector[2] /= size
-        self.unit = max(float(abs(load.force).max()), float(abs(load.torque).max()) / size)
+        self.unit = force_unit(grasp, load)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
             self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
         self.loose = LOOSE * self.unit
@@ -61,10 +66,16 @@ class Chooser:
         return some
 
     def solved(
-        self, objective: str, frictions: list[float], limits: list[float], weights: Array | None = None
+        self,
+        objective: str,
+        frictions: list[float],
+        limits: list[float],
+        weights: Array | None = None,
+        *,
+        slack: float = SLACK,
     ) -> Solution:
         """The back end's answer to one of the convex objectives, in units of ``unit``."""
-        kept = 1 - _SLACK
+        kept = 1 - slack
         program = state_program(
             self.grasp,
             self.load,
@@ -80,6 +91,8 @@ class Chooser:
     def best(self, objective: str, frictions: list[float], limits: list[float]) -> Found | None:
         """The best forces for a convex objective; None where the back end says there are none."""
         answer = self.solved(objective, frictions, limits)
+        if answer.status is Status.INFEASIBLE:  # at the limit of what can be held the slack may be missed
+            answer = self.solved(objective, frictions, limits, slack=0.0)
         if answer.status is Status.INFEASIBLE:
             return None
         if answer.status is Status.UNBOUNDED:

@@ -58,6 +58,8 @@ class HoldGraph:
     def __post_init__(self) -> None:
         if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
             raise InvalidInput("a hold graph needs two planar contacts or more")
+        if not isinstance(self.load, Wrench):
+            raise InvalidInput(f"load must be a Wrench, got {self.load!r}; write Wrench(force=[...])")
         if self.load.dimension != 2 or self.load.torque.any() or not self.load.force.any():
             raise InvalidInput(
                 f"the load of a hold graph is a force through the centre of mass, got {self.load!r}"

@@ -114,10 +114,6 @@ def joined(
     grasp = start.grasp
     if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
         return Transition(kind, grasp.names[contact], start, end, scaling, record)
-    if grasp.dimension == 3 and (load is not None or demands.bends):
-        raise InvalidInput(
-            "paths through instants are planned for planar grasps so far; this one is in space"
-        )
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = np.arange(len(grasp)) != contact
     least[contact] = 0.0
@@ -133,9 +129,10 @@ def joined(
             return plan
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
         scaling = plan.scaling
-    elif scaling is None:
+    assert scaling is not None  # a load in time brings its clock
+    if grasp.dimension == 3:
         raise InvalidInput(
-            "rate_limit sets the duration of a straight path only; with a load in time give it"
+            "paths through instants are planned for planar grasps so far; this one is in space"
         )
     if demands.method == "closed-form":
         raise InvalidInput(

@@ -16,25 +16,20 @@ from scipy import sparse
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import choice
 from regrasp.planning.choice import DEFAULT_BACKEND
+from regrasp.planning.chooser import force_unit
 from regrasp.planning.locus import EquilibriumLocus
 from regrasp.planning.state_program import state_program
 from regrasp.programs import Program, Status, solve
 
 
 def locus_program(locus: EquilibriumLocus, end: Literal["lo", "hi"]) -> Program:
-    """The program whose least value is lo, or -hi, of the squeeze; forces in units of ``force_unit``."""
+    """The program whose least value is lo, or -hi, of the squeeze; forces in units of the load, or 1 N."""
     choice(end, "end", ("lo", "hi"))
     grasp = locus.grasp
-    held = state_program(grasp, locus.load, "effort", grasp.frictions.tolist(), [inf, inf], force_unit(locus))
+    held = state_program(grasp, locus.load, "effort", grasp.frictions.tolist(), [inf, inf], _unit(locus))
     q = np.zeros(4)
     q[:2] = locus.direction if end == "lo" else -locus.direction
     return replace(held, P=sparse.csc_matrix((4, 4)), q=q)
-
-
-def force_unit(locus: EquilibriumLocus) -> float:
-    """The size of the load [N], torque divided by the grasp's size; 1 without a load."""
-    load = locus.load
-    return max(float(abs(load.force).max()), float(abs(load.torque).max()) / (locus.grasp.size or 1.0)) or 1.0
 
 
 def solved_interval(locus: EquilibriumLocus, backend: str = DEFAULT_BACKEND) -> tuple[float, float]:
@@ -51,5 +46,9 @@ def solved_interval(locus: EquilibriumLocus, backend: str = DEFAULT_BACKEND) -> 
         if answer.status not in (Status.SOLVED, Status.UNBOUNDED):
             raise SolverFailed(f"{backend}: {answer.status.advice}", program, answer)
         unbounded = answer.status is Status.UNBOUNDED
-        ends[end] = sign * (-inf if unbounded else answer.objective * force_unit(locus))
+        ends[end] = sign * (-inf if unbounded else answer.objective * _unit(locus))
     return ends["lo"], ends["hi"]
+
+
+def _unit(locus: EquilibriumLocus) -> float:
+    return force_unit(locus.grasp, locus.load) or 1.0

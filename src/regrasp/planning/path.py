@@ -10,13 +10,12 @@ from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.chooser import SLACK
 from regrasp.planning.criteria import Criteria
 from regrasp.planning.escape import infeasible
 from regrasp.planning.path_program import PathTask, path_program
 from regrasp.programs import Solution, Status, solve
 
-# Fraction of friction and limits kept back, so that a solver's rounding stays inside them.
-_SLACK = 1e-9
 # Where an answer breaks a rate or a least normal force by rounding, twice the breach is kept back next.
 _ATTEMPTS = 4
 
@@ -30,7 +29,7 @@ def planned_path(
     margin the one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or
     the limit that stands in the way.
     """
-    slack = _SLACK
+    slack = SLACK
     for _ in range(_ATTEMPTS):
         answer = _best(_kept(task, slack), objective, criteria, backend, facets)
         forces = _exact(task, answer)
@@ -68,7 +67,7 @@ def _best(task: PathTask, objective: str, criteria: Criteria, backend: str, face
 
 
 def _kept(task: PathTask, slack: float) -> PathTask:
-    keep = 1 - _SLACK
+    keep = 1 - SLACK
     return replace(
         task,
         frictions=keep * task.frictions,

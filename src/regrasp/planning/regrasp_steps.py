@@ -12,7 +12,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.balancing import with_limit
+from regrasp.planning.balancing import eased
 from regrasp.planning.choice import choose_forces
 from regrasp.planning.criteria import Criteria
 from regrasp.planning.reach import Sequence
@@ -107,14 +107,10 @@ def _chosen(
     ease: float,
 ) -> Chosen:
     """The best forces of some contacts within a fraction ``ease`` of their limits."""
-    seen, given = turned_load(load, angle), [contacts[i] for i in places]
-    eased = Grasp(c if c.max_force is None else with_limit(c, ease * c.max_force) for c in given)
-    general = None if criteria.max_force is None else ease * criteria.max_force
-    best = choose_forces(eased, seen, replace(criteria, max_force=general))
+    seen, grasp = turned_load(load, angle), Grasp(contacts[i] for i in places)
+    best = choose_forces(eased(grasp, ease), seen, replace(criteria, max_force=None))
     forces = np.array(best.forces)
-    return Chosen(
-        places, angle, seen, Grasp(given), forces, best.force_limits, criteria.objective, best.method
-    )
+    return Chosen(places, angle, seen, grasp, forces, best.force_limits, criteria.objective, best.method)
 
 
 def _step(

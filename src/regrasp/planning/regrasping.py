@@ -1,7 +1,6 @@
 """Planning whole regrasps of a planar object: the candidates, the search, and why there is none."""
 
 from math import pi
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.mechanics.wrench import Wrench
+from regrasp.outline import Outline
 from regrasp.planning.balancing import with_limit
 from regrasp.planning.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.holds import Filter, HoldGraph, evenly
@@ -24,7 +24,7 @@ _SAME = 1e-9
 
 
 def plan_regrasp(
-    outline: Any,
+    outline: Outline,
     start: Grasp,
     goal: Grasp,
     load: Wrench,
@@ -88,7 +88,7 @@ def plan_regrasp(
 
 
 def plan_regrasps(
-    outline: Any,
+    outline: Outline,
     start: Grasp,
     goal: Grasp,
     load: Wrench,
@@ -114,7 +114,10 @@ def plan_regrasps(
     First that of ``plan_regrasp``, then those of up to ``extra`` more steps, each with a wider least margin
     than the one before it. Arguments and errors are those of ``plan_regrasp``.
     """
+    if not isinstance(outline, Outline):
+        raise InvalidInput(f"outline must be an Outline, got {outline!r}")
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
+    number(goal_orientation, "goal_orientation")
     number(step_duration, "step_duration", above=0)
     choice(states, "states", ("each", "joint"))
     if not 0 < number(max_turn, "max_turn") < pi:

@@ -16,10 +16,10 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.balancing import (
     BALANCE_TOLERANCE,
     balanced_start,
+    eased,
     grasp_and_load,
     limited,
     scaling_of,
-    with_limit,
 )
 from regrasp.planning.choice import choose_forces
 from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria
@@ -76,7 +76,7 @@ def plan_rotation(
         )
     grasp = limited(given, max_force)
     count = ceil(abs(turn) / STEP - 1e-9)
-    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2))
+    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9))
     choices: list[Choice] = []
     change = 0.0
     first: Array
@@ -94,6 +94,7 @@ def plan_rotation(
         last = np.array(best.forces)
         choices.append(Choice("end", objective, best.method, best.force_limits))
     else:
+        _refuse_other_end(end, given, last_load)
         state = GraspState(grasp, last_load, end.forces)
         balanced = balanced_start(state, criteria, balance_tolerance, "end")
         last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
@@ -111,6 +112,15 @@ def plan_rotation(
     return plan
 
 
+def _refuse_other_end(end: GraspState, grasp: Grasp, load: Wrench) -> None:
+    same = isinstance(end, GraspState) and end.grasp == grasp
+    if not same or abs(end.load.vector - load.vector).max() > 1e-9 * abs(load.vector).max():
+        raise InvalidInput(
+            f"end must be a state of the same contacts under the load seen from the turned object, {load!r}; "
+            f"got {end!r}"
+        )
+
+
 class _Chooser(NamedTuple):
     """Chooses states of one grasp at angles of the object."""
 
@@ -125,13 +135,9 @@ class _Chooser(NamedTuple):
         """The best forces after a turn by ``angle``, within eased limits if there are any."""
         grasp, criteria, load = self.grasp, self.criteria, turned_load(self.load, angle)
         if any(contact.max_force is not None for contact in grasp):
-            eased = [
-                c if c.max_force is None else with_limit(c, self.ease * c.max_force * (1 - 1e-9))
-                for c in grasp
-            ]
-            general = None if criteria.max_force is None else self.ease * criteria.max_force
+            less = eased(grasp, self.ease)
             try:
-                return choose_forces(Grasp(eased), load, replace(criteria, max_force=general), self.method)
+                return choose_forces(less, load, replace(criteria, max_force=None), self.method)
             except Infeasible:
                 pass  # the whole limits may do, and the path is checked in the end
         return choose_forces(grasp, load, criteria, self.method)

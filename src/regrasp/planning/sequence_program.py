@@ -18,12 +18,12 @@ from regrasp.errors import Infeasible, InvalidInput, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.chooser import Chooser
+from regrasp.planning.chooser import SLACK, Chooser
 from regrasp.planning.state_program import state_program
 from regrasp.programs import Program, Status, solve
 
-# Fraction of friction and limits kept back for a solver's rounding, and of the margin for the second program.
-_SLACK, _MARGIN_SLACK = 1e-9, 1e-7
+# Fraction of the widest margin that the second program may give up.
+_MARGIN = 1e-7
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
     kept = [
         replace(
             state,
-            frictions=[mu * (1 - _SLACK) for mu in state.frictions],
-            limits=[limit * (1 - _SLACK) for limit in state.limits],
+            frictions=[mu * (1 - SLACK) for mu in state.frictions],
+            limits=[limit * (1 - SLACK) for limit in state.limits],
         )
         for state in states
     ]
@@ -94,7 +94,7 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
     if widest.status is not Status.SOLVED:
         raise SolverFailed(f"{backend}: {widest.status.advice}", widest.program, widest)
     margin = float(widest.value[-1]) * unit
-    answer = solve(sequence_program(kept, unit, margin - _MARGIN_SLACK * abs(margin)), backend)
+    answer = solve(sequence_program(kept, unit, margin - _MARGIN * abs(margin)), backend)
     if answer.status is not Status.SOLVED:
         raise SolverFailed(f"{backend}: no least change at the widest margin", answer.program, answer)
     result, begin = [], 0

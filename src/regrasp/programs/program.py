@@ -89,29 +89,3 @@ class Program:
             (block, slice(int(end) - block.rows, int(end)))
             for block, end in zip(self.blocks, ends, strict=True)
         )
-
-    def objective(self, x: Array) -> float:
-        """1/2 x'Px + q'x."""
-        return float(0.5 * x @ (self.P @ x) + self.q @ x)
-
-    def slack(self, x: Array) -> Array:
-        """The slack s = b - A x, (m,)."""
-        result: Array = self.b - self.A @ x
-        return result
-
-    def distance_to_cones(self, s: Array, *, dual: bool = False) -> float:
-        """Largest violation of a cone by s, or of a dual cone.
-
-        Zero inside. Non-negative and second-order cones are their own duals; the zero cone's is everything.
-        """
-        worst = 0.0
-        for block, rows in self.slices:
-            part = s[rows]
-            if block.cone is Cone.NONNEGATIVE:
-                worst = max(worst, float((-part).max(initial=0.0)))
-            elif block.cone is Cone.SECOND_ORDER:
-                each = part.reshape(block.count, block.size)
-                worst = max(worst, float((np.linalg.norm(each[:, 1:], axis=1) - each[:, 0]).max(initial=0.0)))
-            elif not dual:
-                worst = max(worst, float(abs(part).max(initial=0.0)))
-        return worst

@@ -49,6 +49,8 @@ def verify(
         raise InvalidInput(f"verify needs a plan, got {plan!r}")
     if load is not None and not callable(load):
         raise InvalidInput(f"load must be the function of time the plan was made for, got {load!r}")
+    if load is not None and plan.turn is not None:
+        raise InvalidInput("a turning path holds the load that turns with it; leave load out")
     if curvature is not None:
         if load is None:
             raise InvalidInput("curvature bounds a load function: give load as well")
