@@ -10,6 +10,7 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.frames import tangent_pairs
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import torque
 
@@ -124,10 +125,17 @@ class Grasp(ArrayValue):
 
     @cached_property
     def tangents(self) -> Array:
-        """(n, 2), the normals turned left by a right angle; in the plane only."""
+        """(n, 2), the normals turned left by a right angle; in space two of each, (n, 2, 3) (``frames``)."""
         if self.dimension == 3:
-            raise InvalidInput("a contact in space has a tangent plane, not one tangent")
+            return read_only(tangent_pairs(self.normals))
         return read_only(np.column_stack([-self.normals[:, 1], self.normals[:, 0]]))
+
+    def tangential(self, forces: Array) -> Array:
+        """|f_t| of forces (..., n, d), (..., n) [N]."""
+        normal = (forces * self.normals).sum(axis=-1)
+        across = forces - normal[..., None] * self.normals
+        result: Array = np.sqrt((across * across).sum(axis=-1))
+        return result
 
     @cached_property
     def frictions(self) -> Array:

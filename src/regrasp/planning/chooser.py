@@ -33,7 +33,7 @@ def force_unit(grasp: Grasp, load: Wrench) -> float:
 
 
 class Found(NamedTuple):
-    """Forces (n, 2) in exact equilibrium [N] and how much better the best can be, at most."""
+    """Forces (n, d) in exact equilibrium [N] and how much better the best can be, at most."""
 
     forces: Array
     gap: float
@@ -48,8 +48,8 @@ class Chooser:
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         size = grasp.size or 1.0
         self.matrix, self.vector = grasp.matrix.copy(), load.vector.copy()  # torques divided by the size
-        self.matrix[2] /= size
-        self.vector[2] /= size
+        self.matrix[grasp.dimension :] /= size
+        self.vector[grasp.dimension :] /= size
         self.unit = force_unit(grasp, load)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
             self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
@@ -113,19 +113,19 @@ class Chooser:
         return Found(forces, answer.absolute_gap * (self.unit**2 if squared else self.unit))
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
-        """The answer's forces (n, 2) moved into equilibrium, inside cones and limits; None if none are.
+        """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are.
 
         The least change of all forces does, unless it leaves a cone.
         """
         return self.settled(self._wanted(answer), frictions, limits)
 
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
-        """Forces (n, 2) moved least into equilibrium, inside cones and limits; None if there are none."""
+        """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none."""
         grasp = self.grasp
         forces = self._shifted(wanted)
         if forces is not None:
             normal = (forces * grasp.normals).sum(axis=1)
-            tangential = abs((forces * grasp.tangents).sum(axis=1))
+            tangential = grasp.tangential(forces)
             inside = (normal >= 0) & (tangential <= np.array(frictions) * normal)
             if inside.all() and ((forces**2).sum(axis=1) <= np.array(limits) ** 2).all():
                 return forces
@@ -137,7 +137,8 @@ class Chooser:
         return nearest_equilibrium(forces, g.matrix, self.load.vector, g.normals, mu, limit, g.size or 1.0)
 
     def _wanted(self, answer: Solution) -> Array:
-        wanted: Array = answer.value[: 2 * len(self.grasp)].reshape(-1, 2)
+        d = self.grasp.dimension
+        wanted: Array = answer.value[: d * len(self.grasp)].reshape(-1, d)
         return wanted * self.unit
 
     def _shifted(self, forces: Array) -> Array | None:
@@ -148,7 +149,7 @@ class Chooser:
         sizes = abs(forces).max(axis=1)
         f, g = forces.ravel(), self.matrix
         if sizes.min() < _IDLE * sizes.max():
-            used = np.repeat(sizes >= _IDLE * sizes.max(), 2)
+            used = np.repeat(sizes >= _IDLE * sizes.max(), self.grasp.dimension)
             f, g = np.where(used, f, 0.0), np.where(used, g, 0.0)
         try:
             gram = np.linalg.inv(g @ g.T)

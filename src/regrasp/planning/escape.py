@@ -8,19 +8,22 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import Infeasible, SolverFailed
+from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import Criteria
+from regrasp.planning.nearest import cleared, gap_left
+
+# Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
+_REACHES = (1e2, 1e4)
+_NEARER = 0.1
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
     names = ", ".join(grasp.names)
-    if grasp.dimension == 3:
-        return Infeasible(f"no forces of {names} inside their friction cones and limits balance {load!r}")
     full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
     frictions, limits = full.frictions(grasp), full.limits(grasp)
     twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
@@ -38,6 +41,16 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             f"the object escapes by {twist}; the cones alone would hold it with larger forces",
             twist,
         )
+    limit = (
+        _only_in_the_limit(grasp, load, frictions) if grasp.dimension == 3 and min(limits) == inf else None
+    )
+    if limit is not None:
+        return Infeasible(
+            f"no forces of {names} inside their friction cones balance {load!r}, but only in the limit: "
+            f"forces of {_REACHES[0]:g} times the load miss it by {limit[0]:.2g} of the load, of "
+            f"{_REACHES[1]:g} times by {limit[1]:.2g}, so no motion proves it; the contacts would "
+            f"need a little more friction"
+        )
     return Infeasible(
         f"no forces of {names} that balance {load!r} were found with {criteria.reserve:g} of the friction "
         f"kept in reserve, and no motion proves that there are none without it: the load needs more friction "
@@ -48,23 +61,40 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
 def escape_twist(
     grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]
 ) -> EscapeTwist | None:
-    """The proven escape twist of a planar grasp, or None where none is found."""
-    weight = np.array([1.0, 1.0, 1 / grasp.size if grasp.size else 1.0])  # torques as forces
+    """The proven escape twist of a grasp, or None where none is found."""
+    d = grasp.dimension
+    weight = np.ones(load.vector.size)
+    weight[d:] = 1 / (grasp.size or 1.0)  # torques as forces
     target = -load.vector * weight
     unit = float(abs(target).max())
     if unit == 0:
         return None
-    if min(limits) < inf:
-        gaps = [_gap_with_limits(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
+    if min(limits) < inf or d == 3:
+        gaps = [gap_left(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
+        if d == 3:
+            gaps.append(cleared(grasp, gaps[0] * weight, frictions, limits) / weight)
     else:
         gaps = _gaps(_edge_wrenches(grasp, weight, frictions), target / unit)
     twists = [
         EscapeTwist(grasp, load, -gap * weight / float(abs(gap).max()), tuple(frictions), tuple(limits))
         for gap in gaps
-        if gap.any()
+        if gap.any() and np.isfinite(gap).all()
     ]
     best = max(twists, key=lambda twist: twist.least_force, default=None)
     return best if best is not None and best.is_proof else None
+
+
+def _only_in_the_limit(grasp: Grasp, load: Wrench, frictions: list[float]) -> tuple[float, float] | None:
+    """How far forces of ``_REACHES`` times the load miss it, relative to it, if larger ones come nearer."""
+    weight = np.ones(load.vector.size)
+    weight[grasp.dimension :] = 1 / (grasp.size or 1.0)
+    target = -load.vector * weight
+    target = target / float(abs(target).max())
+    near, far = (
+        float(np.linalg.norm(gap_left(grasp, target, weight, frictions, [reach] * len(grasp))))
+        for reach in _REACHES
+    )
+    return (near, far) if 0 < far < _NEARER * near else None
 
 
 def _gaps(wrenches: Array, target: Array) -> list[Array]:
@@ -98,28 +128,3 @@ def _edge_wrenches(grasp: Grasp, weight: Array, frictions: list[float]) -> Array
             r = contact.position
             edges.append(np.array([e[0], e[1], r[0] * e[1] - r[1] * e[0]]) * weight)
     return np.array(edges).T
-
-
-def _gap_with_limits(
-    grasp: Grasp, target: Array, weight: Array, frictions: list[float], limits: list[float]
-) -> Array:
-    """Target - G f at the nearest f inside cones and limits: a program in (f, gap)."""
-    from regrasp.programs import Rows, solve
-
-    n = 2 * len(grasp)
-    rows = Rows(n + 3)
-    g = np.hstack([grasp.matrix * weight[:, None], np.eye(3)])
-    rows.equal(g, -target)
-    for i, (contact, mu, limit) in enumerate(zip(grasp, frictions, limits, strict=True)):
-        pick = np.zeros((2, n + 3))
-        pick[0, 2 * i] = pick[1, 2 * i + 1] = 1
-        along, across = contact.normal @ pick, np.array([-contact.normal[1], contact.normal[0]]) @ pick
-        rows.at_least_zero([mu * along - across, mu * along + across, along])
-        if limit < inf:
-            rows.second_order(np.vstack([np.zeros(n + 3), pick]), [limit, 0, 0])
-    try:
-        answer = solve(rows.program(np.zeros(n + 3), np.diag([0.0] * n + [1.0] * 3)), "clarabel")
-    except SolverFailed as failed:  # a direction short of the solver's tolerances may prove as much
-        answer = failed.solution
-    gap: Array = answer.value[n:]
-    return gap

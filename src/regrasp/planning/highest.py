@@ -74,7 +74,7 @@ def _lowest_proof(
 
 
 class _Level(NamedTuple):
-    """Forces (n, 2) of a level, or None; then whether a twist proves it, and whether the answer was sound."""
+    """Forces (n, d) of a level, or None; then whether a twist proves it, and whether the answer was sound."""
 
     forces: Array | None
     is_proof: bool = False
@@ -101,8 +101,8 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
         forces = used.exact(answer, frictions, bounds)
         if forces is not None:
             return _Level(_whole(grasp, cones, forces))
-    twist = -answer.duals[:3]
-    twist[2] /= used.grasp.size or 1.0
+    twist = -answer.duals[: used.load.vector.size]
+    twist[grasp.dimension :] /= used.grasp.size or 1.0
     is_twist = bool(np.isfinite(twist).all() and twist.any())
     if is_twist and EscapeTwist(used.grasp, used.load, twist, tuple(frictions), tuple(bounds)).is_proof:
         return _Level(None, True, True)
@@ -115,7 +115,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
 
 
 def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
-    """Forces (n, 2) of all contacts, those of ``contacts`` given and the others idle."""
-    whole = np.zeros((len(grasp), 2))
+    """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
+    whole = np.zeros((len(grasp), grasp.dimension))
     whole[list(contacts)] = forces
     return whole

@@ -1,6 +1,6 @@
-"""Choosing the state of any number of planar contacts by programs."""
+"""Choosing the state of any number of contacts by programs."""
 
-from math import cos, inf, pi
+from math import inf
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.chooser import LOOSE, Chooser
 from regrasp.planning.criteria import ChosenForces, Criteria
 from regrasp.planning.escape import infeasible
+from regrasp.planning.faces import ball_faces, gauge
 from regrasp.planning.highest import highest
 from regrasp.planning.narrowing import Narrowing
 
@@ -18,13 +19,15 @@ from regrasp.planning.narrowing import Narrowing
 def solved_forces(
     grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None = None
 ) -> ChosenForces:
-    """The best forces of any number of planar contacts, by programs. Raises ``Infeasible``.
+    """The best forces of any number of contacts, by programs. Raises ``Infeasible``.
 
     For ``angle`` and ``friction_use`` see ``regrasp.planning.narrowing``.
     """
     criteria.demand_limit(grasp, load)
     if not criteria.unbounded and not load.vector.any():  # nothing to hold: the least of everything is zero
-        return ChosenForces([[0.0, 0.0]] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
+        return ChosenForces(
+            [[0.0] * grasp.dimension] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0
+        )
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except SolverFailed:
@@ -44,7 +47,7 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         least = chooser.best("peak", frictions, limits)
         if least is None:
             raise infeasible(grasp, load, criteria)
-        peak = _radius(least.forces, facets)
+        peak = _radius(grasp, frictions, least.forces, facets)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     narrows = criteria.objective in ("angle", "friction_use")
     found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
@@ -55,12 +58,11 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
     return ChosenForces(found.forces, tuple(limits), backend, found.gap)
 
 
-def _radius(forces: Array, facets: int | None) -> float:
-    """The radius of the least circle about the origin, or the polygon inside it, that holds the forces.
+def _radius(grasp: Grasp, frictions: list[float], forces: Array, facets: int | None) -> float:
+    """The radius of the least ball about the origin, or the polyhedron inside it, that holds the forces.
 
-    Many forces share the least polygon, so that another measure of them would depend on the back end.
+    Many forces share the least polyhedron, so that another measure of them would depend on the back end.
     """
     if facets is None:
         return float(np.sqrt((forces**2).sum(axis=1)).max())
-    angles = 2 * pi * np.arange(facets) / facets
-    return float((forces @ np.array([np.cos(angles), np.sin(angles)])).max()) / cos(pi / facets)
+    return gauge(forces, *ball_faces(grasp, np.array(frictions), facets))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, pi
+from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,8 @@ class StateForm:
 
     constants: entries of A that no number of the grasp changes; they come first in ``pattern``.
     rough, smooth, limited: the contacts with friction, without it, and with a force limit.
-    limit_rows: rows of b that hold the limits, ``limit_repeats`` to a contact, times ``limit_scale``.
+    is_round: whether cones are of second order; otherwise they have faces. limit_rows: rows of b that hold
+    the limits, a contact after the other.
     """
 
     pattern: Pattern
@@ -31,9 +32,8 @@ class StateForm:
     rough: Index
     smooth: Index
     limited: Index
+    is_round: bool
     limit_rows: slice
-    limit_scale: float
-    limit_repeats: int
 
     @property
     def rows(self) -> int:
@@ -43,39 +43,50 @@ class StateForm:
 
 @lru_cache(maxsize=256)
 def state_form(
-    objective: str, has_friction: tuple[bool, ...], has_limit: tuple[bool, ...], facets: int | None
+    objective: str,
+    has_friction: tuple[bool, ...],
+    has_limit: tuple[bool, ...],
+    facets: int | None,
+    dimension: int = 2,
 ) -> StateForm:
     """The form of a program: constant entries, then those that ``state_program`` fills, in its order."""
-    n = len(has_friction)
+    n, d = len(has_friction), dimension
     rough, smooth = np.flatnonzero(has_friction), np.flatnonzero(np.logical_not(has_friction))
     limited = np.flatnonzero(has_limit)
-    t = 2 * n
+    is_round = d == 3 and facets is None
+    sides = 3 if is_round else 2 if d == 2 else facets or 0  # rows of a friction cone
+    t = d * n
     width = t if objective == "effort" else t + 1
-    force = np.arange(t).reshape(n, 2)  # columns of each force
+    force = np.arange(t).reshape(n, d)  # columns of each force
     places = _Places()
-    balance = places.block(Cone.ZERO, 3)
-    straight = places.block(Cone.ZERO, 1, smooth.size)
-    inside = places.block(Cone.NONNEGATIVE, 1, 2 * rough.size)
+    balance = places.block(Cone.ZERO, 3 if d == 2 else 6)
+    straight = places.block(Cone.ZERO, 1, (d - 1) * smooth.size).reshape(-1, d - 1)
+    if is_round:
+        inside = places.block(Cone.SECOND_ORDER, sides, rough.size).reshape(-1, sides)
+    else:
+        inside = places.block(Cone.NONNEGATIVE, 1, sides * rough.size).reshape(-1, sides)
     pushing = places.block(Cone.NONNEGATIVE, 1, smooth.size)
-    for axis in (0, 1):
+    for axis in range(d):
         places.constant(np.full(n, balance[axis]), force[:, axis], -1.0)
     if objective == "force" and not rough.size:  # no cone bounds the margin of rays: it is zero
         places.constant(places.block(Cone.NONNEGATIVE, 1), [t], 1.0)
     if objective == "peak_normal":
         below = places.block(Cone.NONNEGATIVE, 1, n)
         places.constant(below, np.full(n, t), -1.0)
-    if objective == "peak":
-        _circles(places, force, facets, t)
-    limit_rows, scale, repeats = _circles(places, force[limited], facets, None)
-
-    varying = [(np.full(t, balance[2]), force.ravel())]
-    varying.append((np.repeat(inside, 2), np.repeat(force[rough], 2, axis=0).ravel()))
+    varying = [_torques(balance, force)]
+    varying.append(_each(inside, force[rough]))
     if smooth.size:
-        varying += [(np.repeat(rows, 2), force[smooth].ravel()) for rows in (straight, pushing)]
+        varying += [_each(straight, force[smooth]), _each(pushing[:, None], force[smooth])]
     if objective == "peak_normal":
-        varying.append((np.repeat(below, 2), force.ravel()))
+        varying.append(_each(below[:, None], force))
     if objective == "force":
-        varying.append((inside, np.full(2 * rough.size, t)))
+        margin = inside[:, 0] if is_round else inside.ravel()
+        varying.append((margin, np.full(margin.size, t)))
+    if objective == "peak":
+        _, moving = _balls(places, force, facets, t)
+        varying += moving
+    limit_rows, moving = _balls(places, force[limited], facets, None)
+    varying += moving
     rows, columns, constants = places.all(varying)
     q = np.zeros(width)
     q[t:] = -1.0 if objective == "force" else 1.0
@@ -91,10 +102,24 @@ def state_form(
         rough,
         smooth,
         limited,
+        is_round,
         limit_rows,
-        scale,
-        repeats,
     )
+
+
+def _each(rows: Index, columns: Index) -> tuple[Index, Index]:
+    """Rows (k, r) of k forces, each filled over that force's columns (k, d)."""
+    wide = np.broadcast_to(rows[:, :, None], (*rows.shape, columns.shape[1]))
+    return wide.ravel(), np.broadcast_to(columns[:, None], wide.shape).ravel()
+
+
+def _torques(balance: Index, force: Index) -> tuple[Index, Index]:
+    """Entries of the torque rows: all in the plane; in space a force gives no torque about its own axis."""
+    n, d = force.shape
+    if d == 2:
+        return np.full(2 * n, balance[2]), force.ravel()
+    about, axis = np.nonzero(~np.eye(3, dtype=bool))
+    return np.repeat(balance[3 + about], n), force[:, axis].T.ravel()
 
 
 class _Places:
@@ -126,22 +151,24 @@ class _Places:
         return np.concatenate(rows), np.concatenate(columns), constants
 
 
-def _circles(places: _Places, force: Index, facets: int | None, t: int | None) -> tuple[slice, float, int]:
-    """Demand |f| <= radius for forces in columns (k, 2): radius is the unknown t, or waits in b.
+def _balls(
+    places: _Places, force: Index, facets: int | None, t: int | None
+) -> tuple[slice, list[tuple[Index, Index]]]:
+    """Demand |f| <= radius for forces in columns (k, d): radius is the unknown t, or waits in b.
 
-    Returns the rows of b that hold the radius, its factor there, and how many rows a force has.
+    Returns the rows of b that hold the radius and, where faces stand for the ball, the places of their
+    numbers: directions, then the cosines at t.
     """
-    first, count = places.rows, len(force)
+    first, (count, d) = places.rows, force.shape
     if facets is None:
-        rows = places.block(Cone.SECOND_ORDER, 3, count).reshape(count, 3)
+        rows = places.block(Cone.SECOND_ORDER, d + 1, count).reshape(count, d + 1)
         places.constant(rows[:, 1:], force, -1.0)
         if t is not None:
             places.constant(rows[:, 0], t, -1.0)
-        return slice(first, places.rows, 3), 1.0, 1
-    angles, apothem = 2 * pi * np.arange(facets) / facets, cos(pi / facets)
-    rows = places.block(Cone.NONNEGATIVE, 1, facets * count).reshape(count, facets)
-    for axis, towards in enumerate((np.cos(angles), np.sin(angles))):
-        places.constant(rows, force[:, axis, None], towards)
+        return slice(first, places.rows, d + 1), []
+    faces = facets if d == 2 else facets * ceil(facets / 4)
+    rows = places.block(Cone.NONNEGATIVE, 1, faces * count).reshape(count, faces)
+    varying = [_each(rows, force)]
     if t is not None:
-        places.constant(rows, t, -apothem)
-    return slice(first, places.rows), apothem, facets
+        varying.append((rows.ravel(), np.full(rows.size, t)))
+    return slice(first, places.rows), varying

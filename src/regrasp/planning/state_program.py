@@ -1,17 +1,20 @@
 """The choice of a state as a convex program: the seam where mechanics becomes rows.
 
 Unknowns x = (f_1, ..., f_n, t), forces in units of ``unit`` [N] and torques divided by the grasp's size, so
-that the data are of order one whatever the units. In the plane two half-planes are the friction cone:
+that the data are of order one whatever the units. In the plane two half-planes are the friction cone; in
+space it is of second order, or an inner pyramid of ``facets`` faces (``regrasp.planning.faces``):
 
     equilibrium   G f = -w_ext                                          zero cone
-    friction      mu f.n -+ f.t >= 0                                    non-negative
+    friction      mu f.n -+ f.t >= 0                                    non-negative (plane)
+                  |(f.t_1, f.t_2)| <= mu f.n                            second order (space)
+                  mu cos(pi/m) f.n - f.u_k >= 0                         non-negative (space, m facets)
                   f.t = 0 and f.n >= 0 without friction                 zero, non-negative
     limits        |f_i| <= limit_i                                      second order
 
     effort        minimise sum |f_i|^2
     peak          minimise t,  |f_i| <= t
     peak_normal   minimise t,  f_i.n_i <= t
-    force         maximise t,  mu f.n -+ f.t >= t sqrt(1 + mu^2)   (contacts with friction)
+    force         maximise t,  mu f.n -+ f.t >= t sqrt(1 + mu^2)   (contacts with friction; in space |f_t|)
 
 ``angle`` and ``friction_use`` are quasi-convex: a level is reached when cones narrowed to it hold the load,
 which is the program ``force`` over narrower cones.
@@ -25,14 +28,12 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.faces import ball_faces, cone_faces
 from regrasp.planning.state_form import state_form
 from regrasp.programs import Program
 
 CONVEX = ("effort", "peak", "peak_normal", "force")
 """Objectives that are one program."""
-
-# Both sides of a cone: mu f.n - f.t and mu f.n + f.t.
-_SIDES = np.array([[-1.0], [1.0]])
 
 
 def state_program(
@@ -51,25 +52,44 @@ def state_program(
     each circle |f| <= r, or None for second-order cones. weights: (n,) in the place of sqrt(1 + mu^2) in
     ``force``. ``effort`` has no unknown t.
     """
-    if grasp.dimension != 2:
-        raise InvalidInput("states are chosen for planar grasps so far; this grasp is in space")
     if objective not in CONVEX:
         raise InvalidInput(f"one program states {', '.join(CONVEX)}; got {objective!r}")
-    mu, limit = np.array(frictions), np.array(limits)
-    form = state_form(objective, tuple(mu > 0), tuple(limit < inf), facets)
-    normals, tangents = grasp.normals, grasp.tangents
+    d, mu, limit = grasp.dimension, np.array(frictions), np.array(limits)
+    form = state_form(objective, tuple(mu > 0), tuple(limit < inf), facets, d)
+    normals, tangents = grasp.normals, grasp.tangents.reshape(len(grasp), d - 1, d)
     length = grasp.size or 1.0
-    edges = mu[:, None, None] * normals[:, None] + _SIDES * tangents[:, None]  # (n, 2, 2)
-    numbers = [form.constants, -grasp.matrix[2] / length, -edges[form.rough].ravel()]
+    if form.is_round:
+        sides = np.concatenate([mu[:, None, None] * normals[:, None], tangents], axis=1)
+    else:
+        sides = cone_faces(grasp, mu, facets)
+    numbers = [form.constants, _torque_entries(grasp) / -length, -sides[form.rough].ravel()]
     if form.smooth.size:
         numbers += [-tangents[form.smooth].ravel(), -normals[form.smooth].ravel()]
     if objective == "peak_normal":
         numbers.append(normals.ravel())
     if objective == "force":
         weights = np.sqrt(1 + mu**2) if weights is None else weights
-        numbers.append(np.repeat(weights[form.rough], 2))
+        numbers.append(np.repeat(weights[form.rough], 1 if form.is_round else sides.shape[1]))
+    radii = limit[form.limited]
+    if facets is not None:
+        directions, cosines = ball_faces(grasp, mu, facets)
+        if objective == "peak":
+            numbers += [directions.ravel(), -cosines.ravel()]
+        numbers.append(directions[form.limited].ravel())
+        radii = (cosines[form.limited] * radii[:, None]).ravel()
     b = np.zeros(form.rows)
-    b[:3] = load.vector / unit
-    b[2] /= length
-    b[form.limit_rows] = form.limit_scale * np.repeat(limit[form.limited], form.limit_repeats) / unit
+    b[: load.vector.size] = load.vector / unit
+    b[d : load.vector.size] /= length
+    b[form.limit_rows] = radii / unit
     return Program(form.P, form.q, form.pattern.filled(np.concatenate(numbers)), b, form.blocks)
+
+
+def _torque_entries(grasp: Grasp) -> Array:
+    """The torque rows of the grasp matrix in the order of the form, entries that are always zero left out."""
+    matrix = grasp.matrix
+    if grasp.dimension == 2:
+        planar: Array = matrix[2]
+        return planar
+    about, axis = np.nonzero(~np.eye(3, dtype=bool))
+    entries: Array = matrix[3:].reshape(3, len(grasp), 3)[about, :, axis]
+    return entries.ravel()
