@@ -1,4 +1,4 @@
-"""Pictures of planar grasps and transitions. The only package that imports matplotlib.
+"""Pictures of grasps and transitions in the plane and in space. The only package that imports matplotlib.
 
 Every function takes a value and, if wanted, the axes to draw on, and returns the axes; it asks the value for
 what it draws. New axes belong to a figure of their own (``ax.figure``), as wide as a column. Labels say
@@ -6,6 +6,7 @@ N, m and s unless ``units`` names others; numbers are never converted.
 """
 
 from regrasp.plots.animation import animate
+from regrasp.plots.components import plot_force_components, plot_wrench_components
 from regrasp.plots.directions import plot_directions
 from regrasp.plots.escape import plot_escape
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
@@ -22,6 +23,7 @@ from regrasp.plots.overview import (
     states_figure,
     transition_figure,
     transition_png,
+    wrenches_figure,
 )
 from regrasp.plots.regrasp import plot_regrasp
 from regrasp.plots.sensitivity import plot_sensitivity
@@ -41,6 +43,7 @@ __all__ = [
     "plot_angles",
     "plot_directions",
     "plot_escape",
+    "plot_force_components",
     "plot_hold_map",
     "plot_iso_torque",
     "plot_load",
@@ -54,6 +57,7 @@ __all__ = [
     "plot_sensitivity",
     "plot_state",
     "plot_transition",
+    "plot_wrench_components",
     "plot_wrench_cone",
     "plot_wrench_loop",
     "plot_wrench_paths",
@@ -62,4 +66,5 @@ __all__ = [
     "states_figure",
     "transition_figure",
     "transition_png",
+    "wrenches_figure",
 ]

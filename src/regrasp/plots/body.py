@@ -13,9 +13,13 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.plots.style import GREY, INK, PALE, Colours, literal, note
 
 
-def extent(grasp: Grasp) -> float:
-    """The larger side of the box around the contacts and the centre of mass [m]; 1 if that is a point."""
-    points = np.vstack([grasp.positions, np.zeros(2)])
+def extent(grasp: Grasp, vertices: Array | None = None) -> float:
+    """The largest side of the box around the contacts, the centre of mass and ``vertices`` (v, d) [m].
+
+    1 if that is a point.
+    """
+    others = np.zeros((1, grasp.dimension)) if vertices is None else vertices
+    points = np.vstack([grasp.positions, np.zeros(grasp.dimension), others])
     return float(np.ptp(points, axis=0).max()) or 1.0
 
 

@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 
 from regrasp.errors import InvalidInput
 from regrasp.planning.transition import Transition
-from regrasp.plots.style import PALETTE, axes_or_new, label_axis, legend, refuse_space
+from regrasp.plots.components import draw_torques
+from regrasp.plots.style import PALETTE, axes_or_new, label_axis, legend
 from regrasp.plots.units import SI, Units
 
 _SAMPLES = 201
@@ -18,7 +19,6 @@ def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = 
 
     The torque has its own axis on the right. Raises ``InvalidInput`` where the load is constant.
     """
-    refuse_space(transition.grasp.dimension)
     if not transition.load_varies:
         raise InvalidInput("the load of this path is constant; there is nothing to draw over time")
     course = transition.course
@@ -26,15 +26,12 @@ def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = 
     load = transition.load(t)
     ax = axes_or_new(ax)
     look: dict[str, Any] = {"linewidth": 1.4, "marker": "." if t.size <= 60 else "", "markersize": 4}
-    for axis, name in enumerate("xy"):
+    d = transition.grasp.dimension
+    for axis, name in enumerate("xyz"[:d]):
         ax.plot(t, load[:, axis], color=PALETTE[axis], label=f"$f_{name}$", **look)
-    right = ax.twinx()
-    lines = right.plot(t, load[:, 2], color=PALETTE[2], linestyle="--", label=r"$\tau$ (right)", **look)
-    right.spines["right"].set_visible(True)
+    lines = draw_torques(ax, t, load[:, d:], units, **look)
     ax.set_xlim(0, transition.duration)
     label_axis(ax.xaxis, "$t$", units.time, transition.duration)
-    label_axis(ax.yaxis, "load", units.force, float(np.abs(load[:, :2]).max()))
-    label_axis(right.yaxis, "torque", units.torque, float(np.abs(load[:, 2]).max()))
-    right.tick_params(labelsize=ax.yaxis.get_ticklabels()[0].get_fontsize())
+    label_axis(ax.yaxis, "load", units.force, float(np.abs(load[:, :d]).max()))
     legend(ax, [*ax.get_lines(), *lines])
     return ax

@@ -1,6 +1,7 @@
 """The object with its contacts, friction cones and forces (Fig. 1 and 10)."""
 
 from collections.abc import Collection
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,11 +9,15 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.transition import Transition
 from regrasp.plots.arrows import arrow
 from regrasp.plots.body import draw_body, extent
 from regrasp.plots.load import draw_load
+from regrasp.plots.solids import Triangles, triangles_of
+from regrasp.plots.space_object import draw_state, draw_transition
 from regrasp.plots.style import (
     INK,
     SMALL,
@@ -22,7 +27,6 @@ from regrasp.plots.style import (
     label_axis,
     legend,
     quantity,
-    refuse_space,
     round_below,
 )
 from regrasp.plots.units import SI, Units
@@ -38,6 +42,7 @@ def plot_state(
     force_scale: float | None = None,
     colours: Colours | None = None,
     absent: Collection[str] = (),
+    mesh: Any = None,
     units: Units = SI,
 ) -> Axes:
     """The object with the finger forces and the load of one state (Fig. 1).
@@ -47,15 +52,32 @@ def plot_state(
     is a turning arrow around it. The grey body only suggests the object: its surface is known at the
     contacts, where its tangents are drawn, and nowhere else.
 
+    In space the axes are 3-D, at one scale along x, y and z, and the object is its ``mesh``, translucent, for
+    the arrows lie inside it.
+
     force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's extent.
     colours: of the contacts by name; by their place in the grasp if not given.
     absent: names of contacts whose finger is not there in this state: an open circle marks the place.
-    Raises ``InvalidInput`` for a grasp in space.
+    mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the object
+    frame with the centre of mass at the origin.
+    Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
-    refuse_space(state.grasp.dimension)
-    ax = axes_or_new(ax, height=3.4)
+    triangles = _surface_of(mesh, state.grasp)
     colours = contact_colours(state.grasp) if colours is None else colours
-    scale = force_scale_of(state) if force_scale is None else force_scale
+    scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
+    if state.grasp.dimension == 3:
+        drawn: Axes = draw_state(
+            state,
+            ax,
+            size=_size(state.grasp, triangles),
+            scale=scale,
+            colours=colours,
+            absent=absent,
+            mesh=triangles,
+            units=units,
+        )
+        return drawn
+    ax = axes_or_new(ax, height=3.4)
     _scene(ax, state, scale, colours, units, absent)
     _forces(ax, state, scale, colours, "force")
     return ax
@@ -66,16 +88,26 @@ def plot_transition(
     ax: Axes | None = None,
     *,
     force_scale: float | None = None,
+    mesh: Any = None,
     units: Units = SI,
 ) -> Axes:
     """The forces at both states of a transition and the path of each force head between them (Fig. 10).
 
     Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
     """
-    refuse_space(transition.grasp.dimension)
-    ax = axes_or_new(ax, height=3.4)
+    triangles = _surface_of(mesh, transition.grasp)
     colours = contact_colours(transition.grasp)
-    scale = force_scale_of(transition.start, transition.end) if force_scale is None else force_scale
+    scale = force_scale
+    if scale is None:
+        scale = force_scale_of(transition.start, transition.end, mesh=triangles)
+    if transition.grasp.dimension == 3:
+        size = _size(transition.grasp, triangles)
+        drawn: Axes = draw_transition(
+            transition, ax, size=size, scale=scale, colours=colours, mesh=triangles, units=units
+        )
+        legend(drawn, _key(), loc="upper left", bbox_to_anchor=(0, 1.08))
+        return drawn
+    ax = axes_or_new(ax, height=3.4)
     _scene(ax, transition.start, scale, colours, units)
     _forces(ax, transition.start, scale, colours, "start force")
     _forces(
@@ -97,21 +129,32 @@ def plot_transition(
     ):
         heads = np.array([r + scale * a, r + scale * b])
         ax.plot(*heads.T, color=colours[name], linewidth=2.6, alpha=0.45, gid=f"path {name}", zorder=3)
-    legend(
-        ax,
-        [
-            Line2D([], [], color=INK, linewidth=1.4, label="start"),
-            Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (2, 1)), label="end"),
-            Line2D([], [], color=INK, linewidth=2.6, alpha=0.45, label="path"),
-        ],
-    )
+    legend(ax, _key())
     return ax
 
 
-def force_scale_of(*states: GraspState) -> float:
+def force_scale_of(*states: GraspState, mesh: Triangles | None = None) -> float:
     """Length of a unit force [m/N] at which the longest force of the states spans 0.45 of the extent."""
-    longest = max(max(s.magnitudes.max(), float(np.hypot(*s.load.force))) for s in states)
-    return _LONGEST * extent(states[0].grasp) / (longest or 1.0)
+    longest = max(max(s.magnitudes.max(), float(np.linalg.norm(s.load.force))) for s in states)
+    return _LONGEST * _size(states[0].grasp, mesh) / (longest or 1.0)
+
+
+def _size(grasp: Grasp, mesh: Triangles | None) -> float:
+    return extent(grasp, None if mesh is None else mesh[0])
+
+
+def _surface_of(mesh: Any, grasp: Grasp) -> Triangles | None:
+    if mesh is not None and grasp.dimension != 3:
+        raise InvalidInput("a mesh is the surface of an object in space, but this grasp is planar")
+    return triangles_of(mesh)
+
+
+def _key() -> list[Line2D]:
+    return [
+        Line2D([], [], color=INK, linewidth=1.4, label="start"),
+        Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (2, 1)), label="end"),
+        Line2D([], [], color=INK, linewidth=2.6, alpha=0.45, label="path"),
+    ]
 
 
 def _scene(

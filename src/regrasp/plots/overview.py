@@ -7,11 +7,14 @@ from matplotlib.figure import Figure
 
 from regrasp.planning.locus import EquilibriumLocus
 from regrasp.planning.transition import Transition
+from regrasp.plots.components import plot_force_components, plot_wrench_components
 from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
 from regrasp.plots.iso_torque import plot_iso_torque
 from regrasp.plots.load_history import plot_load
 from regrasp.plots.locus import plot_locus
 from regrasp.plots.object import force_scale_of, plot_state, plot_transition
+from regrasp.plots.solids import triangles_of
+from regrasp.plots.space import space_panel
 from regrasp.plots.style import (
     TEXT,
     WIDTH,
@@ -22,18 +25,20 @@ from regrasp.plots.style import (
 )
 from regrasp.plots.timing import plot_scaling
 from regrasp.plots.units import SI, Units
+from regrasp.plots.view import facing_view
 from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
 
 
-def transition_figure(transition: Transition, *, units: Units = SI) -> Figure:
+def transition_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
     """The object with its force paths, magnitudes, angles and T(t), or the load if it varies, two by two.
 
-    Raises ``InvalidInput`` for a grasp in space.
+    mesh: the object of a grasp in space, as for ``plot_state``.
     """
-    refuse_space(transition.grasp.dimension)
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
-    plot_transition(transition, tidy(figure.add_subplot(grid[0, 0])), units=units)
+    plot_transition(
+        transition, _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition), mesh=mesh, units=units
+    )
     plot_magnitudes(transition, tidy(figure.add_subplot(grid[0, 1])), units=units)
     below = tidy(figure.add_subplot(grid[1, 0]))
     if transition.load_varies:
@@ -42,6 +47,17 @@ def transition_figure(transition: Transition, *, units: Units = SI) -> Figure:
         plot_scaling(transition.scaling, below, units=units)
     plot_angles(transition, tidy(figure.add_subplot(grid[1, 1])), units=units)
     return figure
+
+
+def _panel(
+    figure: Figure, place: Any, room: tuple[float, float, float, float], transition: Transition
+) -> Any:
+    """Axes for the object: flat in its cell of the grid, or in space in its room, which no grid can judge."""
+    if transition.grasp.dimension == 2:
+        return tidy(figure.add_subplot(place))
+    ax = space_panel(figure, room)
+    ax.view_init(*facing_view(transition.grasp.positions, transition.grasp.normals))
+    return ax
 
 
 def transition_png(transition: Transition) -> bytes:
@@ -56,18 +72,18 @@ def png(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
-def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
+def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> dict[str, Figure]:
     """Every figure of a transition by file stem.
 
     ``overview``, ``states``, ``object``, ``time_scaling``, ``magnitudes``, ``angles``, ``margins``; ``load``
-    where it varies; of a removal or an addition ``iso_torque``, ``wrench_loop``, ``wrench_paths``, and
-    ``locus`` where two contacts remain. Raises ``InvalidInput`` for a grasp in space.
+    where it varies. In the plane, of a removal or an addition, ``iso_torque``, ``wrench_loop``,
+    ``wrench_paths``, and ``locus`` where two contacts remain; in space ``components`` and ``wrenches``.
+    mesh: the object of a grasp in space, as for ``plot_state``.
     """
-    refuse_space(transition.grasp.dimension)
     drawn: dict[str, Any] = {
-        "overview": transition_figure(transition, units=units),
-        "states": states_figure(transition, units=units),
-        "object": plot_transition(transition, units=units).figure,
+        "overview": transition_figure(transition, mesh=mesh, units=units),
+        "states": states_figure(transition, mesh=mesh, units=units),
+        "object": plot_transition(transition, mesh=mesh, units=units).figure,
         "time_scaling": plot_scaling(transition.scaling, control=True, units=units).figure,
         "magnitudes": plot_magnitudes(transition, units=units).figure,
         "angles": plot_angles(transition, units=units).figure,
@@ -75,7 +91,10 @@ def figures(transition: Transition, *, units: Units = SI) -> dict[str, Figure]:
     }
     if transition.load_varies:
         drawn["load"] = plot_load(transition, units=units).figure
-    if transition.contact is not None and transition.arrival is None:
+    if transition.grasp.dimension == 3:
+        drawn["components"] = plot_force_components(transition, units=units).figure
+        drawn["wrenches"] = wrenches_figure(transition, units=units)
+    elif transition.contact is not None and transition.arrival is None:
         drawn |= _of_one_finger(transition, transition.contact, units)
     return drawn
 
@@ -102,19 +121,29 @@ def _of_one_finger(transition: Transition, moves: str, units: Units) -> dict[str
     return drawn
 
 
-def states_figure(transition: Transition, *, units: Units = SI) -> Figure:
+def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
     """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not."""
-    refuse_space(transition.grasp.dimension)
     figure = new_figure(2 * WIDTH, 3.4)
-    scale = force_scale_of(transition.start, transition.end)
+    grid = figure.add_gridspec(1, 2)
+    scale = force_scale_of(transition.start, transition.end, mesh=triangles_of(mesh))
     ends = (
         ("start", transition.start, transition.idle_at_start),
         ("end", transition.end, transition.idle_at_end),
     )
     for i, (title, state, absent) in enumerate(ends):
-        ax = tidy(figure.add_subplot(1, 2, i + 1))
-        plot_state(state, ax, force_scale=scale, absent=absent, units=units)
+        ax = _panel(figure, grid[i], (0.5 * i, 0.04, 0.47, 0.88), transition)
+        plot_state(state, ax, force_scale=scale, absent=absent, mesh=mesh, units=units)
         ax.set_title(title, fontsize=TEXT, loc="left")
+    return figure
+
+
+def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
+    """The wrench of every finger about the centre of mass over time, a panel for each."""
+    columns = min(2, len(transition.grasp))
+    rows = -(-len(transition.grasp) // columns)
+    figure = new_figure(WIDTH * columns, 2.4 * rows)
+    for i in range(len(transition.grasp)):
+        plot_wrench_components(transition, i, tidy(figure.add_subplot(rows, columns, i + 1)), units=units)
     return figure
 
 

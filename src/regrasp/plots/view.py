@@ -28,12 +28,12 @@ def best_view(shapes: Sequence[Array]) -> tuple[float, float]:
     )
 
     def openness(view: tuple[float, float]) -> float:
-        return float(np.log(_roundness((triangles / spans) @ _projection(*view).T) + 1e-3).mean())
+        return float(np.log(_roundness((triangles / spans) @ projection(*view).T) + 1e-3).mean())
 
     return max(product(_ELEVATIONS, _AZIMUTHS), key=openness)
 
 
-def _projection(elevation: float, azimuth: float) -> Array:
+def projection(elevation: float, azimuth: float) -> Array:
     """(2, 3) from space to the picture, right and up."""
     e, a = np.radians(elevation), np.radians(azimuth)
     return np.array(
@@ -51,3 +51,21 @@ def _roundness(triangles: Array) -> Array:
     perimeter = np.linalg.norm(sides, axis=2).sum(axis=1)
     result: Array = area / np.where(perimeter > 0, perimeter, 1.0) ** 2
     return result
+
+
+def facing_view(positions: Array, normals: Array) -> tuple[float, float]:
+    """(elevation, azimuth) [deg] from which contacts in space lie apart, most of them on the near side.
+
+    positions, normals: (n, 3); normals point into the object, away from the reader at a contact that is seen.
+    """
+    size = float(np.ptp(positions, axis=0).max()) or 1.0
+    pairs = np.array([(i, j) for i in range(len(positions)) for j in range(i)]).reshape(-1, 2)
+
+    def clearness(view: tuple[float, float]) -> float:
+        e, a = np.radians(view)
+        eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+        shown = positions @ projection(*view).T / size
+        apart = np.linalg.norm(shown[pairs[:, 0]] - shown[pairs[:, 1]], axis=1)
+        return float(np.log(apart + 1e-2).sum() / max(1, len(pairs)) - 0.5 * (normals @ eye).mean())
+
+    return max(product(_ELEVATIONS, _AZIMUTHS), key=clearness)

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from regrasp.errors import Infeasible
@@ -16,6 +15,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench_space import WrenchCone, WrenchPlane
 from regrasp.planning.locus import EquilibriumLocus
 from regrasp.plots.locus import shown_interval
+from regrasp.plots.space import boxed
 from regrasp.plots.style import GREY, INK, PALETTE, SMALL, label_axis, new_figure
 from regrasp.plots.units import SI, Units
 from regrasp.plots.view import best_view
@@ -28,13 +28,7 @@ def wrench_axes(ax: Any, shapes: Sequence[Array] = ()) -> Any:
         figure.set_layout_engine("none")  # it reserves room for the whole box around a 3-D picture
         ax = figure.add_axes((0.05, 0.07, 0.88, 0.84), projection="3d", computed_zorder=False)
         ax.set_box_aspect((1, 1, 0.85), zoom=1.02)
-        ax.tick_params(labelsize=SMALL, pad=-3)
-        ax.tick_params(axis="z", pad=0)
-        for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
-            axis.pane.fill = False
-            axis.pane.set_edgecolor("#dddddd")
-            axis._axinfo["grid"].update(color="#e6e6e6", linewidth=0.5)
-            axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+        boxed(ax)
         if shapes:
             elevation, azimuth = best_view(shapes)
             ax.view_init(elevation, azimuth)
