@@ -36,9 +36,8 @@ def transition_figure(transition: Transition, *, mesh: Any = None, units: Units 
     """
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
-    plot_transition(
-        transition, _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition), mesh=mesh, units=units
-    )
+    ax = _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition)
+    plot_transition(transition, ax, mesh=mesh, units=units)
     plot_magnitudes(transition, tidy(figure.add_subplot(grid[0, 1])), units=units)
     below = tidy(figure.add_subplot(grid[1, 0]))
     if transition.load_varies:
@@ -125,6 +124,8 @@ def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI
     """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not."""
     figure = new_figure(2 * WIDTH, 3.4)
     grid = figure.add_gridspec(1, 2)
+    if transition.grasp.dimension == 3:
+        figure.set_layout_engine("none")  # it has nothing to lay out
     scale = force_scale_of(transition.start, transition.end, mesh=triangles_of(mesh))
     ends = (
         ("start", transition.start, transition.idle_at_start),

@@ -3,12 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array
 
-Triangles = tuple[Array, Array]
+Triangles = tuple[Array, NDArray[np.intp]]
 """Vertices (v, 3) [m], object frame, and faces (f, 3), rows of vertices."""
 
 # Faces that meet at a larger angle have an edge between them to see, cos 30 deg.

@@ -8,7 +8,6 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
 from regrasp.plots.style import SMALL, label_axis, new_figure
 from regrasp.plots.units import Units
 from regrasp.plots.view import projection
@@ -59,20 +58,18 @@ def include(ax: Any, points: ArrayLike) -> None:
     ax.auto_scale_xyz(*np.asarray(points, dtype=float).reshape(-1, 3).T, ax.has_data())
 
 
-def equal_scale(ax: Any, units: Units, names: tuple[str, str, str] = ("$x$", "$y$", "$z$")) -> Any:
+def equal_scale(ax: Any, units: Units) -> Any:
     """Limits around everything drawn at one scale on all axes, and labels with units."""
     axes = (ax.xaxis, ax.yaxis, ax.zaxis)
     low, high = np.array([axis.get_data_interval() for axis in axes]).T
     longest = float((high - low).max()) or 1.0
     middle, spans = (low + high) / 2, np.maximum(high - low, _THINNEST * longest)
-    for limit, a, b in zip(
-        (ax.set_xlim, ax.set_ylim, ax.set_zlim), middle - spans / 2, middle + spans / 2, strict=True
-    ):
-        limit(a, b)
+    for axis, name in enumerate("xyz"):
+        getattr(ax, f"set_{name}lim")(*(middle[axis] + spans[axis] * np.array([-0.5, 0.5])))
     box = spans / np.linalg.norm(spans)
     seen = abs(projection(ax.elev, ax.azim)) @ box  # width and height
     ax.set_box_aspect(box, zoom=_FILL / float(seen.max()))
-    for axis, name in zip(axes, names, strict=True):
-        label_axis(axis, name, units.length, longest)
+    for axis, name in zip(axes, "xyz", strict=True):
+        label_axis(axis, f"${name}$", units.length, longest)
         axis.labelpad = -4 if axis is ax.zaxis else -6
     return ax

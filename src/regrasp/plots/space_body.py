@@ -72,9 +72,9 @@ def dot(ax: Any, at: Array, *, gid: str, zorder: float = 4, **look: Any) -> None
 
 
 def write(ax: Any, text: str, at: Array, towards: Array, gap: float, *, gid: str, color: str = INK) -> None:
-    """A short text with a white rim beside a point, ``gap`` [m] away from it in the picture as it is seen now.
+    """A short text with a white rim beside a point, ``gap`` [m] away from it in the picture.
 
-    It stands where the direction ``towards`` points to in the picture, below if that points at the reader.
+    It stands where the direction ``towards`` points to as seen now, below if that points at the reader.
     """
     sight = projection(ax.elev, ax.azim)  # rows: right and up
     x, y = sight @ towards / (np.linalg.norm(towards) or 1.0)
