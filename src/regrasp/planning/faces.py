@@ -37,9 +37,16 @@ def ball_faces(grasp: Grasp, frictions: Array, facets: int) -> tuple[Array, Arra
         around, shape = _circle(facets, 0.0), (len(grasp), facets)
         return np.broadcast_to(around, (*shape, 2)), np.full(shape, cos(pi / facets))
     n, (t1, t2) = grasp.normals[:, None], np.moveaxis(grasp.tangents, 1, 0)[:, :, None]
-    caps = [_cap(float(mu), facets) for mu in frictions]
+    caps = [_cap(atan(mu), facets, ceil(facets / 4)) for mu in frictions.tolist()]
     x, y, z = (np.array([cap[0][:, axis] for cap in caps])[..., None] for axis in range(3))
     return x * t1 + y * t2 + z * n, np.array([cap[1] for cap in caps])
+
+
+def round_faces(facets: int, dimension: int) -> tuple[Array, Array]:
+    """Directions (k, d) and cosines (k,) all around: v.u <= c r for all k makes |v| <= r for any v."""
+    if dimension == 2:
+        return _circle(facets, 0.0), np.full(facets, cos(pi / facets))
+    return _cap(pi, facets, ceil(facets / 2))
 
 
 def gauge(forces: Array, directions: Array, cosines: Array) -> float:
@@ -54,9 +61,9 @@ def _circle(facets: int, shift: float) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _cap(mu: float, facets: int) -> tuple[Array, Array]:
-    """Directions (k, 3) along (t_1, t_2, n) in rings over the cone, and their cosines (k,)."""
-    rings, half, cap = ceil(facets / 4), pi / facets, atan(mu)
+def _cap(cap: float, facets: int, rings: int) -> tuple[Array, Array]:
+    """Directions (k, 3) along (t_1, t_2, n) in rings over a cone of half-angle ``cap``, cosines (k,)."""
+    half = pi / facets
     directions, cosines = [], []
     for j in range(rings):
         near, far = cap * j / rings, cap * (j + 1) / rings

@@ -130,10 +130,6 @@ def joined(
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
         scaling = plan.scaling
     assert scaling is not None  # a load in time brings its clock
-    if grasp.dimension == 3:
-        raise InvalidInput(
-            "paths through instants are planned for planar grasps so far; this one is in space"
-        )
     if demands.method == "closed-form":
         raise InvalidInput(
             "Eq. 1-3 holds under a constant load, and no straight path keeps these demands; use method='auto'"
@@ -185,7 +181,8 @@ def _course(
     steps = np.maximum(-np.diff(scaling(times)), _LEAST_PACE * np.diff(times) / scaling.duration)
     phases = np.append(0.0, np.cumsum(steps) / steps.sum())
     size = grasp.size or 1.0
-    largest = max(float(abs(fine.vectors[:, :2]).max()), float(abs(fine.vectors[:, 2:]).max()) / size)
+    d = grasp.dimension
+    largest = max(float(abs(fine.vectors[:, :d]).max()), float(abs(fine.vectors[:, d:]).max()) / size)
     task = PathTask(
         grasp=grasp,
         times=times,

@@ -23,7 +23,7 @@ _ATTEMPTS = 4
 def planned_path(
     task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None = None
 ) -> Array:
-    """The best path (K, n, 2) [N], in exact equilibrium inside cones and limits at every instant.
+    """The best path (K, n, d) [N], in exact equilibrium inside cones and limits at every instant.
 
     objective: ``change``, ``effort``, ``peak`` or ``force``; of the paths with the least peak or the widest
     margin the one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or
@@ -136,7 +136,7 @@ def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
     """Whether the active fingers can hold a load within cones and limits."""
     used = np.flatnonzero(active)
     grasp = task.grasp.subset(used.tolist())
-    start = np.zeros((used.size, 2))
+    start = np.zeros((used.size, grasp.dimension))
     return (
         nearest_equilibrium(
             start,
@@ -153,11 +153,12 @@ def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
 
 def _exact(task: PathTask, answer: Solution) -> Array:
     """The solver's path with every instant moved into exact equilibrium inside the cones."""
-    forces = np.zeros((task.times.size, len(task.grasp), 2))
+    d = task.grasp.dimension
+    forces = np.zeros((task.times.size, len(task.grasp), d))
     forces[0], forces[-1] = task.start, task.end
     inner = forces[1:-1]
     inner[:] = task.reference[1:-1]
-    inner[task.active[1:-1]] += answer.value[: 2 * int(task.active[1:-1].sum())].reshape(-1, 2) * task.unit
+    inner[task.active[1:-1]] += answer.value[: d * int(task.active[1:-1].sum())].reshape(-1, d) * task.unit
     wanted = forces.copy()
     for pattern in np.unique(task.active[1:-1], axis=0):
         rows = 1 + np.flatnonzero((task.active[1:-1] == pattern).all(axis=1))
@@ -172,10 +173,11 @@ def _exact(task: PathTask, answer: Solution) -> Array:
 
 
 def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp]) -> Array:
-    """Forces (m, k, 2) of some fingers at m instants, shifted into equilibrium; by Newton if that fails."""
+    """Forces (m, k, d) of some fingers at m instants, shifted into equilibrium; by Newton if that fails."""
     grasp = task.grasp.subset(used.tolist())
     mu, limits = task.frictions[used], task.limits[used]
-    weight = np.array([1.0, 1.0, 1 / (task.grasp.size or 1.0)])
+    weight = np.ones(loads.shape[1])
+    weight[grasp.dimension :] = 1 / (task.grasp.size or 1.0)
     g, w = grasp.matrix * weight[:, None], loads * weight
     flat = forces.reshape(len(forces), -1)
     inverse = np.linalg.pinv(g)
@@ -183,7 +185,7 @@ def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp
         flat = flat - (flat @ g.T + w) @ inverse.T
     moved = flat.reshape(forces.shape)
     normal = (moved * grasp.normals).sum(axis=-1)
-    inside = abs((moved * grasp.tangents).sum(axis=-1)) <= mu * normal
+    inside = grasp.tangential(moved) <= mu * normal
     inside &= (moved**2).sum(axis=-1) <= limits**2
     scale = np.maximum(abs(flat).max(axis=1), abs(w).max(axis=1))
     good = inside.all(axis=1) & (abs(flat @ g.T + w).max(axis=1) <= EQUILIBRIUM / 2 * scale)

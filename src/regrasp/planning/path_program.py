@@ -5,7 +5,7 @@ load are linear in time between instants, and so is equilibrium; the cones are c
 instants holds between them.
 
     equilibrium   G f_k = -w_k                                     zero cone
-    friction      mu n.f_k,i -+ t.f_k,i >= margin sqrt(1 + mu^2)   non-negative
+    friction      mu n.f_k,i - |f_t| >= margin sqrt(1 + mu^2)      non-negative; second order in space
     least normal  n.f_k,i >= least_i                               non-negative
     limits        |f_k,i| <= limit_i                               second order
     rates         |f_k+1,i - f_k,i| <= rate_i (t_k+1 - t_k)        second order
@@ -20,7 +20,7 @@ With a constant load and no limits the least change is f_k = f_0 + (f_K - f_0) s
 """
 
 from dataclasses import dataclass, replace
-from math import cos, inf, pi
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,7 @@ from scipy import sparse
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.planning.faces import cone_faces, round_faces
 from regrasp.programs import Program, Rows
 
 OBJECTIVES = ("change", "effort", "force", "peak", "rate")
@@ -38,9 +39,9 @@ OBJECTIVES = ("change", "effort", "force", "peak", "rate")
 class PathTask:
     """What a path must keep to.
 
-    times: (K,) [s]. loads: (K, 3) [N, N m]. start, end: (n, 2) forces at the ends [N]. active: (K, n), false
-    where a finger carries no force. phases: (K,) rising from 0 to 1. frictions, limits [N], rates [N/s] and
-    least_normals [N]: (n,), infinite or 0 for none. stays: (n,), the fingers whose margin counts.
+    times: (K,) [s]. loads: (K, 3 or 6) [N, N m]. start, end: (n, d) forces at the ends [N]. active: (K, n),
+    false where a finger carries no force. phases: (K,) rising from 0 to 1. frictions, limits [N], rates
+    [N/s] and least_normals [N]: (n,), infinite or 0 for none. stays: (n,), the fingers whose margin counts.
     unit: the size of a force [N].
     """
 
@@ -63,13 +64,13 @@ class PathTask:
         """The least force margin of the fingers that stay, at both ends [N]."""
         grasp, mu = self.grasp, self.frictions
         ends = np.stack([self.start, self.end])
-        normal, tangent = (ends * grasp.normals).sum(axis=-1), (ends * grasp.tangents).sum(axis=-1)
-        margins = (mu * normal - abs(tangent)) / np.sqrt(1 + mu**2)
+        normal = (ends * grasp.normals).sum(axis=-1)
+        margins = (mu * normal - grasp.tangential(ends)) / np.sqrt(1 + mu**2)
         return float(margins[:, self.stays].min())
 
     @property
     def reference(self) -> Array:
-        """(K, n, 2) the straight path by the phases, zero where a finger carries no force [N]."""
+        """(K, n, d) the straight path by the phases, zero where a finger carries no force [N]."""
         s = self.phases[:, None, None]
         straight: Array = self.start * (1 - s) + self.end * s
         return np.where(self.active[..., None], straight, 0.0)
@@ -82,8 +83,8 @@ def path_program(
 
     They come instant by instant, less those of ``task.reference`` and in units of ``task.unit``, then t for
     ``force``, ``peak`` and ``rate``. Counted from the reference, they are zero where nothing bends the path.
-    least_margin: [N], of the fingers that stay. facets: sides of the inner polygon that stands for each
-    circle, or None for second-order cones.
+    least_margin: [N], of the fingers that stay. facets: of the faces that stand for circles, balls and cones
+    in space from inside (``regrasp.planning.faces``), or None for second-order cones.
     """
     if objective not in OBJECTIVES:
         raise InvalidInput(f"objective of a path must be one of {', '.join(OBJECTIVES)}; got {objective!r}")
@@ -95,10 +96,11 @@ class _Builder:
 
     def __init__(self, task: PathTask, objective: str, facets: int | None) -> None:
         self.task, self.objective, self.facets = task, objective, facets
-        self.count, self.width = task.times.size - 2, 2 * len(task.grasp)
+        self.d = task.grasp.dimension
+        self.count, self.width = task.times.size - 2, self.d * len(task.grasp)
         self.active = task.active[1:-1]
         inner = sparse.identity(self.count * self.width, format="csc")
-        self.columns = inner[:, np.repeat(self.active, 2, axis=1).ravel()]
+        self.columns = inner[:, np.repeat(self.active, self.d, axis=1).ravel()]
         self.has_t = objective in ("force", "peak", "rate")
         self.unknowns = self.columns.shape[1] + self.has_t
         self.rows = Rows(self.unknowns)
@@ -109,7 +111,8 @@ class _Builder:
         """All rows, and the objective."""
         task, unit = self.task, self.task.unit
         grasp, length = task.grasp, task.grasp.size or 1.0
-        weight = np.array([1.0, 1.0, 1 / length])
+        weight = np.ones(task.loads.shape[1])
+        weight[self.d :] = 1 / length
         balance = sparse.kron(sparse.identity(self.count), grasp.matrix * weight[:, None], format="csr")
         self.rows.equal(self._wide(balance @ self.columns), (task.loads[1:-1] * weight / unit).ravel())
         self._cones(least_margin / unit)
@@ -151,12 +154,12 @@ class _Builder:
     def _of_fingers(
         self, each: Array, fingers: NDArray[np.intp]
     ) -> tuple[sparse.csr_matrix, NDArray[np.intp]]:
-        """Rows ``each`` (k, r, 2) of fingers (k,) at every instant where they are active.
+        """Rows ``each`` (k, r, d) of fingers (k,) at every instant where they are active.
 
         Returns the matrix and, for each of its rows, the place in ``fingers``.
         """
         k, r, _ = each.shape
-        block = np.zeros((k, r, self.width // 2, 2))
+        block = np.zeros((k, r, self.width // self.d, self.d))
         block[np.arange(k), :, fingers] = each
         whole = sparse.kron(sparse.identity(self.count), block.reshape(k * r, self.width), format="csr")
         used = np.repeat(self.active[:, fingers], r, axis=1).ravel()
@@ -166,13 +169,19 @@ class _Builder:
     def _cones(self, least_margin: float) -> None:
         grasp, mu = self.task.grasp, self.task.frictions
         rough, smooth = np.flatnonzero(mu > 0), np.flatnonzero(mu == 0)
-        n, t = grasp.normals[:, None], grasp.tangents[:, None]
+        n, t = grasp.normals[:, None], grasp.tangents.reshape(len(grasp), -1, self.d)
         if rough.size:
-            across = mu[rough, None, None] * n[rough]
-            matrix, place = self._of_fingers(np.hstack([across - t[rough], across + t[rough]]), rough)
+            is_round = self.d == 3 and self.facets is None
+            each = np.hstack([mu[:, None, None] * n, t]) if is_round else cone_faces(grasp, mu, self.facets)
+            matrix, place = self._of_fingers(each[rough], rough)
             per_margin = np.where(self.task.stays, np.sqrt(1 + mu**2), 0.0)[rough][place]
-            widened = -per_margin if self.objective == "force" else 0.0
-            self.rows.at_least_zero(self._wide(matrix, widened), -least_margin * per_margin)
+            if is_round:
+                per_margin[np.arange(place.size) % 3 > 0] = 0.0
+            wide = self._wide(matrix, -per_margin if self.objective == "force" else 0.0)
+            if is_round:
+                self.rows.second_order(wide, -least_margin * per_margin, size=3)
+            else:
+                self.rows.at_least_zero(wide, -least_margin * per_margin)
         if self.objective == "force":
             none = sparse.csr_matrix((1, self.columns.shape[1]))
             self.rows.at_least_zero(self._wide(none, -1.0), self.task.end_margin / self.task.unit)
@@ -184,20 +193,21 @@ class _Builder:
         """|f_i| <= radius_i + slope t."""
         if not fingers.size:
             return
-        each = np.zeros((fingers.size, 3, 2))
-        each[:, 1], each[:, 2] = (1.0, 0.0), (0.0, 1.0)
+        each = np.zeros((fingers.size, self.d + 1, self.d))
+        each[:, 1:] = np.eye(self.d)
         matrix, place = self._of_fingers(each, fingers)
-        first = np.arange(place.size) % 3 == 0
+        first = np.arange(place.size) % (self.d + 1) == 0
         self._round(matrix, np.where(first, radii[fingers][place], 0.0), np.where(first, slope or 0.0, 0.0))
 
     def _round(self, matrix: sparse.csr_matrix, offset: Array, t: Array) -> None:
-        """Cones of three rows (radius, x, y), or the polygons inside them."""
+        """Cones of rows (radius, x, y[, z]), or the polygons or polyhedra inside them."""
+        size = self.d + 1
         if self.facets is None:
-            self.rows.second_order(self._wide(matrix, t), offset, size=3)
+            self.rows.second_order(self._wide(matrix, t), offset, size=size)
             return
-        angles, apothem = 2 * pi * np.arange(self.facets) / self.facets, cos(pi / self.facets)
-        faces = np.column_stack([np.full(self.facets, apothem), -np.cos(angles), -np.sin(angles)])
-        flat = sparse.kron(sparse.identity(matrix.shape[0] // 3), faces, format="csr")
+        directions, cosines = round_faces(self.facets, self.d)
+        faces = np.column_stack([cosines, -directions])
+        flat = sparse.kron(sparse.identity(matrix.shape[0] // size), faces, format="csr")
         self.rows.at_least_zero(self._wide(flat @ matrix, flat @ t), flat @ offset)
 
     def _change(self) -> tuple[sparse.csr_matrix, Array]:
@@ -215,13 +225,12 @@ class _Builder:
         moves = (task.active[1:] | task.active[:-1]) & (task.rates < inf)
         step, finger = np.nonzero(moves)
         allowed = task.rates[finger] * np.diff(task.times)[step] / task.unit
-        at = step * self.width + 2 * finger  # row of the change's x
-        k = np.arange(at.size)
-        pick = sparse.csr_matrix(
-            (np.ones(2 * k.size), (np.r_[3 * k + 1, 3 * k + 2], np.r_[at, at + 1])), (3 * k.size, offset.size)
-        )
-        radius = np.zeros(3 * k.size)
-        radius[::3] = allowed
+        axes, size = np.arange(self.d), self.d + 1
+        at = (step * self.width + self.d * finger)[:, None] + axes  # rows of the change
+        to = size * np.arange(len(at))[:, None] + 1 + axes
+        pick = sparse.csr_matrix((np.ones(at.size), (to.ravel(), at.ravel())), (size * len(at), offset.size))
+        radius = np.zeros(size * len(at))
+        radius[::size] = allowed
         bare = change[:, : self.columns.shape[1]]
         if self.objective == "rate":
             self._round(pick @ bare, pick @ offset, radius)

@@ -76,7 +76,7 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
 
 
 def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "clarabel") -> list[Array]:
-    """Forces (n, 2) of every state [N], in exact equilibrium, by both programs in turn.
+    """Forces (n, d) of every state [N], in exact equilibrium, by both programs in turn.
 
     Raises ``Infeasible`` where some state has no forces, ``SolverFailed`` where the back end finds none.
     """
@@ -99,8 +99,9 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
         raise SolverFailed(f"{backend}: no least change at the widest margin", answer.program, answer)
     result, begin = [], 0
     for state in states:
-        wanted = answer.value[begin : begin + 2 * len(state.grasp)].reshape(-1, 2) * unit
-        begin += 2 * len(state.grasp)
+        size = state.grasp.positions.size
+        wanted = answer.value[begin : begin + size].reshape(state.grasp.positions.shape) * unit
+        begin += size
         chooser = Chooser(state.grasp, state.load, backend, None, state.limits)
         forces = chooser.settled(wanted, state.frictions, state.limits)
         if forces is None:
@@ -111,7 +112,8 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
 
 def _changes(states: Sequence[SequenceState], width: int) -> sparse.csr_matrix:
     """Rows f_k+1 - f_k of every contact of two states that follow one another."""
-    starts = np.concatenate([[0], np.cumsum([2 * len(state.grasp) for state in states])])
+    d = states[0].grasp.dimension
+    starts = np.concatenate([[0], np.cumsum([d * len(state.grasp) for state in states])])
     rows: list[int] = []
     columns: list[int] = []
     signs: list[float] = []
@@ -120,9 +122,9 @@ def _changes(states: Sequence[SequenceState], width: int) -> sparse.csr_matrix:
         for place in dict.fromkeys((*states[k].places, *states[k + 1].places)):
             for at, sign in ((k, -1.0), (k + 1, 1.0)):
                 if place in states[at].places:
-                    first = int(starts[at]) + 2 * states[at].places.index(place)
-                    rows += [row, row + 1]
-                    columns += [first, first + 1]
-                    signs += [sign, sign]
-            row += 2
+                    first = int(starts[at]) + d * states[at].places.index(place)
+                    rows += range(row, row + d)
+                    columns += range(first, first + d)
+                    signs += [sign] * d
+            row += d
     return sparse.csr_matrix((signs, (rows, columns)), (row, width))
