@@ -20,23 +20,25 @@ FLOORS: dict[str, Set[str]] = {
     "closed_form": {"closed_form"},
     "programs": {"errors", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
-    "planning": {"errors", "display", "mechanics", "closed_form", "outline", "programs", "planning"},
+    "planning": {"errors", "display", "mechanics", "closed_form", "outline", "mesh", "programs", "planning"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
+    "mesh": {"errors", "mechanics", "outline", "mesh"},
     "files": {
         "errors",
         "mechanics",
         "outline",
+        "mesh",
         "closed_form",
         "programs",
         "planning",
         "verification",
         "files",
     },
-    "plots": {"errors", "mechanics", "outline", "closed_form", "planning", "plots"},
-    "cli": {"", "errors", "mechanics", "outline", "planning", "verification", "files", "plots"},
+    "plots": {"errors", "mechanics", "outline", "mesh", "closed_form", "planning", "plots"},
+    "cli": {"", "errors", "mechanics", "outline", "mesh", "planning", "verification", "files", "plots"},
     # regrasp/__init__.py: the public names
-    "": {"errors", "mechanics", "outline", "planning", "verification"},
+    "": {"errors", "mechanics", "outline", "mesh", "planning", "verification"},
     "__main__": {"cli"},
 }
 SOLVERS = {
@@ -57,6 +59,7 @@ HEAVY = {
     "shapely",
     "svgpathtools",
     "ezdxf",
+    "trimesh",
 }
 LINES = 430
 
@@ -118,14 +121,19 @@ def may_import(module: str, package: str) -> bool:
         return module in (
             "regrasp.closed_form.compiled",
             "regrasp.closed_form.compiled_holds",
+            "regrasp.closed_form.compiled_paths",
             "regrasp.programs.audit",
         )
     if package in SOLVERS:
         return module == f"regrasp.programs.{package}_backend"
     if package in ("click", "rich"):
         return here == "cli"
-    if package in ("shapely", "svgpathtools", "ezdxf"):
+    if package == "shapely":
+        return here in ("outline", "mesh")
+    if package in ("svgpathtools", "ezdxf"):
         return here == "outline"
+    if package == "trimesh":
+        return here == "mesh"
     if here in ("errors", "display", "closed_form", "mechanics", "verification"):
         return package == "numpy" or package in sys.stdlib_module_names
     return True
@@ -197,6 +205,8 @@ OFFENCES = [
     ("regrasp.planning.timing", "from .. import plots", "regrasp.plots"),
     ("regrasp.planning.timing", "import shapely", "shapely"),
     ("regrasp.outline.svg", "from ..files.source import text_of", "regrasp.files.source"),
+    ("regrasp.outline.outline", "from regrasp.mesh import Mesh", "regrasp.mesh"),
+    ("regrasp.planning.timing", "import trimesh", "trimesh"),
     ("regrasp.planning.timing", "from pydantic import BaseModel", "pydantic"),
     ("regrasp.planning.timing", "if TYPE_CHECKING:\n    import regrasp.files", "regrasp.files"),
     ("regrasp.planning", "from ..plots import style", "regrasp.plots.style"),

@@ -7,6 +7,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.planning.batch import best_squeezes, locus_intervals
 from regrasp.planning.change import plan_addition, plan_removal
@@ -39,6 +40,7 @@ __all__ = [
     "InvalidInput",
     "LoadSeries",
     "Margins",
+    "Mesh",
     "Outline",
     "RegraspError",
     "RegraspPlan",

@@ -1,0 +1,72 @@
+"""Vertices and faces as arrays: checked, duplicates merged, what is unused left out."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import numbers
+
+Indices = NDArray[np.int64]
+
+
+def checked_vertices(vertices: ArrayLike) -> Array:
+    """(k, 3) finite floats, a new array."""
+    try:
+        result = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidInput("vertices must be numbers of shape (any, 3)") from None
+    if result.ndim != 2 or result.shape[1] != 3:
+        raise InvalidInput(f"vertices must have shape (any, 3), got {result.shape}")
+    bad = np.flatnonzero(~np.isfinite(result).all(axis=1))
+    if bad.size:
+        more = f" ({bad.size} are not)" if bad.size > 1 else ""
+        raise InvalidInput(f"vertices must be finite, vertex {bad[0]} is {numbers(result[bad[0]])}{more}")
+    return result
+
+
+def checked_faces(faces: ArrayLike, count: int) -> Indices:
+    """(m, 3) whole numbers that name ``count`` vertices, a new array."""
+    try:
+        given: NDArray[Any] = np.array(faces)
+    except ValueError:  # rows of different lengths
+        raise InvalidInput("faces must be triangles, three vertex numbers in each row") from None
+    if given.size == 0:
+        raise InvalidInput("the mesh is empty: it has no faces")
+    if given.dtype.kind not in "iu" or given.ndim != 2:
+        raise InvalidInput(
+            f"faces must be whole numbers of shape (any, 3), got {given.dtype} of shape {given.shape}"
+        )
+    if given.shape[1] != 3:
+        raise InvalidInput(f"faces must be triangles, shape (any, 3); got {given.shape}: divide them first")
+    wrong = np.argwhere((given < 0) | (given >= count))
+    if wrong.size:
+        face, corner = wrong[0]
+        raise InvalidInput(
+            f"face {face} names vertex {given[face, corner]}; there are {count}, numbered from 0"
+        )
+    return given.astype(np.int64)
+
+
+def merged(vertices: Array, faces: Indices, tolerance: float = 0.0) -> tuple[Array, Indices]:
+    """The mesh whose vertices within ``tolerance`` [m] of one another are one, the first of them.
+
+    Faces that lose a corner by it and vertices that no face names are left out; the order stays.
+    """
+    if tolerance:
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+        from scipy.spatial import cKDTree
+
+        i, j = cKDTree(vertices).query_pairs(tolerance, output_type="ndarray").T
+        links = coo_array((np.ones(i.size), (i, j)), shape=(len(vertices),) * 2)
+        same = connected_components(links, directed=False)[1]
+    else:
+        same = np.unique(vertices + 0.0, axis=0, return_inverse=True)[1].ravel()  # + 0.0: -0.0 is 0.0
+    _, first = np.unique(same, return_index=True)
+    faces = first[same][faces]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    used, renumbered = np.unique(faces, return_inverse=True)
+    return vertices[used], renumbered.reshape(-1, 3)
