@@ -6,6 +6,14 @@ A force of fixed size that turns by Delta < pi is, at the angle theta from the f
 
 and the same combination of the forces balances it. a and b are never negative, so the cones are kept; their
 sum is cos(theta - Delta / 2) / cos(Delta / 2), from 1 at the ends to 1 / cos(Delta / 2) in the middle.
+
+A load with a part that does not turn (a torque in the plane; in space what lies along the axis) leaves that
+line. It runs along an arc, whose tangents at both ends meet in w^M, and with the squares of half angles
+
+    w = a w^A + c w^M + b w^B,   a = sin^2((Delta - theta) / 2) / sin^2(Delta / 2),
+                                 b = sin^2(theta / 2) / sin^2(Delta / 2),   c = 1 - a - b >= 0:
+
+a rational quadratic Bezier curve. Three states, the middle one under w^M, hold everything between them.
 """
 
 from math import atan2, cos, hypot, pi, sin, sqrt
@@ -50,6 +58,46 @@ def turning_peaks(aa: float, ab: float, bb: float, delta: float) -> tuple[float,
     c = (aa - 2 * ab * t + bb) / 2
     p, q = (aa * cos(2 * delta) - 2 * ab * t + bb) / -2, s * (ab - aa * t)
     return sqrt(_highest(c, p, q, delta)) / abs(s), sqrt(_highest(c, -p, -q, delta)) / abs(s)
+
+
+def arc_weights(delta: float, theta: Array) -> tuple[Array, Array, Array]:
+    """(a, c, b) of an arc by ``delta`` in (-pi, pi) at angles ``theta`` (...) between 0 and delta."""
+    whole, before, after = sin(delta / 2), np.sin(theta / 2), np.sin((delta - theta) / 2)
+    a, b = (after / whole) ** 2, (before / whole) ** 2
+    return a, 2 * cos(delta / 2) * (before / whole) * (after / whole), b
+
+
+def arc_path(start: Array, middle: Array, end: Array, delta: float, theta: Array) -> Array:
+    """Forces (..., n, d) at angles ``theta`` (...), by way of ``middle`` (n, d), the forces under w^M."""
+    a, c, b = (weight[..., None, None] for weight in arc_weights(delta, theta))
+    path: Array = a * start + c * middle + b * end
+    return path
+
+
+def arc_slope(start: Array, middle: Array, end: Array, delta: float, theta: Array) -> Array:
+    """The derivative of ``arc_path`` with respect to theta, (..., n, d)."""
+    square = 2 * sin(delta / 2) ** 2
+    a, b = -np.sin(delta - theta)[..., None, None] / square, np.sin(theta)[..., None, None] / square
+    slope: Array = a * (start - middle) + b * (end - middle)
+    return slope
+
+
+def arc_peaks(start: Array, middle: Array, end: Array, delta: float) -> tuple[float, float]:
+    """The largest |f(theta)| and |f'(theta)| of one force (d,) along an arc.
+
+    With x = theta - delta / 2 it is f = u + v cos x + w sin x: the slope of |f|^2 is a trigonometric
+    polynomial of degree two, whose zeros are those of a quartic in exp(i x).
+    """
+    half = delta / 2
+    v = (middle - (start + end) / 2) * (cos(half) / sin(half) ** 2)
+    u, w = middle - v / cos(half), (end - start) / (2 * sin(half))
+    vv, ww, vw = float(v @ v), float(w @ w), float(v @ w)
+    first, second = complex(u @ w, u @ v), complex(vw, (vv - ww) / 2)  # of exp(i x) and exp(2 i x)
+    zeros = np.angle(np.roots([second, first, 0.0, first.conjugate(), second.conjugate()]))
+    at = np.r_[-half, half, zeros[abs(zeros) <= abs(half)]][:, None]
+    highest = ((u + v * np.cos(at) + w * np.sin(at)) ** 2).sum(axis=1).max()
+    steepest = max(_highest((vv + ww) / 2, (ww - vv) / 2, -vw, side) for side in (half, -half))
+    return sqrt(float(highest)), sqrt(steepest)
 
 
 def _highest(c: float, p: float, q: float, delta: float) -> float:

@@ -1,11 +1,14 @@
 """Planning the turn of an object in its fingers' hold."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from math import ceil, cos, pi
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array, number
@@ -25,12 +28,14 @@ from regrasp.planning.choice import choose_forces
 from regrasp.planning.criteria import PEAK_RATIO, ChosenForces, Criteria
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record
-from regrasp.planning.turn import Turn, turned_load
+from regrasp.planning.turn import Turn, load_between, still_part, turned_load, unit_axis
 from regrasp.planning.turning import TurningTransition
 
 STEP = pi / 3
 """Largest angle between two states of a turn if there are any: forces grow by 1 / cos(pi / 6) = 1.155."""
 
+# How often the step is halved where a state between two angles does not exist.
+_HALVINGS = 4
 # A step this near to pi lets forces grow without bound.
 _NEARLY_PI = 0.95 * pi
 
@@ -39,6 +44,7 @@ def plan_rotation(
     start: GraspState | Grasp,
     angle: float,
     *,
+    axis: ArrayLike | None = None,
     load: Wrench | None = None,
     end: GraspState | None = None,
     objective: str = "angle",
@@ -53,13 +59,17 @@ def plan_rotation(
     """Forces over time while the object turns and all fingers stay.
 
     start: the state to start from; or a grasp, whose state is then chosen under ``load``.
-    angle: of the object [rad], counter-clockwise; any size. The load is a force through the centre of mass,
-    fixed in the world, such as a weight; in the object frame it turns the other way.
+    angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size.
+    axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in space
+    only. The load is fixed in the world, such as a weight; in the object frame it turns the other way.
     end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
     Everything else is as for ``plan_removal``.
 
     Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
-    ``STEP`` and left out where none exists, as long as the gap is below pi.
+    ``STEP`` and left out where none exists, as long as the gap is below pi. Where a part of the load does not
+    turn (a torque in the plane, a load along the axis in space), every one of them must exist, and one more
+    between each two, under a turning part that is larger by 1 / cos(step / 2); steps are halved down to
+    ``STEP`` / 16 until it does.
     Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
     """
     criteria = Criteria(objective, max_force, peak_ratio, reserve)
@@ -69,14 +79,10 @@ def plan_rotation(
     number(balance_tolerance, "balance_tolerance", least=0)
     clock = scaling_of(duration, scaling)
     given, load = grasp_and_load(start, load)
-    if load.torque.any():
-        raise InvalidInput(
-            f"a turning path holds a force through the centre of mass, got the torque {load.torque[0]:g}; "
-            f"plan it with a load function of time"
-        )
+    about = _axis(axis, given)
     grasp = limited(given, max_force)
     count = ceil(abs(turn) / STEP - 1e-9)
-    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9))
+    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9), about)
     choices: list[Choice] = []
     change = 0.0
     first: Array
@@ -88,7 +94,7 @@ def plan_rotation(
         best = chooser.at(0.0)
         first = np.array(best.forces)
         choices.append(Choice("start", objective, best.method, best.force_limits))
-    last_load = turned_load(load, turn)
+    last_load = turned_load(load, turn, about)
     if end is None:
         best = chooser.at(turn)
         last = np.array(best.forces)
@@ -98,7 +104,10 @@ def plan_rotation(
         state = GraspState(grasp, last_load, end.forces)
         balanced = balanced_start(state, criteria, balance_tolerance, "end")
         last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
-    knots, forces = _on_the_way(chooser, turn, count, first, last)
+    if still_part(load, about) is None:
+        knots = Turn(*_on_the_way(chooser, turn, count, first, last), about)
+    else:
+        knots = _along_arcs(chooser, turn, count, first, last)
     plan = TurningTransition(
         "rotation",
         None,
@@ -106,7 +115,7 @@ def plan_rotation(
         GraspState(grasp, last_load, last),
         clock,
         Record(reserve, tuple(choices), change),
-        turn=Turn(knots, forces),
+        turn=knots,
     )
     _refuse_high_forces(plan)
     return plan
@@ -130,10 +139,15 @@ class _Chooser(NamedTuple):
     method: str
     ease: float
     """Fraction of the force limits that leaves room for the growth of forces between two states."""
+    axis: Array | None
 
     def at(self, angle: float) -> ChosenForces:
         """The best forces after a turn by ``angle``, within eased limits if there are any."""
-        grasp, criteria, load = self.grasp, self.criteria, turned_load(self.load, angle)
+        return self.under(turned_load(self.load, angle, self.axis))
+
+    def under(self, load: Wrench) -> ChosenForces:
+        """The best forces under a load, within eased limits if there are any."""
+        grasp, criteria = self.grasp, self.criteria
         if any(contact.max_force is not None for contact in grasp):
             less = eased(grasp, self.ease)
             try:
@@ -164,6 +178,42 @@ def _on_the_way(
     if widest > _NEARLY_PI and reason is not None:
         raise reason
     return knots, forces
+
+
+def _along_arcs(chooser: _Chooser, turn: float, count: int, first: Array, last: Array) -> Turn:
+    """States at equal steps and one between each two, in halved steps until all exist."""
+    for halved in range(_HALVINGS + 1):
+        angles = [turn * k / (count << halved) for k in range((count << halved) + 1)]
+        forces = [first, *(_reached(chooser.at, a) for a in angles[1:-1]), last]
+        try:
+            middles = [_reached(partial(_between, chooser, b - a), (a + b) / 2) for a, b in pairwise(angles)]
+        except Infeasible as refusal:
+            reason = refusal
+            continue
+        return Turn(angles, forces, chooser.axis, middles)
+    raise reason
+
+
+def _between(chooser: _Chooser, step: float, middle: float) -> ChosenForces:
+    return chooser.under(load_between(chooser.load, middle - step / 2, middle + step / 2, chooser.axis))
+
+
+def _reached(choose: Callable[[float], ChosenForces], angle: float) -> Array:
+    try:
+        return np.array(choose(angle).forces)
+    except Infeasible as refusal:
+        raise Infeasible(f"after a turn of {angle:.6g} rad: {refusal}", refusal.certificate) from None
+
+
+def _axis(axis: ArrayLike | None, grasp: Grasp) -> Array | None:
+    """The axis of a turn, checked: one in space, none in the plane."""
+    if grasp.dimension == 2:
+        if axis is not None:
+            raise InvalidInput(f"an object in the plane turns in the plane; leave axis out, got {axis!r}")
+        return None
+    if axis is None:
+        raise InvalidInput("a turn in space needs the axis, such as axis=[1, 0, 0]")
+    return unit_axis(axis)
 
 
 def _refuse_high_forces(plan: TurningTransition) -> None:

@@ -8,58 +8,85 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.closed_form.turning import turning_path, turning_peaks, turning_slope
+from regrasp.closed_form.turning import (
+    arc_path,
+    arc_peaks,
+    arc_slope,
+    turning_path,
+    turning_peaks,
+    turning_slope,
+)
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import numbers
 from regrasp.mechanics.wrench import torque
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
-from regrasp.planning.turn import Turn
+from regrasp.planning.turn import Turn, rotation_matrix, still_part
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TurningTransition(Transition):
-    """Finger forces, in the object frame, while the object turns under a force through its centre of mass.
+    """Finger forces, in the object frame, while the object turns under a load that stays in the world.
 
-    Between the angles of ``turn`` the forces are a f_k + b f_k+1 with a, b >= 0 (docs/facts.md, 6), which
-    keeps equilibrium and cones exactly. The object's angle is turn.angle (1 - T(t)).
+    Between the angles of ``turn`` the forces are a f_k + b f_k+1 with a, b >= 0, or with a middle state where
+    a part of the load does not turn (docs/facts.md, 6), which keeps equilibrium and cones exactly. The
+    object's angle is turn.angle (1 - T(t)), about the centre of mass and in space about ``turn.axis``.
     """
 
     turn: Turn = field(kw_only=True)
 
     def _check(self) -> None:
-        if self.start.load.torque.any():
-            raise InvalidInput(
-                "a turning path holds a force through the centre of mass; this load has a torque: plan it "
-                "with a load function of time"
-            )
         if self.turn.forces.shape[1:] != self.start.forces.shape:
-            raise InvalidInput(f"forces of a turn must have shape (K, {len(self.grasp)}, 2)")
+            n, d = self.start.forces.shape
+            raise InvalidInput(f"forces of a turn must have shape (K, {n}, {d})")
+        still = still_part(self.start.load, self.turn.axis)
+        if still is not None and self.turn.middles is None:
+            raise InvalidInput(
+                f"a part of the load, {still!r}, does not turn: a turn needs middles, states between its angles"
+            )
 
     def orientation(self, t: ArrayLike) -> Array:
-        """The object's angle from the start [rad], counter-clockwise; of the shape of t."""
+        """The object's angle from the start [rad], counter-clockwise or about the axis; of the shape of t."""
         result: Array = self.turn.angle * (1 - self.scaling(t))
         return result
 
+    def rotations(self, t: ArrayLike) -> Array:
+        """(3, 3) or (m, 3, 3) matrices from the turned object's frame to its frame at the start; in space."""
+        axis = self.turn.axis
+        if axis is None:
+            raise InvalidInput("an object in the plane turns by an angle; ask for orientation(t)")
+        theta = self.orientation(t)
+        matrices = [rotation_matrix(axis, angle) for angle in theta.ravel().tolist()]
+        return np.reshape(matrices, (*theta.shape, 3, 3))
+
     def forces(self, t: ArrayLike) -> Array:
         """Finger forces in the object frame, (n, 2) at a time, (m, n, 2) at m times [N]."""
-        return self._along(turning_path, t)
+        return self._along(turning_path, arc_path, t)
 
     def wrenches(self, t: ArrayLike) -> Array:
-        """Finger wrenches (n, 3) or (m, n, 3), object frame [N, N m]."""
+        """Finger wrenches (n, 3) or (m, n, 3), object frame [N, N m]; (…, 6) in space."""
         forces = self.forces(t)
         return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
 
     def load(self, t: ArrayLike) -> Array:
-        """The load (3,) or (m, 3) in the object frame [N, N m]."""
-        theta, (fx, fy) = self.orientation(t), self.start.load.force
-        c, s = np.cos(theta), np.sin(theta)
-        return np.stack([c * fx + s * fy, c * fy - s * fx, 0 * c], axis=-1)
+        """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space."""
+        load, axis, theta = self.start.load, self.turn.axis, self.orientation(t)
+        c, s = np.cos(theta)[..., None], np.sin(theta)[..., None]
+        if axis is None:
+            fx, fy = load.force
+            turned = c * load.force + s * np.array([fy, -fx])
+            return np.concatenate([turned, np.broadcast_to(load.torque, c.shape)], axis=-1)
+        parts = []
+        for vector in (load.force, load.torque):
+            still = (axis @ vector) * axis
+            parts.append(still + c * (vector - still) - s * np.cross(axis, vector))
+        return np.concatenate(parts, axis=-1)
 
     def rates(self, t: ArrayLike) -> Array:
         """Force rates in the object frame, (n, 2) or (m, n, 2) [N/s]."""
         speed = -self.turn.angle * self.scaling.velocity(t)
-        result: Array = speed[..., None, None] * self._along(turning_slope, t)
+        result: Array = speed[..., None, None] * self._along(turning_slope, arc_slope, t)
         return result
 
     @property
@@ -69,7 +96,10 @@ class TurningTransition(Transition):
 
     @property
     def peak(self) -> float:
-        """The largest |f_i| on the way, exact [N]; at most 1 / cos(step / 2) times that of ``turn``."""
+        """The largest |f_i| on the way, exact [N].
+
+        At most 1 / cos(step / 2) times that of ``turn.forces``; with middles at most the largest of all.
+        """
         return float(self.peaks.max())
 
     @property
@@ -87,7 +117,12 @@ class TurningTransition(Transition):
     @cached_property
     def _peaks(self) -> Array:
         """(K - 1, n, 2) the largest |f_i| [N] and |df_i/dtheta| [N/rad] of each piece."""
-        f, g = self.turn.forces[:-1], self.turn.forces[1:]
+        f, g, middles = self.turn.forces[:-1], self.turn.forces[1:], self.turn.middles
+        if middles is not None:
+            pieces = zip(f, middles, g, np.diff(self.turn.angles).tolist(), strict=True)
+            return np.array(
+                [[arc_peaks(*force, step) for force in zip(a, c, b, strict=True)] for a, c, b, step in pieces]
+            )
         products = np.stack([(f * f).sum(axis=-1), (f * g).sum(axis=-1), (g * g).sum(axis=-1)], axis=-1)
         steps = np.diff(self.turn.angles).tolist()
         return np.array(
@@ -105,8 +140,8 @@ class TurningTransition(Transition):
         change = (self.steepest / self.scaling.steepest)[:, None]
         return self.retimed(TimeScaling.fastest(change, rate_limit, self.scaling))
 
-    def _along(self, path: Callable[[Array, Array, float, Array], Array], t: ArrayLike) -> Array:
-        """A closed form of one piece, at times on all pieces."""
+    def _along(self, path: Callable[..., Array], arc: Callable[..., Array], t: ArrayLike) -> Array:
+        """The closed form of one piece, without or with a middle state, at times on all pieces."""
         theta, turn = self.orientation(t), self.turn
         flat, sign = theta.ravel(), float(np.sign(turn.angle))
         piece = np.searchsorted(sign * turn.angles, sign * flat, side="right") - 1
@@ -115,11 +150,16 @@ class TurningTransition(Transition):
         for k in np.unique(piece):
             here = piece == k
             step = float(turn.angles[k + 1] - turn.angles[k])
-            result[here] = path(turn.forces[k], turn.forces[k + 1], step, flat[here] - turn.angles[k])
+            ends, at = (turn.forces[k], turn.forces[k + 1]), flat[here] - turn.angles[k]
+            if turn.middles is None:
+                result[here] = path(*ends, step, at)
+            else:
+                result[here] = arc(ends[0], turn.middles[k], ends[1], step, at)
         return result.reshape(*theta.shape, *self.start.forces.shape)
 
     def _load_in_words(self) -> str:
-        return f"{self.start.load!r}, turning the object by {np.degrees(self.turn.angle):.6g} deg"
+        about = "" if self.turn.axis is None else f" about {numbers(self.turn.axis)}"
+        return f"{self.start.load!r}, turning the object by {np.degrees(self.turn.angle):.6g} deg{about}"
 
     def _path_in_words(self) -> list[str]:
         return [f"{self.turn.angles.size - 1} pieces in closed form, largest force {self.peak:.4g}"]

@@ -61,7 +61,7 @@ def _check_equilibrium(state: GraspState, label: str) -> tuple[float, list[str]]
     forces = [exact(f) for f in state.forces.tolist()]
     for r, f in zip(positions, forces, strict=True):
         force = [a + b for a, b in zip(force, f, strict=True)]
-        torque = [a + b for a, b in zip(torque, _cross(r, f), strict=True)]
+        torque = [a + b for a, b in zip(torque, cross(r, f), strict=True)]
     arm2 = max(dot(r, r) for r in positions) or Fraction(1)
     scale2 = max(dot(load[:d], load[:d]), dot(load[d:], load[d:]) / arm2, *(dot(f, f) for f in forces))
     residual2 = max(dot(force, force), dot(torque, torque) / arm2)
@@ -86,7 +86,8 @@ def dot(a: Vector, b: Vector) -> Fraction:
     return sum((x * y for x, y in zip(a, b, strict=True)), start=Fraction(0))
 
 
-def _cross(r: Vector, f: Vector) -> Vector:
+def cross(r: Vector, f: Vector) -> Vector:
+    """The product r x f: one number in the plane, three in space."""
     if len(r) == 2:
         return [r[0] * f[1] - r[1] * f[0]]
     return [r[1] * f[2] - r[2] * f[1], r[2] * f[0] - r[0] * f[2], r[0] * f[1] - r[1] * f[0]]

@@ -43,7 +43,15 @@ class Turn(Protocol):
 
     @property
     def forces(self) -> Array:
-        """(K, n, 2) [N], object frame."""
+        """(K, n, d) [N], object frame."""
+
+    @property
+    def axis(self) -> Array | None:
+        """(3,) unit axis in space; None in the plane."""
+
+    @property
+    def middles(self) -> Array | None:
+        """(K - 1, n, d) [N] between the angles, where a part of the load does not turn; None elsewhere."""
 
 
 class Record(Protocol):

@@ -5,7 +5,7 @@ from typing import Protocol
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, dot, exact
 from regrasp.verification.protocols import Plan
-from regrasp.verification.turns import cosine_sine
+from regrasp.verification.turned import cosine_sine
 
 # No more fingers than these touch the object at once.
 FINGERS = 3

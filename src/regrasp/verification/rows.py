@@ -73,7 +73,7 @@ def verify_setpoints(
     if plan.turn is not None:
         if angles is None:
             return Verification(("set-points of an object that turns need its angles",), inf, 0, 0)
-        loads = _turned_loads(start.load, angles)
+        loads = _turned_loads(start.load, angles, plan.turn.axis)
     elif plan.course is None:
         loads = np.broadcast_to(start.load.vector, (len(forces), start.load.vector.size))
     elif times is None:
@@ -87,8 +87,17 @@ def verify_setpoints(
     )
 
 
-def _turned_loads(load: Wrench, angles: Array) -> Array:
-    """(m, 3) a planar load seen from an object at these angles."""
-    (fx, fy), torques = load.force, np.full(angles.shape, load.torque[0])
-    c, s = np.cos(angles), np.sin(angles)
-    return np.stack([c * fx + s * fy, c * fy - s * fx, torques], axis=-1)
+def _turned_loads(load: Wrench, angles: Array, axis: Array | None) -> Array:
+    """(m, 3) or (m, 6) a load seen from an object at these angles, about ``axis`` in space."""
+    c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    if axis is None:
+        fx, fy = load.force
+        turned = c * load.force + s * np.array([fy, -fx])
+        return np.hstack([turned, np.broadcast_to(load.torque, c.shape)])
+    still = [(axis @ vector) * axis for vector in (load.force, load.torque)]
+    return np.hstack(
+        [
+            along + c * (vector - along) - s * np.cross(axis, vector)
+            for along, vector in zip(still, (load.force, load.torque), strict=True)
+        ]
+    )

@@ -8,6 +8,12 @@ b = sin(theta) / sin(Delta), never negative for |Delta| < pi. With f and g in th
 residuals at the ends grow by a + b <= 1 / cos(Delta / 2) at most, and the last term is what w_g differs from
 w_f turned by Delta. The load at each angle is the start's, turned by sines and cosines in rational
 arithmetic. The largest |a f + b g|^2 is bounded by c + |(p, q)|, the crest of its sine wave in 2 theta.
+
+All of the load must turn for that. A load with a still part s, a torque in the plane or what lies along the
+axis in space, needs a middle state m between two angles, under w_m = s + (w(Delta / 2) - s) / cos(Delta / 2):
+then w(theta) = a w_f + c w_m + b w_g with a = sin^2((Delta - theta) / 2) / sin^2(Delta / 2), b the same with
+theta, and c = 1 - a - b = 2 cos(Delta / 2) sin(theta / 2) sin((Delta - theta) / 2) / sin^2(Delta / 2): all at
+least 0 for |Delta| < pi and of sum 1, so that f, m and g decide everything between them, force limits too.
 """
 
 from fractions import Fraction
@@ -15,12 +21,11 @@ from itertools import pairwise
 from math import inf, sqrt
 
 from regrasp.mechanics.state import GraspState
-from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, Vector, check_state, dot, exact
 from regrasp.verification.protocols import Plan, Turn
 from regrasp.verification.rows import Checked
+from regrasp.verification.turned import TurningLoad, cosine_sine
 
-_TERMS = 40
 # 314159 / 100000 is a little less than pi.
 _BELOW_PI = Fraction(314159, 100000)
 
@@ -28,55 +33,57 @@ _BELOW_PI = Fraction(314159, 100000)
 def check_turn(plan: Plan, turn: Turn) -> Checked:
     """Check the states at all angles, the load there, the steps between them and the force limits."""
     start, angles = plan.start, exact(turn.angles.tolist())
-    broken = []
+    broken = _check_axis(turn, start.grasp.dimension)
+    if broken:
+        return Checked(broken, inf, 0.0, -inf)
+    turning = TurningLoad(start.load, turn.axis)
     steps = [b - a for a, b in pairwise(angles)]
     if angles[0] != 0 or not (all(s > 0 for s in steps) or all(s < 0 for s in steps)):
         return Checked(["the angles of a turn must go one way from 0"], inf, 0.0, -inf)
     if max(abs(s) for s in steps) > _BELOW_PI:
         broken.append("a step of the turn is pi or more: no combination of its ends holds the load between")
-    if start.load.torque.any():
-        broken.append("the load has a torque, which does not turn with the object")
+    if turn.middles is None and not turning.turns_whole:
+        broken.append(
+            "a part of the load does not turn with the object, and no states between angles hold it"
+        )
     ends = ((plan.start, 0), (plan.end, -1))
     if any((state.forces != turn.forces[k]).any() for state, k in ends):
         broken.append("start and end are not the first and the last state of the turn")
-    fx, fy = exact(start.load.force.tolist())
-    last = exact(plan.end.load.force.tolist())
-    c, s = cosine_sine(angles[-1])
-    off = [last[0] - (c * fx + s * fy), last[1] - (c * fy - s * fx)]
-    if dot(off, off) > RESOLUTION**2 * (fx * fx + fy * fy):
+    if turning.differs(plan.end.load, angles[-1]):
         broken.append("end: the load is not the start's, seen from the turned object")
     residuals, slacks, angle_margins = [0.0], [inf], [inf]
-    for k, angle in enumerate(angles):
-        c, s = cosine_sine(angle)
-        load = Wrench([float(c * fx + s * fy), float(c * fy - s * fx)])
-        state = GraspState(start.grasp, load, turn.forces[k])
-        residual, slack, violations = check_state(state, f"angle {float(angle):.6g} rad")
+    states = [
+        (f"angle {float(angle):.6g} rad", turning.at(angle), turn.forces[k]) for k, angle in enumerate(angles)
+    ]
+    if turn.middles is not None:
+        if len(turn.middles) != len(steps):
+            return Checked([f"{len(steps)} steps of a turn need as many middles"], inf, 0.0, -inf)
+        states += [
+            (f"between {float(a):.6g} and {float(b):.6g} rad", turning.between(a, b), turn.middles[k])
+            for k, (a, b) in enumerate(pairwise(angles))
+        ]
+    for label, load, forces in states:
+        state = GraspState(start.grasp, load, forces)
+        residual, slack, violations = check_state(state, label)
         residuals.append(residual)
         slacks.append(slack)
         angle_margins.append(state.margins.least_angle)
         broken += violations
-    for k, step in enumerate(steps):
-        broken += _check_limits(plan, turn, k, step)
+    if turn.middles is None:  # convex combinations never exceed the limits of their ends
+        for k, step in enumerate(steps):
+            broken += _check_limits(plan, turn, k, step)
     return Checked(broken, max(residuals), min(angle_margins), min(slacks))
 
 
-def cosine_sine(angle: Fraction) -> tuple[Fraction, Fraction]:
-    """Cosine and sine by Taylor's series, to 2^-80 for angles up to some turns, as fractions of 2^-100."""
-    cosine, sine, term = Fraction(0), Fraction(0), Fraction(1)
-    quarter = angle / 16  # then doubled four times
-    for n in range(_TERMS):
-        if n % 2:
-            sine += term * (-1) ** (n // 2)
-        else:
-            cosine += term * (-1) ** (n // 2)
-        term = _rounded(term * quarter / (n + 1))
-    for _ in range(4):
-        cosine, sine = _rounded(cosine * cosine - sine * sine), _rounded(2 * cosine * sine)
-    return cosine, sine
-
-
-def _rounded(value: Fraction) -> Fraction:
-    return Fraction(round(value * 2**120), 2**120)
+def _check_axis(turn: Turn, dimension: int) -> list[str]:
+    """A turn in space has a unit axis, one in the plane none."""
+    if (turn.axis is None) != (dimension == 2):
+        return ["a turn in space needs its axis, and one in the plane has none"]
+    if turn.axis is not None:
+        axis = exact(turn.axis.tolist())
+        if abs(dot(axis, axis) - 1) > RESOLUTION:
+            return ["the axis of a turn must have length 1"]
+    return []
 
 
 def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:

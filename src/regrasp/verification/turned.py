@@ -1,0 +1,88 @@
+"""A load that stays in the world, seen from a turning object, in rational arithmetic."""
+
+from fractions import Fraction
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.wrench import Wrench
+from regrasp.verification.exact import RESOLUTION, Vector, cross, dot, exact
+
+_TERMS = 40
+
+
+class TurningLoad:
+    """The load at angles of the object: it turns the other way about ``axis``, (3,) or None in the plane.
+
+    Written w = s + cos(angle) p + sin(angle) q: a still part s, and a part that turns.
+    """
+
+    def __init__(self, load: Wrench, axis: Array | None) -> None:
+        self.load = load
+        force, torque = exact(load.force.tolist()), exact(load.torque.tolist())
+        zero = Fraction(0)
+        if axis is None:
+            fx, fy = force
+            self._parts = [([zero, zero, *torque], [fx, fy, zero], [fy, -fx, zero])]
+        else:
+            k = exact(axis.tolist())
+            self._parts = [_spun(force, k), _spun(torque, k)]
+
+    @property
+    def turns_whole(self) -> bool:
+        """Whether nothing of force and torque stays still, but for rounding of the axis."""
+        for still, along, _ in self._parts:
+            if dot(still, still) > RESOLUTION**2 * dot(along, along):
+                return False
+        return True
+
+    def at(self, angle: Fraction) -> Wrench:
+        """The load seen from the object turned by ``angle`` [rad], to the nearest doubles."""
+        return Wrench.from_vector([float(x) for x in self._exact(angle, Fraction(1))])
+
+    def between(self, first: Fraction, second: Fraction) -> Wrench:
+        """The load where the tangents at two angles meet, to the nearest doubles."""
+        stretch, _ = cosine_sine((second - first) / 2)
+        return Wrench.from_vector([float(x) for x in self._exact((first + second) / 2, 1 / stretch)])
+
+    def differs(self, load: Wrench, angle: Fraction) -> bool:
+        """Whether a load is not this one seen from ``angle``, beyond the resolution."""
+        d = self.load.dimension
+        given, seen = exact(load.vector.tolist()), self._exact(angle, Fraction(1))
+        for part in (slice(0, d), slice(d, None)):
+            off = [a - b for a, b in zip(given[part], seen[part], strict=True)]
+            if dot(off, off) > RESOLUTION**2 * dot(seen[part], seen[part]):
+                return True
+        return False
+
+    def _exact(self, angle: Fraction, stretch: Fraction) -> Vector:
+        c, s = cosine_sine(angle)
+        return [
+            still + stretch * (c * along + s * across)
+            for part in self._parts
+            for still, along, across in zip(*part, strict=True)
+        ]
+
+
+def _spun(vector: Vector, axis: Vector) -> tuple[Vector, Vector, Vector]:
+    """Rodrigues' formula for minus the angle: k (k.v) + cos (v - k (k.v)) - sin k x v."""
+    along = dot(axis, vector)
+    still = [along * k for k in axis]
+    return still, [v - s for v, s in zip(vector, still, strict=True)], [-x for x in cross(axis, vector)]
+
+
+def cosine_sine(angle: Fraction) -> tuple[Fraction, Fraction]:
+    """Cosine and sine by Taylor's series, to 2^-80 for angles up to some turns, as fractions of 2^-100."""
+    cosine, sine, term = Fraction(0), Fraction(0), Fraction(1)
+    quarter = angle / 16  # then doubled four times
+    for n in range(_TERMS):
+        if n % 2:
+            sine += term * (-1) ** (n // 2)
+        else:
+            cosine += term * (-1) ** (n // 2)
+        term = _rounded(term * quarter / (n + 1))
+    for _ in range(4):
+        cosine, sine = _rounded(cosine * cosine - sine * sine), _rounded(2 * cosine * sine)
+    return cosine, sine
+
+
+def _rounded(value: Fraction) -> Fraction:
+    return Fraction(round(value * 2**120), 2**120)
