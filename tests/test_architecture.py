@@ -60,6 +60,7 @@ HEAVY = {
     "svgpathtools",
     "ezdxf",
     "trimesh",
+    "plotly",
 }
 LINES = 430
 
@@ -115,6 +116,8 @@ def may_import(module: str, package: str) -> bool:
     here = floor(module)
     if package in ("matplotlib", "mpl_toolkits"):
         return here == "plots"
+    if package == "plotly":
+        return module == "regrasp.plots.page"
     if package == "pydantic":
         return here == "files"
     if package == "numba":
@@ -204,6 +207,7 @@ OFFENCES = [
     ("regrasp.planning.timing", "import_module('matplotlib')", "matplotlib"),
     ("regrasp.planning.timing", "from .. import plots", "regrasp.plots"),
     ("regrasp.planning.timing", "import shapely", "shapely"),
+    ("regrasp.plots.page_scene", "from plotly import graph_objects", "plotly"),
     ("regrasp.outline.svg", "from ..files.source import text_of", "regrasp.files.source"),
     ("regrasp.outline.outline", "from regrasp.mesh import Mesh", "regrasp.mesh"),
     ("regrasp.planning.timing", "import trimesh", "trimesh"),

@@ -253,10 +253,10 @@ def test_notebooks_picture_the_certificate_they_catch():
     assert pair()._repr_png_().startswith(b"\x89PNG\r\n\x1a\n")
 
 
-def test_space_is_refused_and_shown_as_text():
+def test_an_escape_in_space_is_pictured_on_axes_in_space_only():
     sides = [rg.Contact([1, 0, 0], [-1, 0, 0], 0.5), rg.Contact([-1, 0, 0], [1, 0, 0], 0.5)]
     load = rg.Wrench([0, 0, 0], [2.0, 0, 0])
     spin = rg.EscapeTwist(rg.Grasp(sides), load, [0, 0, 0, 1.0, 0, 0], (0.5, 0.5), (inf, inf))
-    with pytest.raises(rg.InvalidInput, match="pictures are planar so far, got dimension 3"):
-        plots.plot_escape(spin)
-    assert spin._repr_png_() is None
+    with pytest.raises(rg.InvalidInput, match="ax must be 3-D for a grasp in space"):
+        plots.plot_escape(spin, Figure().add_subplot())
+    assert spin._repr_png_().startswith(b"\x89PNG\r\n\x1a\n")

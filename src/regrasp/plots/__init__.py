@@ -25,6 +25,7 @@ from regrasp.plots.overview import (
     transition_png,
     wrenches_figure,
 )
+from regrasp.plots.page import html
 from regrasp.plots.regrasp import plot_regrasp
 from regrasp.plots.sensitivity import plot_sensitivity
 from regrasp.plots.style import contact_colours
@@ -39,6 +40,7 @@ __all__ = [
     "animate",
     "contact_colours",
     "figures",
+    "html",
     "iso_torque_figure",
     "plot_angles",
     "plot_directions",

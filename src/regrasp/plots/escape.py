@@ -1,42 +1,46 @@
 """The motion along which an object escapes from its grasp."""
 
-from math import hypot, isinf
+from math import hypot
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.plots.arrows import arrow
 from regrasp.plots.body import draw_body, extent, label_contact
+from regrasp.plots.escape_words import (
+    HELPLESS,
+    HELPLESS_LOOK,
+    MOTION,
+    OPPOSES,
+    OPPOSES_LOOK,
+    key,
+    labels,
+    title,
+)
 from regrasp.plots.load import draw_load
+from regrasp.plots.object import surface_of
 from regrasp.plots.overview import png
+from regrasp.plots.space_escape import draw_escape
 from regrasp.plots.style import (
-    PALETTE,
     SMALL,
     axes_or_new,
     label_axis,
     legend,
-    literal,
     new_figure,
     note,
-    quantity,
-    refuse_space,
     short,
     tidy,
 )
 from regrasp.plots.units import SI, Units
 
-HELPLESS, OPPOSES, MOTION = PALETTE[1], PALETTE[0], PALETTE[2]
-_HELPLESS: dict[str, Any] = {"marker": "X", "color": HELPLESS, "markeredgecolor": "white", "markersize": 9}
-_OPPOSES: dict[str, Any] = {"marker": "o", "color": OPPOSES, "markeredgecolor": "white", "markersize": 8}
 _HEIGHT = 3.9  # [in]
 _ROWS = 9  # of arrows in the field of motion
 
 
-def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, mesh: Any = None, units: Units = SI) -> Axes:
     """How the object escapes from the contacts, and which of them cannot oppose it.
 
     Green arrows are velocities of the object: thin ones over its surroundings, bold ones, at a scale of their
@@ -46,9 +50,16 @@ def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, units: Units = SI
     The title compares the work of the load with the most that all contacts together can oppose, per radian
     where the motion turns the object and per metre where it does not.
 
-    Raises ``InvalidInput`` for a grasp in space.
+    In space a dash-dotted green line is the screw axis, with the sense of the turn; thin lines are the ways
+    of the contacts, and thin edges the object a little later. The title gives the pitch.
+    mesh: the object of a grasp in space, as for ``plot_state``.
+
+    Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
-    refuse_space(twist.grasp.dimension)
+    triangles = surface_of(mesh, twist.grasp)
+    if twist.grasp.dimension == 3:
+        drawn: Axes = draw_escape(twist, ax, mesh=triangles, units=units)
+        return drawn
     ax = axes_or_new(ax, height=_HEIGHT)
     size = extent(twist.grasp)
     colours = {
@@ -66,14 +77,15 @@ def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, units: Units = SI
     ax.autoscale_view()
     label_axis(ax.xaxis, "$x$", units.length, size)
     label_axis(ax.yaxis, "$y$", units.length, size)
-    ax.set_title(_title(twist, units), fontsize=SMALL, loc="left", pad=16)
-    legend(ax, _key(twist))
+    ax.set_title(title(twist, units), fontsize=SMALL, loc="left", pad=16)
+    legend(ax, key(twist))
     return ax
 
 
 def escape_png(twist: EscapeTwist) -> bytes:
     """``plot_escape`` as a PNG image, for display in notebooks."""
-    refuse_space(twist.grasp.dimension)
+    if twist.grasp.dimension == 3:
+        return png(plot_escape(twist).figure)  # type: ignore[arg-type]
     figure = new_figure(height=_HEIGHT)
     plot_escape(twist, tidy(figure.add_subplot()))
     return png(figure)
@@ -112,12 +124,12 @@ def _draw_contacts(ax: Axes, twist: EscapeTwist, size: float, units: Units) -> N
     fastest = float(np.hypot(*twist.velocities.T).max()) or 1.0
     bold: dict[str, Any] = {"color": MOTION, "linewidth": 1.8, "zorder": 5}
     for contact, v, helpless, label in zip(
-        twist.grasp, twist.velocities, twist.helpless, _labels(twist, units), strict=True
+        twist.grasp, twist.velocities, twist.helpless, labels(twist, units), strict=True
     ):
         name, r = contact.name, contact.position
         if hypot(*v) > 1e-9 * fastest:
             arrow(ax, r, r + 0.25 * size / fastest * v, gid=f"velocity {name}", **bold)
-        what, look = ("helpless", _HELPLESS) if helpless else ("opposes", _OPPOSES)
+        what, look = ("helpless", HELPLESS_LOOK) if helpless else ("opposes", OPPOSES_LOOK)
         ax.plot(*r, linestyle="none", zorder=6, gid=f"{what} {name}", **look)
         towards, gap = -contact.normal, 6.0
         if twist.centre is not None and 0 < (near := hypot(*(r - twist.centre))) < 0.15 * size:
@@ -145,36 +157,3 @@ def _draw_centre(ax: Axes, twist: EscapeTwist, low: Array, high: Array, size: fl
         )
         where = ", ".join(short(float(f"{x:.3g}")) for x in centre)
         note(ax, f"centre at ({where})", edge - 0.1 * size * towards, (-towards[1], towards[0]), color=MOTION)
-
-
-def _labels(twist: EscapeTwist, units: Units) -> list[str]:
-    """The contacts' names, with the most work that those which can oppose can do."""
-    unit = units.torque if twist.turns else units.force
-    labels = []
-    for name, most in zip(twist.grasp.names, twist.resistances, strict=True):
-        bound = "without limit" if isinf(most) else f"\N{LESS-THAN OR EQUAL TO} {quantity(most, unit, 3)}"
-        labels.append(f"{literal(name)}\n{bound}" if most else literal(name))
-    return labels
-
-
-def _title(twist: EscapeTwist, units: Units) -> str:
-    """The explanation in short."""
-    unit, per = (units.torque, "rad") if twist.turns else (units.force, units.length)
-    verb = "escapes" if twist.is_proof else "does not escape"
-    way = "sliding"
-    if twist.turns:
-        way = "turning clockwise" if twist.twist[2] < 0 else "turning counter-clockwise"
-    total = sum(twist.resistances)
-    most = "without limit" if isinf(total) else f"at most {quantity(total, unit, 3)}" if total else "nothing"
-    drive = quantity(twist.drive, unit, 3)
-    return f"{verb} {way}\nthe load does {drive} of work per {per}\nthe contacts oppose {most}"
-
-
-def _key(twist: EscapeTwist) -> list[Line2D]:
-    keys = [Line2D([], [], color=MOTION, linewidth=1.8, label="motion")]
-    if any(twist.helpless):
-        keys.append(Line2D([], [], linestyle="none", label="cannot oppose", **_HELPLESS))
-    if not all(twist.helpless):
-        label = "opposes too little" if twist.is_proof else "opposes"
-        keys.append(Line2D([], [], linestyle="none", label=label, **_OPPOSES))
-    return keys

@@ -62,7 +62,7 @@ def plot_state(
     frame with the centre of mass at the origin.
     Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
-    triangles = _surface_of(mesh, state.grasp)
+    triangles = surface_of(mesh, state.grasp)
     colours = contact_colours(state.grasp) if colours is None else colours
     scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
     if state.grasp.dimension == 3:
@@ -95,7 +95,7 @@ def plot_transition(
 
     Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
     """
-    triangles = _surface_of(mesh, transition.grasp)
+    triangles = surface_of(mesh, transition.grasp)
     colours = contact_colours(transition.grasp)
     scale = force_scale
     if scale is None:
@@ -143,7 +143,8 @@ def _size(grasp: Grasp, mesh: Triangles | None) -> float:
     return extent(grasp, None if mesh is None else mesh[0])
 
 
-def _surface_of(mesh: Any, grasp: Grasp) -> Triangles | None:
+def surface_of(mesh: Any, grasp: Grasp) -> Triangles | None:
+    """The triangles of a mesh given with a grasp; raises ``InvalidInput`` for a mesh and a planar grasp."""
     if mesh is not None and grasp.dimension != 3:
         raise InvalidInput("a mesh is the surface of an object in space, but this grasp is planar")
     return triangles_of(mesh)

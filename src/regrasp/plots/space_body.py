@@ -68,7 +68,8 @@ def draw_mesh(ax: Any, mesh: Triangles) -> None:
 
 def dot(ax: Any, at: Array, *, gid: str, zorder: float = 4, **look: Any) -> None:
     """A round mark at a point."""
-    ax.plot(*at[:, None], marker="o", linestyle="none", markeredgewidth=0.8, gid=gid, zorder=zorder, **look)
+    base: dict[str, Any] = {"marker": "o", "linestyle": "none", "markeredgewidth": 0.8}
+    ax.plot(*at[:, None], gid=gid, zorder=zorder, **(base | look))
 
 
 def write(ax: Any, text: str, at: Array, towards: Array, gap: float, *, gid: str, color: str = INK) -> None:
