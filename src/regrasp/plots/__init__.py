@@ -28,6 +28,7 @@ from regrasp.plots.overview import (
 from regrasp.plots.page import html
 from regrasp.plots.regrasp import plot_regrasp
 from regrasp.plots.sensitivity import plot_sensitivity
+from regrasp.plots.sphere import load_sphere_figure, plot_load_map, plot_load_sphere
 from regrasp.plots.style import contact_colours
 from regrasp.plots.timing import plot_scaling
 from regrasp.plots.units import SI, Units
@@ -42,6 +43,7 @@ __all__ = [
     "figures",
     "html",
     "iso_torque_figure",
+    "load_sphere_figure",
     "plot_angles",
     "plot_directions",
     "plot_escape",
@@ -49,6 +51,8 @@ __all__ = [
     "plot_hold_map",
     "plot_iso_torque",
     "plot_load",
+    "plot_load_map",
+    "plot_load_sphere",
     "plot_locus",
     "plot_locus_segment",
     "plot_magnitudes",

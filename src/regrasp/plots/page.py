@@ -17,7 +17,7 @@ from regrasp.plots.page_scene import Trace, arrow_traces, body_traces, history_t
 from regrasp.plots.space_object import CONE
 from regrasp.plots.style import INK, contact_colours, short
 from regrasp.plots.units import SI, Units
-from regrasp.plots.view import facing_view
+from regrasp.plots.view import facing_view, sight
 
 _FRAMES = 40
 _HEAD = "<head><title>regrasp</title><style>body { margin: 0; overflow: hidden }</style>"
@@ -44,9 +44,10 @@ def html(
     mesh: Any = None,
     units: Units = SI,
 ) -> str | Path:
-    """A page that shows a state in space; of a transition, with forces that move and their margins over time.
+    """A page that shows a state in space; of a transition, with forces that move and margins over time.
 
     The page holds all it needs (about 5 MB) and opens without a network; drag to turn, scroll to come nearer.
+    Of the load its force is drawn, not its torque.
     path: where to write it, whole or not at all; returned. Without a path the text is returned.
     mesh: the object, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), as for ``plot_state``.
 
@@ -125,9 +126,8 @@ def _layout(units: Units, view: tuple[float, float]) -> Trace:
         | {"gridcolor": "#e0e0e0", "zerolinecolor": "#cccccc"}
         for axis in "xyz"
     }
-    e, a = np.radians(view)
-    eye = 1.8 * np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-    camera = {"projection": {"type": "orthographic"}, "eye": dict(zip("xyz", eye.tolist(), strict=True))}
+    eye = dict(zip("xyz", (1.8 * sight(*view)).tolist(), strict=True))
+    camera = {"projection": {"type": "orthographic"}, "eye": eye}
     return {
         "scene": {"aspectmode": "data", "camera": camera, **axes},
         "legend": {"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0.0},

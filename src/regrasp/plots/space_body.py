@@ -18,6 +18,7 @@ from regrasp.plots.view import projection
 
 _LIGHT = np.array([0.35, -0.5, 0.79])  # from where the mesh is lit
 _SURFACE = "#c9ced3"
+RIM = withStroke(linewidth=1.5, foreground="white")
 
 
 def draw_body_in_space(
@@ -77,11 +78,11 @@ def write(ax: Any, text: str, at: Array, towards: Array, gap: float, *, gid: str
 
     It stands where the direction ``towards`` points to as seen now, below if that points at the reader.
     """
-    sight = projection(ax.elev, ax.azim)  # rows: right and up
-    x, y = sight @ towards / (np.linalg.norm(towards) or 1.0)
+    picture = projection(ax.elev, ax.azim)  # rows: right and up
+    x, y = picture @ towards / (np.linalg.norm(towards) or 1.0)
     x, y = (0.0, -1.0) if np.hypot(x, y) < 0.1 else np.array([x, y]) / np.hypot(x, y)
     ax.text(
-        *(at + gap * (np.array([x, y]) @ sight)),
+        *(at + gap * (np.array([x, y]) @ picture)),
         text,
         gid=gid,
         color=color,
@@ -89,7 +90,7 @@ def write(ax: Any, text: str, at: Array, towards: Array, gap: float, *, gid: str
         ha="left" if x > 0.4 else "right" if x < -0.4 else "center",
         va="bottom" if y > 0.4 else "top" if y < -0.4 else "center",
         zorder=8,
-        path_effects=[withStroke(linewidth=1.5, foreground="white")],
+        path_effects=[RIM],
     )
 
 

@@ -33,6 +33,12 @@ def best_view(shapes: Sequence[Array]) -> tuple[float, float]:
     return max(product(_ELEVATIONS, _AZIMUTHS), key=openness)
 
 
+def sight(elevation: float, azimuth: float) -> Array:
+    """(3,) the unit vector from the picture to the reader, of angles [deg]."""
+    e, a = np.radians(elevation), np.radians(azimuth)
+    return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+
+
 def projection(elevation: float, azimuth: float) -> Array:
     """(2, 3) from space to the picture, right and up."""
     e, a = np.radians(elevation), np.radians(azimuth)
@@ -62,10 +68,8 @@ def facing_view(positions: Array, normals: Array) -> tuple[float, float]:
     pairs = np.array([(i, j) for i in range(len(positions)) for j in range(i)]).reshape(-1, 2)
 
     def clearness(view: tuple[float, float]) -> float:
-        e, a = np.radians(view)
-        eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
         shown = positions @ projection(*view).T / size
         apart = np.linalg.norm(shown[pairs[:, 0]] - shown[pairs[:, 1]], axis=1)
-        return float(np.log(apart + 1e-2).sum() / max(1, len(pairs)) - 0.5 * (normals @ eye).mean())
+        return float(np.log(apart + 1e-2).sum() / max(1, len(pairs)) - 0.5 * (normals @ sight(*view)).mean())
 
     return max(product(_ELEVATIONS, _AZIMUTHS), key=clearness)
