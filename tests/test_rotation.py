@@ -144,7 +144,7 @@ def test_rational_cosines(angle):
     [
         ({"angle": 0.0}, "angle must not be 0"),
         ({"angle": np.nan}, "angle must be finite"),
-        ({"angle": 1.0, "load": rg.Wrench([0, -1], 0.1)}, "got the torque 0.1; plan it with a load function"),
+        ({"angle": 1.0, "axis": [0, 0, 1]}, "turns in the plane; leave axis out"),
         ({"angle": 1.0, "load": None}, "needs the load"),
         ({"angle": 1.0, "objective": "speed"}, "objective must be one of"),
         ({"angle": 1.0, "duration": -1}, "duration must be greater than 0"),

@@ -127,13 +127,40 @@ class EscapeTwist(ArrayValue, Pictured):
         vx, vy, omega = self.twist
         return np.array([-vy / omega, vx / omega]) + 0.0  # -0 reads as 0
 
+    @property
+    def axis(self) -> tuple[Array, Array] | None:
+        """In space, the screw axis: its point (3,) nearest to the centre of mass [m] and its direction (3,).
+
+        None where the motion is a translation, and in the plane.
+        """
+        if self.grasp.dimension == 2 or not self.turns:
+            return None
+        velocity, spin = self.twist[:3], self.twist[3:]
+        length = hypot(*spin)
+        direction = spin / length
+        return np.cross(direction, velocity / length) + 0.0, direction + 0.0
+
+    @property
+    def pitch(self) -> float:
+        """In space, how far the object moves along the screw axis per radian [m]; infinite if it slides."""
+        if self.grasp.dimension == 2:
+            return 0.0 if self.turns else inf
+        velocity, spin = self.twist[:3], self.twist[3:]
+        return float(velocity @ spin) / hypot(*spin) ** 2 if self.turns else inf
+
     def __str__(self) -> str:
         d = self.grasp.dimension
         velocity, spin = self.twist[:d], self.twist[d:]
-        if d == 3:
-            return f"moving with velocity {numbers(velocity)} and angular velocity {numbers(spin)}"
-        if self.centre is None:
+        if not self.turns:
             return f"sliding along {numbers(_without_noise(velocity / hypot(*velocity), 1.0))}"
+        if self.axis is not None:
+            point, direction = self.axis
+            pitch = float(_without_noise(np.array([self.pitch]), self.grasp.size)[0])
+            advance = f", moving {pitch:.6g} along it per radian" if pitch else ""
+            return (
+                f"turning about the axis through {numbers(_without_noise(point, self.grasp.size))} along "
+                f"{numbers(_without_noise(direction, 1.0))}{advance}"
+            )
         turn = "clockwise" if spin[0] < 0 else "counter-clockwise"
         return f"turning {turn} about {numbers(_without_noise(self.centre, self.grasp.size))}"
 

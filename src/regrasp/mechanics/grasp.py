@@ -173,6 +173,30 @@ class Grasp(ArrayValue):
         rank = int((values > 1e-12 * values[0]).sum())
         return read_only(rows[rank:].reshape(-1, len(self), self.dimension))
 
+    @cached_property
+    def free_twists(self) -> Array:
+        """(k, 3) or (k, 6): motions of the object that move no contact; orthonormal for lengths of ``size``.
+
+        No such motion for two contacts in the plane or three in space that do not lie on one line. Two point
+        contacts in space leave the turn about their line free: no force of theirs resists a torque about it.
+        """
+        d, scaled = self.dimension, self.matrix.copy()
+        scaled[d:] /= self.size or 1.0
+        left, values, _ = np.linalg.svd(scaled)
+        rank = int((values > 1e-12 * values[0]).sum())
+        free = left[:, rank:].T.copy()
+        free[:, d:] /= self.size or 1.0
+        return read_only(free)
+
+    @property
+    def freedom(self) -> str | None:
+        """In words, what motion no force of these contacts resists; None where there is none."""
+        if not len(self.free_twists):
+            return None
+        if len(self) == 1:
+            return f"turning about {self.names[0]}"
+        return f"turning about the line through {self.names[0]} and {self.names[1]}"
+
     def __repr__(self) -> str:
         inside = "".join(f"\n  {contact!r}," for contact in self.contacts)
         return f"Grasp([{inside}\n])"

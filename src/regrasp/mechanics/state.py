@@ -150,7 +150,9 @@ class GraspState(ArrayValue):
             f"\n  {name}: force {numbers(force)}"
             for name, force in zip(self.grasp.names, self.forces, strict=True)
         )
-        return f"GraspState under {self.load!r}, residual {self.residual:.2g}:{rows}"
+        free = self.grasp.freedom
+        note = "" if free is None else f"\n  no force of these contacts resists {free}"
+        return f"GraspState under {self.load!r}, residual {self.residual:.2g}:{rows}{note}"
 
 
 def check_load(grasp: Grasp, load: Wrench) -> None:

@@ -19,11 +19,20 @@ from regrasp.planning.nearest import cleared, gap_left
 # Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
 _REACHES = (1e2, 1e4)
 _NEARER = 0.1
+# A load that does less than this fraction of work along a free motion does none.
+_WORK = 1e-9
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
     names = ", ".join(grasp.names)
+    loose = _loose(grasp, load)
+    if loose is not None:
+        return Infeasible(
+            f"no forces of {names} balance {load!r}: none resists {grasp.freedom}, about which the "
+            f"load has a torque; the object escapes by {loose}",
+            loose,
+        )
     full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
     frictions, limits = full.frictions(grasp), full.limits(grasp)
     twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
@@ -56,6 +65,22 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
         f"kept in reserve, and no motion proves that there are none without it: the load needs more friction "
         f"than that leaves, or is at the limit of what they can hold; choose a smaller reserve"
     )
+
+
+def _loose(grasp: Grasp, load: Wrench) -> EscapeTwist | None:
+    """A motion that moves no contact and along which the load does work; two fingers in space leave one."""
+    if not len(grasp.free_twists):
+        return None
+    power = grasp.free_twists @ load.vector
+    weight = np.ones(load.vector.size)
+    weight[grasp.dimension :] = 1 / (grasp.size or 1.0)
+    if abs(power).max() * (grasp.size or 1.0) <= _WORK * float(abs(load.vector * weight).max()):
+        return None
+    infinite = [inf] * len(grasp)
+    twist = EscapeTwist(
+        grasp, load, power @ grasp.free_twists, tuple(grasp.frictions.tolist()), tuple(infinite)
+    )
+    return twist if twist.is_proof else None
 
 
 def escape_twist(

@@ -248,6 +248,11 @@ class Transition(ArrayValue, Pictured):
         for c in self.record.choices:
             limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
             lines.append(f"{c.end} chosen for {c.objective} by {c.method}, force limits {limits}")
+        for label, idle in (("start", self.idle_at_start), ("end", self.idle_at_end)):
+            held = [name for name in self.grasp.names if name not in idle]
+            free = self.grasp.subset(held).freedom
+            if free is not None:
+                lines.append(f"at the {label} no force of {', '.join(held)} resists {free}")
         lines += self._path_in_words()
         if self.record.balancing:
             lines.append(f"given forces were balanced; largest change {self.record.balancing:.2g}")

@@ -43,7 +43,7 @@ class TurningTransition(Transition):
         still = still_part(self.start.load, self.turn.axis)
         if still is not None and self.turn.middles is None:
             raise InvalidInput(
-                f"a part of the load, {still!r}, does not turn: a turn needs middles, states between its angles"
+                f"a part of the load, {still!r}, does not turn: middles are needed, states between angles"
             )
 
     def orientation(self, t: ArrayLike) -> Array:
