@@ -16,12 +16,11 @@ from regrasp.plots.arrows import arrow3d
 from regrasp.plots.space import in_space
 from regrasp.plots.space_body import RIM, write
 from regrasp.plots.style import GREY, INK, PALETTE, SMALL, TEXT, WIDTH, new_figure, short
-from regrasp.plots.view import sight
 
 HELD, NOT_HELD = PALETTE[5], "#ebebeb"
 _ROWS = 90  # of patches from pole to pole
 _DOTS = 600  # directions, at most, that are marked one by one on the map
-_AZIMUTH, _ELEVATION = -60.0, 25.0
+_AZIMUTH, _ELEVATION = 40.0, 25.0  # x, y and z point to the reader
 _CHUNK = 2048  # patches compared with all directions at once
 
 
@@ -163,9 +162,8 @@ def _draw_sphere(ax: Any, known: _Known) -> Any:
     )
     ball.set(gid="sphere", antialiased=False, zorder=1)
     ax.view_init(_ELEVATION, _AZIMUTH)
-    for name, axis, depth in zip("xyz", np.eye(3), sight(_ELEVATION, _AZIMUTH), strict=True):
-        layer = 2 if depth > 0 else 0  # in front of the sphere or behind it
-        arrow3d(ax, 1.02 * axis, 1.35 * axis, gid=f"axis {name}", color=INK, linewidth=1.0, zorder=layer)
+    for name, axis in zip("xyz", np.eye(3), strict=True):
+        arrow3d(ax, 1.02 * axis, 1.35 * axis, gid=f"axis {name}", color=INK, linewidth=1.0, zorder=2)
         write(ax, f"${name}$", 1.35 * axis, axis, 0.05, gid=f"name {name}")
     ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
     ax.set_box_aspect((1, 1, 1), zoom=1.12)

@@ -65,7 +65,8 @@ def facing_view(positions: Array, normals: Array) -> tuple[float, float]:
     positions, normals: (n, 3); normals point into the object, away from the reader at a contact that is seen.
     """
     size = float(np.ptp(positions, axis=0).max()) or 1.0
-    pairs = np.array([(i, j) for i in range(len(positions)) for j in range(i)]).reshape(-1, 2)
+    pairs = np.array([(i, j) for i in range(len(positions)) for j in range(i)], dtype=np.intp)
+    pairs = pairs.reshape(-1, 2)
 
     def clearness(view: tuple[float, float]) -> float:
         shown = positions @ projection(*view).T / size
