@@ -73,16 +73,31 @@ def at(corners: Array, weights: Array) -> Array:
     return result
 
 
-def to_segments(points: Array, starts: Array, ends: Array) -> Array:
-    """(n,) distances from points (n, 3) to the nearest of segments (k, 3), which may be points."""
-    result = np.full(len(points), np.inf)
-    side = ends - starts
+def to_segments(points: Array, starts: Array, ends: Array, limit: float) -> Array:
+    """(n,) distances from points (n, 3) to the nearest of segments (k, 3), ``limit`` [m] where it is farther.
+
+    A segment may be a point.
+    """
+    from scipy.spatial import cKDTree
+
+    result = np.full(len(points), limit)
+    if not len(starts):
+        return result
+    # Pieces no longer than the limit: what is within the limit of one is within 1.5 limits of its middle.
+    count = np.maximum(1, np.ceil(np.linalg.norm(ends - starts, axis=1) / limit)).astype(int)
+    k = np.repeat(np.arange(len(count)), count)
+    rank = np.arange(len(k)) - np.repeat(np.cumsum(count) - count, count)
+    side = ((ends - starts) / count[:, None])[k]
+    begin = starts[k] + rank[:, None] * side
     square = (side * side).sum(axis=1)
-    step = max(1, _PAIRS // max(1, len(points)))
-    for begin in range(0, len(starts), step):
-        part = slice(begin, begin + step)
-        away = points[:, None] - starts[part]  # (n, step, 3)
-        along = np.einsum("nkx,kx->nk", away, side[part]) / np.where(square[part] > 0, square[part], 1.0)
-        away -= np.clip(along, 0.0, 1.0)[..., None] * side[part]
-        result = np.minimum(result, np.linalg.norm(away, axis=2).min(axis=1))
+    square[square == 0] = 1.0
+    middles = cKDTree(begin + side / 2)
+    step = max(1, 20 * _PAIRS // len(k))
+    for first in range(0, len(points), step):
+        some = points[first : first + step]
+        pairs = cKDTree(some).sparse_distance_matrix(middles, 1.5 * limit, output_type="ndarray")
+        i, j = pairs["i"], pairs["j"]
+        away = some[i] - begin[j]
+        along = np.clip((away * side[j]).sum(axis=1) / square[j], 0.0, 1.0)
+        np.minimum.at(result, i + first, np.linalg.norm(away - along[:, None] * side[j], axis=1))
     return result

@@ -19,7 +19,7 @@ from regrasp.mesh.solid import doubled_areas, moments, solid
 from regrasp.mesh.spread import Surface, spread
 from regrasp.outline import Outline
 
-CREASE = float(np.radians(30.0))
+CREASE = float(np.radians(35.0))
 """An edge is sharp where the surface turns there by more than this [rad], if not said otherwise."""
 
 _AMBIGUOUS = np.radians(5.0)  # normals of faces that meet may differ by this where a finger touches
@@ -116,7 +116,7 @@ class Mesh(ArrayValue):
     def extruded(cls, outline: Outline, height: float) -> "Mesh":
         """The plate of an outline and its holes, from z = 0 to ``height`` [m].
 
-        In the outline's coordinates. A smooth outline makes a smooth mesh, of chords as ``Outline.polygon`` has them.
+        In the coordinates of the outline. A smooth one makes a smooth mesh, of chords as in its ``polygon``.
         """
         from regrasp.mesh.build import plate
         from regrasp.outline.polygon import PolygonBoundary
@@ -227,9 +227,10 @@ class Mesh(ArrayValue):
         """(count, 3) points spread evenly over the surface, in the coordinates given [m].
 
         clearance: least distance to sharp edges and corners [m]; if not given, a quarter of the spacing
-        sqrt(area / count), halved until half of the surface is that far from them. Opposite sides of a thin
-        plate are spread apart from one another. The same seed gives the same points of the object, in any
-        unit and frame. Raises ``InvalidInput`` where the clearance leaves no room.
+        sqrt(area / count), halved until half of the surface is that far from them. Faces turned by more
+        than 75 degrees do not crowd one another, so that both sides and the rim of a plate get their points.
+        The same seed gives the same points of the object, in any unit and frame. Raises ``InvalidInput``
+        where the clearance leaves no room.
         """
         return self._sample(count, seed, clearance)[0]
 

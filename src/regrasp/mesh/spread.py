@@ -9,9 +9,10 @@ from regrasp.mechanics.checks import Array
 from regrasp.mesh.arrays import Indices
 from regrasp.mesh.closest import at, to_segments
 
-# Points on faces turned by more than this from one another do not crowd: both sides of a plate get theirs.
-_APART = np.cos(np.radians(100.0))
-_POOL, _ENOUGH, _LEAST_POOL, _MOST_POOL = 30, 10, 3000, 1_000_000  # the first two for each point asked for
+# Faces turned by more than this do not crowd one another: both sides and the rim of a plate get points.
+_APART = np.cos(np.radians(75.0))
+_POOL, _ENOUGH = 30, 8  # points of the pool for each one asked for: to begin with, and at least
+_LEAST_POOL, _LARGE_POOL, _MOST_POOL = 3000, 30_000, 1_000_000
 _ROUNDS = 4
 _PAIRS = 4_000_000
 
@@ -36,11 +37,13 @@ def spread(
     given, a quarter of the spacing sqrt(area / count), halved until half of the surface or more is left.
     """
     spacing = np.sqrt(surface.areas.sum() / count)
-    size = min(max(_POOL * count, _LEAST_POOL), _MOST_POOL)
+    extent = float(np.ptp(surface.corners, axis=(0, 1)).max())
+    limit = max(spacing / 4 if clearance is None else clearance, extent / 1000)
+    size = max(_LEAST_POOL, min(_POOL * count, _LARGE_POOL), _ENOUGH * count)
     while True:
         faces, weights = _pool(surface, size, np.random.default_rng(seed))
         points = at(surface.corners[faces], weights)
-        room = to_segments(points, *surface.sharp)
+        room = to_segments(points, *surface.sharp, limit)
         keep = spacing / 4
         while clearance is None and keep > least and np.mean(room >= keep) < 0.5:
             keep /= 2
@@ -50,9 +53,10 @@ def spread(
             break
         size = min(8 * size, _MOST_POOL)
     if free.size < count:
+        farthest = to_segments(points[:: size // _LEAST_POOL], *surface.sharp, extent).max()
         raise InvalidInput(
             f"the surface has no room for {count} points {keep:.3g} or more from its sharp edges: "
-            f"{free.size} of {size} random points are that far, the farthest {room.max():.3g}; "
+            f"{free.size} of {size} random points are that far, the farthest about {farthest:.3g}; "
             "give a smaller clearance"
         )
     points, normals = points[free], surface.normals[faces[free]]
@@ -71,12 +75,15 @@ def _pool(surface: Surface, size: int, rng: np.random.Generator) -> tuple[Indice
 
 
 def _farthest(points: Array, normals: Array, count: int) -> Indices:
+    x = points - points.mean(axis=0)
+    square = (x * x).sum(axis=1)
     chosen = np.zeros(count, dtype=np.int64)
-    away = np.full(len(points), np.inf)
+    away = np.full(len(x), np.inf)
     for i in range(1, count):
         last = chosen[i - 1]
-        step = np.where(normals @ normals[last] < _APART, np.inf, ((points - points[last]) ** 2).sum(axis=1))
-        away = np.minimum(away, step)
+        step = square - 2 * (x @ x[last]) + square[last]
+        step[normals @ normals[last] < _APART] = np.inf
+        np.minimum(away, step, out=away)
         chosen[i] = np.argmax(away)
     return chosen
 

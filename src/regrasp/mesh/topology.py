@@ -42,7 +42,7 @@ def one_body(vertices: Array, faces: Indices) -> Indices:
         a, b = (numbers(vertices[faces[face, 0]]) for face in bodies[:2])
         raise InvalidInput(
             f"there are {bodies.size} closed surfaces, apart from one another: two pass through {a} and {b}; "
-            "a mesh is one object without cavities, keep one"
+            "a mesh is one object without cavities: keep one, or unite them"
         )
     turned = sheets[:m] != sheets[0]
     return np.where(turned[:, None], faces[:, [0, 2, 1]], faces)

@@ -1,0 +1,52 @@
+"""Solids in space for the tests of meshes: bumpy balls, motions, and soups of triangles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import strategies as st
+
+import regrasp as rg
+
+seeds = st.integers(0, 10**6)
+
+
+def bumpy(seed: int, **options) -> rg.Mesh:
+    """A ball with 42 random radii, off the origin."""
+    rng = np.random.default_rng(seed)
+    ball = rg.Mesh.sphere(1.0, divisions=2)
+    radii = rng.uniform(0.7, 1.3, len(ball.vertices))
+    return rg.Mesh(ball.vertices * radii[:, None] + rng.normal(size=3), ball.faces, **options)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """x -> scale R x + shift."""
+
+    rotation: np.ndarray
+    scale: float
+    shift: np.ndarray
+
+    def points(self, x: np.ndarray) -> np.ndarray:
+        return self.scale * x @ self.rotation.T + self.shift
+
+    def directions(self, n: np.ndarray) -> np.ndarray:
+        return n @ self.rotation.T
+
+    def mesh(self, mesh: rg.Mesh) -> rg.Mesh:
+        return rg.Mesh(self.points(mesh.vertices), mesh.faces, smooth=mesh.smooth, crease=mesh.crease)
+
+
+@st.composite
+def motions(draw) -> Motion:
+    rng = np.random.default_rng(draw(seeds))
+    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
+    q *= np.sign(np.diag(r))
+    if np.linalg.det(q) < 0:
+        q[:, 0] *= -1
+    scale = 10.0 ** draw(st.integers(-6, 6))
+    return Motion(q, scale, 3 * scale * rng.normal(size=3))
+
+
+def angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """[deg] between unit vectors."""
+    return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(a - b, axis=-1) / 2, 0, 1)))
