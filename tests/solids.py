@@ -50,3 +50,12 @@ def motions(draw) -> Motion:
 def angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """[deg] between unit vectors."""
     return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(a - b, axis=-1) / 2, 0, 1)))
+
+
+def is_inside(mesh: rg.Mesh, point: np.ndarray) -> bool:
+    """By the winding number: solid angles of the faces add up to 4 pi (Van Oosterom and Strackee, 1983)."""
+    a, b, c = (mesh.vertices - point)[mesh.faces].transpose(1, 0, 2)
+    p, q, r = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+    volume = (a * np.cross(b, c)).sum(axis=1)
+    rest = p * q * r + (a * b).sum(axis=1) * r + (b * c).sum(axis=1) * p + (c * a).sum(axis=1) * q
+    return bool(2 * np.arctan2(volume, rest).sum() > 2 * np.pi)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import regrasp as rg
 from regrasp.mesh import parts
 from regrasp.outline import parts as outlines
-from solids import Motion, angle, bumpy, motions, seeds
+from solids import Motion, angle, bumpy, is_inside, motions, seeds
 
 BOX = rg.Mesh.box(2, 3, 4)
 CONE = rg.Mesh.revolved([(0, 0), (1, 0), (0, 2)])
@@ -150,8 +150,18 @@ def test_normals_of_a_closed_surface_cancel(seed: int) -> None:
     middles = corners.mean(axis=1)
     normals = mesh.normals(middles)
     np.testing.assert_allclose(areas @ normals, 0, atol=1e-13)
-    assert (mesh.nearest(middles + 1e-3 * normals) != mesh.nearest(middles - 1e-3 * normals)).any()
     assert -(areas * (normals * middles).sum(axis=1)).sum() / 6 == pytest.approx(mesh.volume)
+
+
+@given(seeds, st.booleans())
+@few
+def test_normals_point_into_the_object(seed: int, smooth: bool) -> None:
+    mesh = bumpy(seed, smooth=smooth)
+    for contact in mesh.contacts(30, friction=0.3):
+        step = 1e-6 * contact.normal
+        point = contact.position + mesh.centre_of_mass
+        assert is_inside(mesh, point + step)
+        assert not is_inside(mesh, point - step)
 
 
 @given(seeds)
@@ -363,6 +373,7 @@ def test_a_clearance_is_kept_or_refused() -> None:
     assert refusal(BOX.sample, 50, clearance=1.6).startswith(
         "the surface has no room for 50 points 1.6 or more from its sharp edges: 0 of "
     )
+    assert "the farthest about 1.5" in refusal(BOX.sample, 50, clearance=1.6)
 
 
 def test_both_sides_and_the_rim_of_a_thin_plate_are_sampled() -> None:
