@@ -202,7 +202,7 @@ def test_json_schema_accepts_the_examples_and_refuses_what_we_refuse() -> None:
         ('kind = "removal"', 'kind = "regrasp"'),
         ("friction = 0.3", "friction = -0.3"),
         ("friction = 0.3", "friktion = 0.3"),
-        ("position = [4.0, -5.0]", "position = [4.0, -5.0, 0.0]"),
+        ("position = [4.0, -5.0]", "position = [4.0, -5.0, 0.0, 0.0]"),
         ('objective = "angle"', 'objective = "safest"'),
     ):
         with pytest.raises(jsonschema.ValidationError):

@@ -1,11 +1,13 @@
 """Keys that more than one kind of scenario has."""
 
+from functools import cached_property
 from typing import Annotated, ClassVar
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import choice
+from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.timing import TimeScaling
 from regrasp.programs import available_backends
 
@@ -21,6 +23,9 @@ def _known_method(value: str) -> str:
 
 Positive = Annotated[float, Field(gt=0)]
 Vector = Annotated[list[float], Field(min_length=2, max_length=2)]
+"""A vector in the plane."""
+AnyVector = Annotated[list[float], Field(min_length=2, max_length=3)]
+"""A vector in the plane or in space."""
 Control = Annotated[list[float], AfterValidator(_falling)]
 Name = Annotated[str, Field(min_length=1)]
 PeakRatio = Annotated[
@@ -39,8 +44,25 @@ class Load(Strict):
 
     shape: ClassVar[str] = "table"
 
-    force: Vector = Field(description="[N], x and y in the object frame")
-    torque: float = Field(0.0, description="[N m], counter-clockwise")
+    force: AnyVector = Field(description="[N], x, y and in space z, in the object frame")
+    torque: Annotated[
+        Annotated[float, Tag("number")]
+        | Annotated[list[float], Tag("list"), Field(min_length=3, max_length=3)],
+        Discriminator(lambda value: "list" if isinstance(value, list) else "number"),
+    ] = Field(0.0, description="[N m], counter-clockwise; three numbers in space")
+
+    @cached_property
+    def wrench(self) -> Wrench:
+        """The load as a value."""
+        space = len(self.force) == 3
+        return Wrench(self.force, None if space and self.torque == 0 else self.torque)
+
+    @model_validator(mode="after")
+    def _is_a_wrench(self) -> "Load":
+        if (len(self.force) == 3) != isinstance(self.torque, list) and self.torque != 0:
+            expected = "three numbers" if len(self.force) == 3 else "one number"
+            raise ValueError(f"torque: expected {expected} beside such a force, got {self.torque}")
+        return self
 
 
 class LoadEntry(Load):

@@ -73,6 +73,8 @@ class _Turn(Strict):
     angles: list[float]
     forces: list[list[list[float]]]
     end_load: list[float]  # force, then torque; in the object frame after the turn
+    axis: list[float] | None = None  # in space
+    middles: list[list[list[float]]] | None = None  # where a part of the load does not turn
 
 
 class _Transition(Strict):
@@ -230,6 +232,8 @@ def _document(plan: Transition) -> dict[str, Any]:
             "angles": plan.turn.angles.tolist(),
             "forces": plan.turn.forces.tolist(),
             "end_load": plan.end.load.vector.tolist(),
+            "axis": None if plan.turn.axis is None else plan.turn.axis.tolist(),
+            "middles": None if plan.turn.middles is None else plan.turn.middles.tolist(),
         }
     return document
 
@@ -247,7 +251,7 @@ def _plan(stored: _Transition) -> Transition:
     if given is not None and turned is not None:
         raise InvalidInput("a plan has a course or a turn, not both")
     course = None if given is None else Course(given.times, given.forces, given.loads)
-    turn = None if turned is None else Turn(turned.angles, turned.forces)
+    turn = None if turned is None else Turn(turned.angles, turned.forces, turned.axis, turned.middles)
     last = load
     if course is not None:
         last = Wrench.from_vector(course.loads[-1])

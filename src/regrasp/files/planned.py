@@ -77,6 +77,7 @@ def _rotation(scenario: Scenario, task: Rotation) -> Transition:
     return plan_rotation(
         _given(scenario, whole, "force") or whole,
         task.angle,
+        axis=task.unit_axis,
         load=scenario.wrench("start"),
         end=_given(scenario, whole, "end_force"),
         scaling=task.time_scaling,

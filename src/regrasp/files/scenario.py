@@ -4,15 +4,28 @@ import tomllib
 from functools import cached_property
 from math import radians
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter, model_validator
 
 from regrasp.errors import InvalidInput
-from regrasp.files.keys import Control, Load, LoadEntry, Method, Name, PeakRatio, Positive, Reserve, Vector
+from regrasp.files.keys import (
+    AnyVector,
+    Control,
+    Load,
+    LoadEntry,
+    Method,
+    Name,
+    PeakRatio,
+    Positive,
+    Reserve,
+)
+from regrasp.files.object_entry import ObjectEntry
 from regrasp.files.regrasp_scenario import RegraspScenario
 from regrasp.files.source import text_of
 from regrasp.files.strict import Strict, validated
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -22,35 +35,52 @@ from regrasp.planning.criteria import PEAK_RATIO, Objective
 from regrasp.planning.joined import PathObjective
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.timing import PAPER_CONTROL, TimeScaling
-from regrasp.planning.turn import turned_load
+from regrasp.planning.turn import turned_load, unit_axis
+
+if TYPE_CHECKING:
+    from regrasp.mesh.mesh import Mesh
 
 
 class ContactEntry(Strict):
     """One finger's contact and, where they are known, its forces at both ends."""
 
     name: Name = Field(description="names the finger in the task, the plan and the set-points")
-    position: Vector = Field(description="[m], object frame, origin at the centre of mass")
-    normal: Vector = Field(description="points into the object; any length but zero")
+    position: AnyVector = Field(
+        description="[m], object frame, origin at the centre of mass; of an object its nearest surface point"
+    )
+    normal: AnyVector | None = Field(
+        None, description="points into the object; any length but zero; of an object it is the surface's"
+    )
     friction: float = Field(ge=0, description="Coulomb coefficient")
     max_force: Positive | None = Field(
         None, description="largest force of this finger [N]; no limit if absent"
     )
-    force: Vector | None = Field(
+    force: AnyVector | None = Field(
         None,
         description="starting force on the object [N]: of every contact in touch at the start, or of none",
     )
-    end_force: Vector | None = Field(
+    end_force: AnyVector | None = Field(
         None, description="final force on the object [N]: of every contact in touch at the end, or of none"
     )
 
-    @cached_property
-    def contact(self) -> Contact:
-        """The contact as a value."""
-        return Contact(self.position, self.normal, self.friction, max_force=self.max_force, name=self.name)
+    def on(self, mesh: "Mesh | None") -> Contact:
+        """The contact as a value, on the surface of an object if there is one."""
+        if mesh is None:
+            assert self.normal is not None  # checked by the scenario, which knows whether there is an object
+            return Contact(
+                self.position, self.normal, self.friction, max_force=self.max_force, name=self.name
+            )
+        return mesh.contact_at(
+            np.array(self.position) + mesh.centre_of_mass,
+            friction=self.friction,
+            max_force=self.max_force,
+            name=self.name,
+        )
 
     @model_validator(mode="after")
     def _is_a_contact(self) -> "ContactEntry":
-        _ = self.contact
+        if self.normal is not None:
+            _ = self.on(None)
         return self
 
 
@@ -142,7 +172,10 @@ class Rotation(Task):
     """The object turns in the hold of all its fingers."""
 
     degrees: Annotated[float, AfterValidator(_turned)] = Field(
-        description="turn of the object, counter-clockwise, of any size"
+        description="turn of the object, counter-clockwise or right-handed about the axis, of any size"
+    )
+    axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = Field(
+        None, description="in space: the axis of the turn, through the centre of mass"
     )
     kind: Literal["rotation"]
 
@@ -151,9 +184,19 @@ class Rotation(Task):
         """The turn [rad]."""
         return radians(self.degrees)
 
+    @cached_property
+    def unit_axis(self) -> Array | None:
+        """The axis in space, of length 1."""
+        return None if self.axis is None else unit_axis(self.axis)
+
+    @model_validator(mode="after")
+    def _is_an_axis(self) -> "Rotation":
+        _ = self.unit_axis
+        return self
+
 
 class Scenario(Strict):
-    """A planar object held by fingers under a load, and the change of grasp to plan."""
+    """An object held by fingers under a load, in the plane or in space, and the change of grasp to plan."""
 
     # Kinds of task that are planned from a scenario of another shape.
     other_kinds: ClassVar[tuple[str, ...]] = ("regrasp",)
@@ -163,32 +206,37 @@ class Scenario(Strict):
         Annotated[Load, Tag("table")] | Annotated[list[LoadEntry], Tag("list"), Field(min_length=2)],
         Discriminator(lambda load: "list" if isinstance(load, list) else "table"),
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
+    object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
     contacts: list[ContactEntry] = Field(min_length=2)
     task: Annotated[Removal | Addition | Rotation, Field(discriminator="kind")]
 
     @cached_property
     def grasp(self) -> Grasp:
         """Every contact in play, in the file's order."""
-        return Grasp(entry.contact for entry in self.contacts)
+        mesh = None if self.object is None else self.object.value
+        return Grasp(entry.on(mesh) for entry in self.contacts)
 
     @cached_property
     def external(self) -> Wrench | LoadSeries:
         """The load as a value."""
         if isinstance(self.load, Load):
-            return Wrench(self.load.force, self.load.torque)
-        return LoadSeries([e.time for e in self.load], [[*e.force, e.torque] for e in self.load])
+            return self.load.wrench
+        return LoadSeries([e.time for e in self.load], [e.wrench.vector for e in self.load])
 
     def wrench(self, end: Literal["start", "end"]) -> Wrench:
         """The load at an end of the task."""
         external = self.external
         if isinstance(external, Wrench):
             if isinstance(self.task, Rotation) and end == "end":
-                return turned_load(external, self.task.angle)
+                return turned_load(external, self.task.angle, self.task.unit_axis)
             return external
         return external(0.0 if end == "start" else external.duration)
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Scenario":
+        lacking = self._other_dimensions() or self._lacking_normals()
+        if lacking:
+            raise ValueError("\n".join(lacking))
         try:
             names = self.grasp.names
         except InvalidInput as error:
@@ -207,17 +255,47 @@ class Scenario(Strict):
             raise ValueError("\n".join(problems))
         return self
 
+    def _other_dimensions(self) -> list[str]:
+        """Vectors in the plane beside others in space; the first contact's position says which it is."""
+        d = 3 if self.object is not None else len(self.contacts[0].position)
+        where = "space" if d == 3 else "the plane"
+        vectors = [
+            (f"contacts[{i}].{key}", getattr(entry, key))
+            for i, entry in enumerate(self.contacts)
+            for key in ("position", "normal", "force", "end_force")
+        ]
+        loads = [("load", self.load)] if isinstance(self.load, Load) else []
+        if not isinstance(self.load, Load):
+            loads = [(f"load[{i}]", entry) for i, entry in enumerate(self.load)]
+        vectors += [(f"{name}.force", entry.force) for name, entry in loads]
+        problems = [
+            f"{name}: expected {d} numbers, for this scenario is in {where}; got {len(vector)}"
+            for name, vector in vectors
+            if vector is not None and len(vector) != d
+        ]
+        if isinstance(self.task, Rotation) and (self.task.axis is None) == (d == 3):
+            problems.append(f"task.axis: {'needed in space' if d == 3 else 'leave it out in the plane'}")
+        return problems
+
+    def _lacking_normals(self) -> list[str]:
+        if self.object is None:
+            return [
+                f"contacts[{i}].normal: a required key is missing"
+                for i, entry in enumerate(self.contacts)
+                if entry.normal is None
+            ]
+        return [
+            f"contacts[{i}].normal: the surface of the object gives it; leave it out"
+            for i, entry in enumerate(self.contacts)
+            if entry.normal is not None
+        ]
+
     def _unfit_load(self, external: Wrench | LoadSeries) -> list[str]:
         """What keeps this load from going with this task."""
         task = self.task
         if isinstance(task, Rotation):
             if isinstance(external, LoadSeries):
                 return ["load: a rotation needs one load, [load], which turns as seen from the object"]
-            if external.torque.any():
-                return [
-                    f"load.torque: a rotation needs a force through the centre of mass, without a torque; "
-                    f"got {external.torque[0]:g}"
-                ]
         elif isinstance(external, LoadSeries) and task.duration not in (None, external.duration):
             return [
                 f"task.duration: expected {external.duration:g}, the last time of the load, or nothing; "

@@ -80,7 +80,7 @@ def _place(model: type[BaseModel], location: Sequence[int | str]) -> tuple[str, 
             models = chosen
         elif isinstance(part, int):
             path += f"[{part}]"
-        else:
+        elif models or not path:  # else the name of a shape that a plain value may have
             path += f".{part}" if path else part
             field = models[0].model_fields.get(part) if models else None
             models = _models_in(field.annotation) if field else models

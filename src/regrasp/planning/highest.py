@@ -19,6 +19,8 @@ from regrasp.programs import Status
 _SURE = 1e-2
 # The best level must be known this well.
 _UNSURE = 10 * LEVEL_TOLERANCE
+# A force below this fraction of the largest may be what a solver leaves at a finger that need not push.
+_NOISE = 1e-6
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -56,7 +58,22 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
     widest = _at_level(chooser, cones, limits, None).forces
     if widest is not None:
         forces = widest
+    forces = _without_noise(chooser, narrowing, forces, limits)
     return Found(forces, max(proven - narrowing.level(forces), 0.0))
+
+
+def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
+    """The forces with those that are a solver's noise made zero, where that costs nothing."""
+    sizes = abs(forces).max(axis=1)
+    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
+    if len(used) in (0, len(forces)):
+        return forces
+    frictions, bounds = [narrowing.frictions[i] for i in used], [limits[i] for i in used]
+    rest = chooser.of(used).settled(forces[used], frictions, bounds)
+    if rest is None:
+        return forces
+    idle = _whole(chooser.grasp, used, rest)
+    return idle if narrowing.level(idle) >= narrowing.level(forces) - LEVEL_TOLERANCE / 10 else forces
 
 
 def _lowest_proof(
