@@ -414,14 +414,16 @@ FLAGS = (
     "--disable-sync",
     "--enable-unsafe-swiftshader",
     "--host-resolver-rules=MAP * ~NOTFOUND",  # no network at all
-    "--virtual-time-budget=20000",
+    "--virtual-time-budget=1000000",
 )
 # Plays to the end, then writes what the scene holds into an attribute.
 PROBE = """<script>
-const probe = setInterval(() => {
+const probe = () => {
   const page = document.querySelector('.plotly-graph-div');
-  if (!document.documentElement.hasAttribute('data-regrasp')) return;
-  clearInterval(probe);
+  if (!document.documentElement.hasAttribute('data-regrasp')) {
+    requestAnimationFrame(probe);
+    return;
+  }
   const last = page._transitionData._frames.length - 1;
   Plotly.animate(page, [String(last)], {mode: 'immediate', frame: {duration: 0, redraw: true}}).then(() => {
     const lines = page._fullData.filter(d => d.type === 'scatter3d' && d.mode === 'lines' && d.showlegend);
@@ -429,7 +431,8 @@ const probe = setInterval(() => {
     const asked = performance.getEntriesByType('resource').map(entry => entry.name);
     document.documentElement.setAttribute('data-probe', JSON.stringify({held, asked}));
   });
-}, 50);
+};
+probe();
 </script>"""
 
 
