@@ -12,7 +12,7 @@ and the caller looks at these numbers again only if there are any.
 from hashlib import sha256
 from math import inf
 from pathlib import Path
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 from numba import njit, prange
@@ -22,29 +22,31 @@ from regrasp.closed_form import best, choice, locus
 BLOCK = 1024
 """Grasps in a block."""
 
-_MODULES = (locus, best, choice)
+MODULES = (locus, best, choice)
 
 
-def _compiled() -> dict[str, Any]:
+def compiled(modules: tuple[ModuleType, ...], **options: Any) -> dict[str, Any]:
     """All functions of the modules; they call one another through this dictionary of names."""
     names: dict[str, Any] = {"__builtins__": __builtins__}
-    for module in _MODULES:
+    for module in modules:
         names.update(vars(module))
-    for module in _MODULES:
+    for module in modules:
         for name, function in vars(module).items():
             if isinstance(function, FunctionType) and function.__module__ == module.__name__:
                 mine = FunctionType(function.__code__, names, name)
-                names[name] = njit(error_model="numpy", forceinline=True)(mine)
+                names[name] = njit(error_model="numpy", forceinline=True, **options)(mine)
     return names
 
 
-_names = _compiled()
-_squeeze_interval = _names["squeeze_interval"]
-_best_squeeze = _names["best_squeeze"]
-_margin_tangent = _names["margin_tangent"]
+def digest(modules: tuple[ModuleType, ...]) -> str:
+    """Of the sources: in a loop's closure, it makes Numba's cache watch them as it does the loop's own file."""
+    return sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in modules)).hexdigest()
 
-# Numba's cache watches this file only; the digest in the loops' closures makes it watch the formulas too.
-_digest = sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in _MODULES)).hexdigest()
+
+names = compiled(MODULES)
+_squeeze_interval = names["squeeze_interval"]
+_best_squeeze = names["best_squeeze"]
+_margin_tangent = names["margin_tangent"]
 
 
 @njit(error_model="numpy", forceinline=True)
@@ -63,10 +65,10 @@ def _is_doubtful_limit(fx, fy, tau, limit1, limit2):  # type: ignore[no-untyped-
     return not ((limit1 > 0.0) & (limit2 > 0.0)) or (idle & ((limit1 == inf) | (limit2 == inf)))
 
 
-def _loops(digest: str) -> tuple[Any, Any]:
+def _loops(sources: str) -> tuple[Any, Any]:
     @njit(error_model="numpy", parallel=True, cache=True)
     def intervals(r1, n1, mu1, r2, n2, mu2, f, tau, whole, lo, hi):  # type: ignore[no-untyped-def]
-        _ = digest
+        _ = sources
         doubtful = 0
         for block in prange((lo.size + BLOCK - 1) // BLOCK):
             first = block * BLOCK
@@ -84,7 +86,7 @@ def _loops(digest: str) -> tuple[Any, Any]:
     def squeezes(  # type: ignore[no-untyped-def]
         r1, n1, mu1, r2, n2, mu2, f, tau, limit1, limit2, objective, peak_ratio, whole, x
     ):
-        _ = digest
+        _ = sources
         doubtful = 0
         for block in prange((x.size + BLOCK - 1) // BLOCK):
             first = block * BLOCK
@@ -133,4 +135,4 @@ def _squeezes(  # type: ignore[no-untyped-def]
     return doubtful
 
 
-intervals, squeezes = _loops(_digest)
+intervals, squeezes = _loops(digest(MODULES))
