@@ -110,7 +110,7 @@ def test_in_space_the_motion_is_per_radian():
     load = rg.Wrench([0, 0, 0], [2.0, 0, 0])
     spin = rg.EscapeTwist(rg.Grasp(sides), load, [0, 0, 0, 3.0, 0, 0], (0.5, 0.5), (inf, inf))
     assert spin.explanation == (
-        "moving with velocity (0, 0, 0) and angular velocity (1, 0, 0): "
+        "turning about the axis through (0, 0, 0) along (1, 0, 0): "
         "per radian the load does 2 N m of work; "
         "P1 cannot oppose it; P2 cannot oppose it"
     )

@@ -14,9 +14,10 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 import regrasp as rg
 from regrasp import plots
-from regrasp.mechanics.screw import Screw
+from regrasp.mesh import Mesh
 from regrasp.planning.transition import Record
 from regrasp.plots.arrows import Arrow3D
+from regrasp.plots.screw_motion import amount_for, moved
 from regrasp.plots.solids import cone, creases, triangles_of
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -193,6 +194,15 @@ def test_only_sharp_edges_count_as_edges():
         np.testing.assert_allclose(np.sort(lengths.ravel()), [1] * 4 + [2] * 4 + [3] * 4)
 
 
+def test_a_smooth_object_has_no_edges_to_draw(lift):
+    ball = Mesh.sphere(0.05)
+    assert len(creases(triangles_of(ball))) == 0
+    ax = plots.plot_state(lift.start, mesh=ball)
+    assert by_gid(ax, "mesh")
+    assert not by_gid(ax, "edges")
+    plots.plot_escape(pinch([0, 0, -1.0, 0, 0, 0]), mesh=ball)
+
+
 # -- over time ----------------------------------------------------------------------------------------
 
 
@@ -256,45 +266,33 @@ def pinch(twist, load=None):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_a_screw_moves_points_as_its_twist_does(seed):
+def test_points_move_as_the_twist_says(seed):
     rng = np.random.default_rng(seed)
     v, omega, points = rng.normal(size=3), rng.normal(size=3), rng.normal(size=(4, 3))
-    screw = Screw.of([*v, *omega], 1.0)
-    spin = np.linalg.norm(omega)
-    np.testing.assert_allclose(screw.direction, omega / spin)
-    assert screw.point @ screw.direction == pytest.approx(0, abs=1e-12)
-    np.testing.assert_allclose(v + np.cross(omega, screw.point), screw.pitch * omega, atol=1e-12)
-    h = 1e-6
-    rate = (screw.moved(points, h) - screw.moved(points, -h)) / (2 * h)
-    np.testing.assert_allclose(spin * rate, v + np.cross(omega, points), atol=1e-8)
-    amount = screw.amount_for(points, 1e-3)
-    ways = np.linalg.norm(screw.moved(points, amount) - points, axis=1)
+    twist, h = pinch([*v, *omega]), 1e-6
+    rate = (moved(twist, points, h) - moved(twist, points, -h)) / (2 * h)
+    np.testing.assert_allclose(np.linalg.norm(omega) * rate, v + np.cross(omega, points), atol=1e-8)
+    ways = np.linalg.norm(moved(twist, points, amount_for(twist, points, 1e-3)) - points, axis=1)
     assert ways.max() == pytest.approx(1e-3, rel=1e-5)
-
-
-def test_a_translation_is_a_screw_of_infinite_pitch():
-    slide = Screw.of([0, 3.0, 4, 0, 0, 1e-12], 1.0)
-    assert (slide.turns, slide.pitch) == (False, inf)
-    np.testing.assert_allclose(slide.moved(np.zeros((1, 3)), 5.0), [[0, 3, 4]])
-    with pytest.raises(rg.InvalidInput, match="does not move"):
-        Screw.of(np.zeros(6), 1.0)
+    slide = pinch([0, 3.0, 4, 0, 0, 0])
+    np.testing.assert_allclose(moved(slide, np.zeros((1, 3)), 5.0), [[0, 3, 4]])
 
 
 def test_the_screw_axis_and_the_motion_of_the_contacts_are_drawn(block):
     twist = pinch([0.001, 0.002, -0.02, 1.0, 0.2, -0.1])
-    screw = Screw.of(twist.twist, 1.0)
+    centre, direction = twist.axis
     ax = plots.plot_escape(twist, mesh=block)
     for end in points_of(one(ax, "axis")):
-        np.testing.assert_allclose(np.cross(end - screw.point, screw.direction), 0, atol=1e-15)
+        np.testing.assert_allclose(np.cross(end - centre, direction), 0, atol=1e-15)
     tail, head = one(ax, "sense", Arrow3D).ends
-    assert np.cross(tail - screw.point, head - screw.point) @ screw.direction > 0
+    assert np.cross(tail - centre, head - centre) @ direction > 0
     fastest = np.linalg.norm(twist.velocities, axis=1).max()
     for name, r, v in zip(twist.grasp.names, twist.grasp.positions, twist.velocities, strict=True):
         np.testing.assert_allclose(one(ax, f"velocity {name}").ends, [r, r + 0.25 * 0.06 / fastest * v])
         way = points_of(one(ax, f"way {name}"))
         np.testing.assert_allclose(way[0], r)
         assert (way[1] - way[0]) @ v > 0.9 * np.linalg.norm(way[1] - way[0]) * np.linalg.norm(v)
-    assert f"pitch {screw.pitch:.3g}".replace("-", "\N{MINUS SIGN}") in ax.get_title(loc="left")
+    assert f"pitch {twist.pitch:.3g}".replace("-", "\N{MINUS SIGN}") in ax.get_title(loc="left")
     assert len(one(ax, "later")._segments3d) == 12
 
 

@@ -6,7 +6,6 @@ from typing import Any
 from matplotlib.lines import Line2D
 
 from regrasp.mechanics.escape import EscapeTwist
-from regrasp.mechanics.screw import Screw
 from regrasp.plots.style import PALETTE, literal, quantity
 from regrasp.plots.units import Units
 
@@ -36,8 +35,7 @@ def title(twist: EscapeTwist, units: Units) -> str:
     verb = "escapes" if twist.is_proof else "does not escape"
     way = "sliding"
     if twist.grasp.dimension == 3 and twist.turns:
-        pitch = Screw.of(twist.twist, twist.grasp.size).pitch
-        pitch = 0.0 if abs(pitch) < 1e-9 * twist.grasp.size else pitch
+        pitch = 0.0 if abs(twist.pitch) < 1e-9 * twist.grasp.size else twist.pitch
         way = f"turning, pitch {quantity(pitch, f'{units.length}/rad', 3)}"
     elif twist.turns:
         way = "turning clockwise" if twist.twist[2] < 0 else "turning counter-clockwise"

@@ -61,10 +61,17 @@ def draw_mesh(ax: Any, mesh: Triangles) -> None:
     surface = Poly3DCollection(vertices[faces], facecolors=colours, edgecolors="none", zorder=0)
     surface.set_gid("mesh")
     ax.add_collection3d(surface)
-    edges = Line3DCollection(creases(mesh), colors=GREY, linewidths=0.6, alpha=0.7, zorder=1)
-    edges.set_gid("edges")
-    ax.add_collection3d(edges)
+    draw_edges(ax, creases(mesh), GREY, gid="edges")
     include(ax, vertices)
+
+
+def draw_edges(ax: Any, edges: Array, colour: str, *, gid: str) -> None:
+    """Thin segments (k, 2, 3), which a smooth surface may have none of."""
+    if len(edges):
+        lines = Line3DCollection(edges, colors=colour, linewidths=0.6, alpha=0.7, zorder=1)
+        lines.set_gid(gid)
+        ax.add_collection3d(lines)
+        include(ax, edges)
 
 
 def dot(ax: Any, at: Array, *, gid: str, zorder: float = 4, **look: Any) -> None:

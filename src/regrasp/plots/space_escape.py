@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
-from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
-from regrasp.mechanics.screw import Screw
 from regrasp.plots.arrows import arrow3d
 from regrasp.plots.body import extent
 from regrasp.plots.escape_words import (
@@ -20,9 +19,10 @@ from regrasp.plots.escape_words import (
     labels,
     title,
 )
+from regrasp.plots.screw_motion import amount_for, moved
 from regrasp.plots.solids import Triangles, creases
-from regrasp.plots.space import equal_scale, include, space_axes
-from regrasp.plots.space_body import dot, draw_body_in_space
+from regrasp.plots.space import equal_scale, space_axes
+from regrasp.plots.space_body import dot, draw_body_in_space, draw_edges
 from regrasp.plots.space_object import CONE, TURN, draw_load_in_space, turning
 from regrasp.plots.style import SMALL, legend, short
 from regrasp.plots.units import Units
@@ -50,23 +50,22 @@ def draw_escape(twist: EscapeTwist, ax: Any, *, mesh: Triangles | None, units: U
     )
     force = float(np.linalg.norm(twist.load.force))
     draw_load_in_space(ax, twist.load, 0.35 * size / (force or 1.0), TURN * size)
-    screw = Screw.of(twist.twist, twist.grasp.size or 1.0)
-    _draw_contacts(ax, twist, screw, size)
+    _draw_contacts(ax, twist, size)
     if mesh is not None:
-        _draw_later(ax, screw, mesh, size)
-    axis = [_draw_axis(ax, screw, size)] if screw.turns else []
+        _draw_later(ax, twist, mesh, size)
+    axis = [] if twist.axis is None else [_draw_axis(ax, *twist.axis, size)]
     ax.set_title(title(twist, units), fontsize=SMALL, loc="left", pad=14)
     legend(ax, [*key(twist), *axis])
     return equal_scale(ax, units)
 
 
-def _draw_contacts(ax: Any, twist: EscapeTwist, screw: Screw, size: float) -> None:
+def _draw_contacts(ax: Any, twist: EscapeTwist, size: float) -> None:
     """Marks of who can oppose the motion, velocities, and the helices along which the contacts would go."""
     points = twist.grasp.positions
     speeds = np.linalg.norm(twist.velocities, axis=1)
     still = 1e-9 * float(np.linalg.norm(twist.twist[:3]) + np.linalg.norm(twist.twist[3:]) * size)
-    amounts = np.linspace(0, screw.amount_for(points, _WAY * size), 40)
-    ways = np.array([screw.moved(points, a) for a in amounts.tolist()])
+    amounts = np.linspace(0, amount_for(twist, points, _WAY * size), 40)
+    ways = np.array([moved(twist, points, a) for a in amounts.tolist()])
     for i, (name, r, v) in enumerate(zip(twist.grasp.names, points, twist.velocities, strict=True)):
         ax.plot(*ways[:, i].T, color=MOTION, linewidth=0.9, alpha=0.8, gid=f"way {name}", zorder=4)
         if speeds[i] > still:
@@ -76,20 +75,19 @@ def _draw_contacts(ax: Any, twist: EscapeTwist, screw: Screw, size: float) -> No
         dot(ax, r, gid=f"{what} {name}", zorder=6, **look)
 
 
-def _draw_later(ax: Any, screw: Screw, mesh: Triangles, size: float) -> None:
+def _draw_later(ax: Any, twist: EscapeTwist, mesh: Triangles, size: float) -> None:
     """The sharp edges of the object a little later."""
-    amount = screw.amount_for(mesh[0], _LATER * size)
+    amount = amount_for(twist, mesh[0], _LATER * size)
     edges = creases(mesh)
-    moved = screw.moved(edges.reshape(-1, 3), amount).reshape(edges.shape)
-    later = Line3DCollection(moved, colors=MOTION, linewidths=0.6, alpha=0.7, zorder=1)
-    later.set_gid("later")
-    ax.add_collection3d(later)
-    include(ax, moved)
+    later = moved(twist, edges.reshape(-1, 3), amount).reshape(edges.shape)
+    draw_edges(ax, later, MOTION, gid="later")
 
 
-def _draw_axis(ax: Any, screw: Screw, size: float) -> Line2D:
-    """The screw axis with the sense of the turn; an arrow towards it where it is far away. Its key."""
-    n, p = screw.direction, screw.point
+def _draw_axis(ax: Any, p: Array, n: Array, size: float) -> Line2D:
+    """The screw axis with the sense of the turn; an arrow towards it where it is far away. Its key.
+
+    p: its point nearest to the centre of mass [m]. n: its direction, unit.
+    """
     away = float(np.linalg.norm(p))
     if away <= _NEAR * size:
         low, high = p - 0.7 * size * n, p + 0.7 * size * n
