@@ -53,7 +53,8 @@ _names = _compiled()
 _triple_frame, _centroid_moment = _names["triple_frame"], _names["centroid_moment"]
 _rigid_motion, _dot, _plus = _names["rigid_motion"], _names["dot"], _names["plus"]
 _workspace, _write_triple, _judged = _names["workspace"], _names["write_triple"], _names["judged"]
-_COLLINEAR, _LIMITS, _FACETS = triple.COLLINEAR, triple_program.LIMITS, triple_program.FACETS
+_LIMITS, _PUSHES, _FACETS = triple_program.LIMITS, triple_program.PUSHES, triple_program.FACETS
+_COLLINEAR = triple.COLLINEAR
 
 # Numba's cache watches this file only; the digest in the loops' closures makes it watch the formulas too.
 _digest = sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in _MODULES)).hexdigest()
@@ -76,10 +77,13 @@ def _keep_motion(work, frame, fingers, cos_half, answer, place):  # type: ignore
             continue
         if weight < 0.0 or row < _LIMITS:
             return False
-        if row < _FACETS:
+        if row < _PUSHES:
             i = row - _LIMITS
             a[i] = _plus(a[i], -weight, normals[i])
             allowance += weight * limits[i] / sqrt(1.0 + mu[i] * mu[i])
+        elif row < _FACETS:
+            i = row - _PUSHES
+            a[i] = _plus(a[i], weight, normals[i])
         else:
             at = row - _FACETS
             i = at // facets

@@ -6,8 +6,7 @@
 
 Balance of moments about each side fixes the force of the third contact across the plane; balance within the
 plane leaves the squeezes x12, x23, x31 free. With the load F and its moment M about the centroid of the
-triangle, k the plane's unit normal, A the area, s_i the side opposite to P_i and d_i from the centroid to
-P_i,
+triangle, k the plane's unit normal, A the area, s_i the side opposite to P_i, d_i from the centroid to P_i,
 
     f0_i = -F/3 - k (M . s_i) / (2 A) - (k x d_i) (M . k) / (|d_1|^2 + |d_2|^2 + |d_3|^2)
 

@@ -3,8 +3,9 @@
 Its rows, in units of the largest particular force:
 
     0-2   bounds of the squeezes, beyond which none is sought
-    3-5   limits of the forces, f_i.n_i <= limit_i cos(atan mu_i), which keep |f_i| <= limit_i in the whole
-    cone 6-    facets of the inner pyramids
+    3-5   limits: f_i.n_i <= limit_i cos(atan mu_i) keeps |f_i| <= limit_i in the whole cone
+    6-8   f_i.n_i >= 0: the facets say it, too, but not those of a finger without friction
+    9-    facets of the inner pyramids
 
 What the program accepts is judged once more by the exact cones and the residual of the forces themselves.
 """
@@ -22,7 +23,7 @@ FAR = 2.0**20
 """No squeeze beyond this many times the largest particular force is sought."""
 IDLE = 2.0**-40
 """A force below this fraction of the largest is no force; a residual below it is equilibrium."""
-LIMITS, FACETS = 3, 6
+LIMITS, PUSHES, FACETS = 3, 6, 9
 """First columns of these rows."""
 
 
@@ -77,14 +78,16 @@ def write_triple(work: Workspace, frame: Frame, normals: Three, angles: Any) -> 
         for i in range(3):
             work.rows[c, i] = 0.0
             work.rows[c, LIMITS + i] = -work.ahead[c, i]
+            work.rows[c, PUSHES + i] = work.ahead[c, i]
         work.rows[c, c] = 1.0 if work.goal[c] >= 0.0 else -1.0
         work.rows[3, c] = FAR
         work.basis[c] = work.narrow[c] = c
 
 
 def write_limits(work: Workspace, mu: Vector, limits: Vector) -> None:
-    """Fills in the limits of |f_i|, in units of the program."""
+    """Fills in the limits of |f_i|, in units of the program, and that fingers only push."""
     for i in range(3):
+        work.rows[3, PUSHES + i] = work.ahead[3, i]
         work.rows[3, LIMITS + i] = limits[i] / sqrt(1.0 + mu[i] * mu[i]) - work.ahead[3, i]
 
 

@@ -137,7 +137,7 @@ class TripleGraph:
         places = self.triples[t].tolist()
         force, torque = self.loads[o].reshape(2, 3).tolist()
         verdict, _, forces = three_finger_hold(
-            self._fingers(places), tuple(force), tuple(torque), self.facets, float(self.peak_ratio)
+            self.fingers(places), tuple(force), tuple(torque), self.facets, float(self.peak_ratio)
         )
         if verdict != HOLDS or not self._allowed[t]:
             raise InvalidInput(f"the triple {tuple(places)} does not hold load {o}: it has no forces")
@@ -148,7 +148,7 @@ class TripleGraph:
         grasp = Grasp([self.contacts[i] for i in self.triples[t].tolist()])
         return GraspState(grasp, Wrench.from_vector(self.loads[o]), self.forces(t, o))
 
-    def _fingers(self, places: list[int]) -> Fingers:
+    def fingers(self, places: list[int]) -> Fingers:
         """Three contacts as the closed form takes them."""
         vectors: list[Any] = [tuple(map(tuple, rows[places].tolist())) for rows in self._frames]
         numbers: list[Any] = [tuple(row) for row in self._frictions[:, places].tolist()]
