@@ -254,6 +254,23 @@ def test_every_figure_of_a_transition_in_space(lift, block):
     assert lift._repr_png_().startswith(PNG)
 
 
+def test_a_load_that_varies_in_space_has_six_components(lift, block):
+    series = rg.LoadSeries(
+        [0.0, 0.5, 1.0], [[0, 0, -5, 0, 0.01, 0], [1, 0.5, -4, 0.02, 0, 0.01], [0, 0, -5, 0, 0, 0]]
+    )
+    varying = rg.plan_removal(lift.grasp, "ring", load=series, instants=5, max_force=40.0)
+    ax = plots.plot_load(varying)
+    (right,) = [other for other in ax.figure.axes if other is not ax]
+    lines = [*ax.get_lines(), *right.get_lines()]
+    assert len(lines) == 6
+    for k, line in enumerate(lines):
+        np.testing.assert_allclose(line.get_ydata(), varying.course.loads[:, k])
+    assert plots.png(plots.transition_figure(varying, mesh=block)).startswith(PNG)
+    heads = points_of(one(plots.plot_transition(varying, force_scale=0.002), "path thumb"))
+    middle = lift.grasp["thumb"].position + 0.002 * varying.forces(varying.duration / 2)[0]
+    assert np.linalg.norm(heads - middle, axis=1).min() < 1e-9
+
+
 # -- escapes ------------------------------------------------------------------------------------------
 
 
