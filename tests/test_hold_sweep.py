@@ -118,7 +118,7 @@ def test_margins_are_those_of_one_grasp(place: Callable, frictions: str, limits:
 def test_in_other_units(place: Callable, exponent: int) -> None:
     """Margins are angles: the same table, and the same as of one grasp in those units.
 
-    No load goes through a contact or is a limit: whether one finger may carry it is then rounding of the unit.
+    No load goes through a contact or is a limit: whether one finger may carry it is then rounding.
     """
     rng = np.random.default_rng(4)
     points, normals = place(rng, 14)

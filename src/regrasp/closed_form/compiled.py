@@ -39,7 +39,7 @@ def compiled(modules: tuple[ModuleType, ...], **options: Any) -> dict[str, Any]:
 
 
 def digest(modules: tuple[ModuleType, ...]) -> str:
-    """Of the sources: in a loop's closure, it makes Numba's cache watch them as it does the loop's own file."""
+    """Of the sources: in a loop's closure, it makes Numba's cache watch them as it does the loop's file."""
     return sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in modules)).hexdigest()
 
 
