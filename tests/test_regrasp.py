@@ -10,7 +10,6 @@ import regrasp as rg
 from regrasp.closed_form.choice import ANGLE, best_squeeze
 from regrasp.outline import parts
 from regrasp.planning.holds import HoldGraph, evenly, named
-from regrasp.planning.reach import MAX_TURN, Search, reachable, sequences
 
 WEIGHT = rg.Wrench([0, -3.0])
 ELLIPSE = rg.Outline.ellipse(2, 1)
@@ -104,58 +103,6 @@ def test_parts_are_regrasped(part):
     assert found >= 2
 
 
-def brute_force(graph, start, goal, o, max_turn):
-    """(steps, margin) of the best sequence, by trying every hold after every hold."""
-    holds = [
-        (i, j, k)
-        for i, j in combinations(range(len(graph.contacts)), 2)
-        for k in range(len(graph.angles))
-        if graph.margin(i, j, k) >= 0
-    ]
-    best = {h: graph.margin(*h) for h in holds if set(h[:2]) <= set(start) and h[2] == 0}
-    for steps in range(12):
-        ends = [m for h, m in best.items() if set(h[:2]) <= set(goal) and h[2] == o]
-        if ends:
-            return steps, max(ends)
-        following = {}
-        for h, m in best.items():
-            for g in holds:
-                turn = abs((graph.angles[g[2]] - graph.angles[h[2]] + np.pi) % (2 * np.pi) - np.pi)
-                if set(h[:2]) & set(g[:2]) and turn <= max_turn + 1e-9:
-                    value = min(m, graph.margin(*g))
-                    following[g] = max(following.get(g, -1.0), value)
-        if following == best:
-            return None
-        best = following
-    return None
-
-
-def test_no_sequence_is_shorter_or_safer():
-    rng = np.random.default_rng(3)
-    seen = {"found": 0, "impossible": 0}
-    for _ in range(25):
-        outline = rg.Outline.ellipse(1.0, rng.uniform(0.3, 1.0))
-        s = np.sort(rng.uniform(0, outline.length, 9))
-        contacts = named([outline.contact_at(x, friction=rng.uniform(0.15, 0.5)) for x in s.tolist()], "c")
-        graph = HoldGraph(tuple(contacts), WEIGHT, evenly(int(rng.integers(1, 6))))
-        start, goal = tuple(rng.choice(9, 3, replace=False)), tuple(rng.choice(9, 3, replace=False))
-        o = int(rng.integers(len(graph.angles)))
-        expected = brute_force(graph, start, goal, o, MAX_TURN)
-        found = sequences(graph, start, goal, o)
-        if expected is None:
-            assert found == []
-            seen["impossible"] += 1
-            continue
-        seen["found"] += 1
-        steps, margin = expected
-        assert len(found[0].holds) - 1 == steps
-        assert found[0].margin == pytest.approx(margin, abs=1e-7)
-        assert min(graph.margin(*h) for h in found[0].holds) == pytest.approx(margin, abs=1e-7)
-        for a, b in zip(found[0].holds[:-1], found[0].holds[1:], strict=True):
-            assert set(a[:2]) & set(b[:2])
-    assert min(seen.values()) >= 3, seen
-
-
 def test_margins_of_the_graph_are_those_of_chosen_states():
     rng = np.random.default_rng(1)
     contacts = named([ELLIPSE.contact_at(x, friction=0.4) for x in rng.uniform(0, ELLIPSE.length, 12)], "c")
@@ -173,17 +120,6 @@ def test_margins_of_the_graph_are_those_of_chosen_states():
             assert graph.margin(j, i, o) == pytest.approx(state.value, abs=1e-6)
             assert graph.row(i, o)[j] == graph.margin(i, j, o)
     assert held > 20
-
-
-def test_components_and_reach():
-    contacts = named([ELLIPSE.contact_at(float(x), friction=0.2) for x in ELLIPSE.sample(40)], "c")
-    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(12))
-    labels = graph.components()
-    first, second = graph.pairs
-    holds = graph.margins.max(axis=0) >= 0
-    assert (labels[first[holds]] == labels[second[holds]]).all()
-    i, j = int(first[graph.margins[0] >= 0][0]), int(second[graph.margins[0] >= 0][0])
-    assert reachable(graph, (i, j)).tolist() == (labels == labels[i]).tolist()
 
 
 def test_a_filter_and_a_distance_are_kept():
@@ -209,9 +145,9 @@ def test_force_limits_hold_while_it_turns():
         friction=0.5,
         orientations=24,
         goal_orientation=np.pi / 2,
-        max_force=12.0,
+        max_force=16.0,
     )
-    assert all(c.max_force == 12.0 for step in plan.steps for c in step.grasp)
+    assert all(c.max_force == 16.0 for step in plan.steps for c in step.grasp)
     assert rg.verify(plan).ok
 
 
@@ -253,7 +189,7 @@ def test_the_verifier_finds_bad_joints():
         ({"candidates": 0.5}, rg.InvalidInput, "count must be a whole number"),
         (
             {"start": grasp_on(ELLIPSE, (0.4, 0.45, 0.5), 0.05)}, rg.Infeasible,
-            "no two fingers of the start hold the load at 0 deg",
+            r"fingers of the start cannot hold the load at 0 deg: .*; they would with friction 2\.27",
         ),
     ],
 )  # fmt: skip
@@ -325,15 +261,6 @@ def test_compiled_margins_are_those_of_best_squeeze(limited):
                     for c, g in ((a, f[:2]), (b, f[2:]))
                 )
                 assert graph.margin(i, j, o) == pytest.approx(max(least, 0.0), abs=1e-6)
-
-
-def test_searching_further_never_narrows_what_was_reached():
-    contacts = named([ELLIPSE.contact_at(float(x), friction=0.3) for x in ELLIPSE.sample(30)], "c")
-    graph = HoldGraph(tuple(contacts), WEIGHT, evenly(8))
-    search = Search(graph, tuple(range(6)), MAX_TURN)
-    while search.extend():
-        assert (search.levels[-1] >= search.levels[-2] - 1e-9)[search.levels[-2] >= 0].all()
-        assert len(search.levels) < 30
 
 
 def test_states_chosen_together_have_the_widest_worst_margin_and_change_least():

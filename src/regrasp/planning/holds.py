@@ -1,6 +1,6 @@
 """The hold graph: every pair of points that holds the load, at every orientation (docs/facts.md, 7)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -43,8 +43,9 @@ class HoldGraph:
     contacts: candidates. load: at angle 0. angles: (O,) of the object [rad]. A hold's margin is the widest
     least angle margin [rad] of its states, with forces below the contacts' own limits or, without one,
     ``peak_ratio`` times the least peak force. min_distance: between two fingers [m]. keep: a filter of pairs
-    by reach or collision. ``margins`` takes 4 bytes per pair and angle, and raises ``InvalidInput`` where
-    that is more than ``most_bytes``; ``widest`` does without.
+    by reach or collision. one_finger: whether a pair also holds where one of its fingers carries the whole
+    load; otherwise both have to push (see ``lone``). ``margins`` takes 4 bytes per pair and angle, and raises
+    ``InvalidInput`` where that is more than ``most_bytes``; ``widest`` does without.
     """
 
     contacts: tuple[Contact, ...]
@@ -54,6 +55,7 @@ class HoldGraph:
     min_distance: float = 0.0
     keep: Filter | None = None
     most_bytes: int = MOST_BYTES
+    one_finger: bool = False
 
     def __post_init__(self) -> None:
         if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
@@ -84,8 +86,10 @@ class HoldGraph:
                 f"{self.most_bytes / 2**30:.3g}; take fewer, allow more by most_bytes, or ask for widest()"
             )
         result = np.empty((len(self.angles), self.pairs[0].size), dtype=np.float32)
-        hold_margins(*self.pairs, self._loads, self._candidates, result)
+        hold_margins(*self.pairs, self.loads, self._candidates, result)
         result[:, ~self._apart] = NO_HOLD
+        for o, places in self._alone.items():
+            result[o, places] = self._shared(o, places)
         if self.keep is not None:
             for o, row in enumerate(result):
                 row[~self._kept(o)] = NO_HOLD
@@ -98,14 +102,55 @@ class HoldGraph:
         size = self.pairs[0].size
         margins, places = np.full(size, NO_HOLD, dtype=np.float32), np.zeros(size, dtype=np.int32)
         holding = []
-        together = len(self.angles) if self.keep is None else 1  # a filter is asked for each angle
-        for o in range(0, len(self.angles), together):
-            loads = self._loads[o : o + together]
+        for some in self._together():
+            o, loads = some.start, self.loads[some]
             counts = np.zeros((-(-size // STRETCH), len(loads)), dtype=np.int64)
             allowed = self._apart if self.keep is None else self._apart & self._kept(o)
+            alone = self._alone.get(o, np.empty(0, dtype=np.int64))
+            alone = alone[allowed[alone]]
+            if alone.size:
+                allowed = allowed.copy()
+                allowed[alone] = False
             widest_margins(*self.pairs, loads, self._candidates, allowed, o, margins, places, counts)
             holding.append(counts.sum(axis=0))
+            if alone.size:
+                shared = self._shared(o, alone)
+                wider = shared > margins[alone]
+                margins[alone[wider]], places[alone[wider]] = shared[wider], o
+                holding[-1] += (shared >= 0).sum()
         return WidestHolds(margins, places, np.concatenate(holding))
+
+    def _together(self) -> Iterator[slice]:
+        """Orientations to sweep at once: those with a filter or with ``_alone`` pairs go by themselves."""
+        begun = 0
+        for o in range(len(self.angles) + 1):
+            own = o < len(self.angles) and (self.keep is not None or o in self._alone)
+            if (own or o == len(self.angles)) and begun < o:
+                yield slice(begun, o)
+                begun = o
+            if own:
+                yield slice(o, o + 1)
+                begun = o + 1
+
+    @cached_property
+    def _alone(self) -> dict[int, NDArray[np.int64]]:
+        """Pairs with a contact that the load passes through, by orientation, where both have to push."""
+        from regrasp.planning.lone import held_alone
+
+        found: dict[int, NDArray[np.int64]] = {}
+        for o, load in enumerate(self.loads if not self.one_finger else ()):
+            through = held_alone(self._points, load)
+            if through.size:
+                first, second = self.pairs
+                found[o] = np.flatnonzero((np.isin(first, through) | np.isin(second, through)) & self._apart)
+        return found
+
+    def _shared(self, o: int, places: NDArray[np.int64]) -> NDArray[np.float32]:
+        """(m,) margins of pairs at an orientation, with both fingers at work."""
+        from regrasp.planning.lone import shared_margins
+
+        first, second = (ends[places] for ends in self.pairs)
+        return shared_margins(self.contacts, first, second, self.loads[o], self.peak_ratio).astype(np.float32)
 
     @cached_property
     def _points(self) -> Array:
@@ -135,7 +180,8 @@ class HoldGraph:
         return self._points, normals, mu, limits, float(self.peak_ratio)
 
     @property
-    def _loads(self) -> Array:
+    def loads(self) -> Array:
+        """(O, 2) forces of the load seen from the object at each angle [N]."""
         return np.array([turned_load(self.load, a).force for a in self.angles.tolist()])
 
     def pair(self, i: int, j: int) -> int:

@@ -53,10 +53,12 @@ def chosen_states(
     load: Wrench,
     angles: Array,
     criteria: Criteria,
+    one_finger: bool,
 ) -> list[Chosen]:
     """The first grasp's state, that of every hold, and the last grasp's, each chosen by itself.
 
-    Holds are chosen for the objective, whole grasps for the widest force margin: every finger works.
+    Holds are chosen for the objective, whole grasps for the widest force margin: every finger works. So are
+    holds of which the objective would leave one finger idle, unless ``one_finger`` may hold.
     """
     turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
     whole = replace(criteria, objective="force")
@@ -64,7 +66,10 @@ def chosen_states(
     for k, ((i, j, _), angle) in enumerate(zip(sequence.holds, turned, strict=True)):
         beside = [abs(b - a) for a, b in pairwise(turned[max(k - 1, 0) : k + 2])]
         ease = cos(max(beside, default=0.0) / 2) * (1 - 1e-9)  # forces grow while the object turns
-        states.append(_chosen((i, j), angle, contacts, load, criteria, ease))
+        state = _chosen((i, j), angle, contacts, load, criteria, ease)
+        if not one_finger and not all(_in_use(state.forces)):
+            state = _chosen((i, j), angle, contacts, load, whole, ease)
+        states.append(state)
     return [*states, _chosen(goal, turned[-1], contacts, load, whole, 1.0)]
 
 

@@ -1,0 +1,88 @@
+"""Regrasps by exhaustive search: fingers with their points, one of them free, one event at a time.
+
+A state is (points of fingers 1, 2, 3; which finger is free; orientation). The free finger moves to another
+point, or it presses and another one is freed while the object may turn, or only the object turns.
+"""
+
+from heapq import heappop, heappush
+from itertools import permutations
+
+import numpy as np
+
+
+def least_cost(
+    graph, start, goal, o, max_turn, allowed=None, threshold=0.0, move=1.0, turn=0.0, step=0.0, worth=None
+):
+    """The least cost of a way from a hold of the start to one of the goal; None where there is none.
+
+    worth: (P, O) price of each hold passed.
+    """
+    points, orientations = range(len(graph.contacts)), range(len(graph.angles))
+    allowed = np.ones((3, len(points)), dtype=bool) if allowed is None else allowed
+
+    count = len(points)
+    table = [[[-1.0] * len(orientations)] * count for _ in points]
+    prices = [[[0.0] * len(orientations)] * count for _ in points]
+    for p, (i, j) in enumerate(zip(*graph.pairs, strict=True)):
+        table[i][j] = table[j][i] = graph.margins[:, p].tolist()
+        if worth is not None:
+            prices[i][j] = prices[j][i] = worth[p].tolist()
+    a = graph.angles
+    apart = abs((a[:, None] - a + np.pi) % (2 * np.pi) - np.pi).tolist()
+    near = [[m for m in orientations if apart[k][m] <= max_turn + 1e-9] for k in orientations]
+
+    def hold(at, free):
+        return at[free - 2], at[free - 1]  # the two fingers that are not free
+
+    def holds(at, free, k):
+        i, j = hold(at, free)
+        return table[i][j][k] >= threshold
+
+    def price(at, free, k):
+        i, j = hold(at, free)
+        return prices[i][j][k]
+
+    goals = {way for way in permutations(goal) if all(allowed[f, v] for f, v in enumerate(way))}
+    queue = [(price(start, f, 0), start, f, 0) for f in range(3) if holds(start, f, 0)]
+    best = {state[1:]: state[0] for state in queue}
+    queue.sort()
+    while queue:
+        cost, at, free, k = heappop(queue)
+        if cost > best[at, free, k]:
+            continue
+        if at in goals and k == o:
+            return cost
+        following = []
+        for p in points:
+            if allowed[free, p] and p not in at:
+                there = (*at[:free], p, *at[free + 1 :])
+                following.append((cost + move, there, free, k))
+        for next_free in range(3):
+            for m in near[k]:
+                if (next_free, m) != (free, k) and holds(at, next_free, m):
+                    paid = step + turn * apart[k][m] + price(at, next_free, m)
+                    following.append((cost + paid, at, next_free, m))
+        for state in following:
+            if state[0] < best.get(state[1:], np.inf):
+                best[state[1:]] = state[0]
+                heappush(queue, state)
+    return None
+
+
+def trade_off(graph, start, goal, o, max_turn, allowed=None):
+    """[(moves, widest margin)] of the fewest moves, and of more wherever the margin is wider."""
+    levels = np.unique(graph.margins[graph.margins >= 0])
+    found, low = [], 0
+    while low < levels.size:
+        threshold = float(levels[low])
+        moves = least_cost(graph, start, goal, o, max_turn, allowed, threshold)
+        if moves is None:
+            break
+        high = levels.size  # the last level with as few moves
+        while high - low > 1:
+            middle = (low + high) // 2
+            same = least_cost(graph, start, goal, o, max_turn, allowed, float(levels[middle])) == moves
+            low, high = (middle, high) if same else (low, middle)
+        found.append((round(moves), float(levels[low])))
+        low += 1
+    return found
