@@ -21,6 +21,7 @@ from regrasp.planning.regrasping import plan_regrasp, plan_regrasps
 from regrasp.planning.rotation import plan_rotation
 from regrasp.planning.sampled import SampledTransition
 from regrasp.planning.sensitivity import Sensitivity, sensitivity
+from regrasp.planning.squeeze_locus import SqueezeLocus
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
 from regrasp.planning.turning import TurningTransition
@@ -48,6 +49,7 @@ __all__ = [
     "Sensitivity",
     "SolverFailed",
     "SolverUnavailable",
+    "SqueezeLocus",
     "TimeScaling",
     "Transition",
     "TurningTransition",

@@ -26,7 +26,7 @@ _WORK = 1e-9
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
     names = ", ".join(grasp.names)
-    loose = _loose(grasp, load)
+    loose = loose_twist(grasp, load)
     if loose is not None:
         return Infeasible(
             f"no forces of {names} balance {load!r}: none resists {grasp.freedom}, about which the "
@@ -67,7 +67,7 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     )
 
 
-def _loose(grasp: Grasp, load: Wrench) -> EscapeTwist | None:
+def loose_twist(grasp: Grasp, load: Wrench) -> EscapeTwist | None:
     """A motion that moves no contact and along which the load does work; two fingers in space leave one."""
     if not len(grasp.free_twists):
         return None
