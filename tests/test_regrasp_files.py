@@ -54,6 +54,7 @@ REGRASP = rg.plan_regrasp(
     goal_orientation=radians(75),
     max_turn=radians(15),
 )
+EXCHANGE = next(k for k, step in enumerate(REGRASP.steps) if step.kind == "exchange")
 
 
 def same_bits(ours: rg.Transition, theirs: rg.Transition) -> bool:
@@ -183,8 +184,8 @@ def test_damaged_rotation(change: Callable[[dict[str, Any]], None], message: str
                                         "contacts, start, end, scaling, course, record, arrival, turn"),
         (put("P9", "steps", 0, "contact"),
          f"steps[0]: no contact 'P9' in this grasp; it has {', '.join(REGRASP.steps[0].grasp.names)}"),
-        (put(None, "steps", 1, "arrival"), f"steps[1]: an exchange names the wrong fingers: "
-                                           f"{REGRASP.steps[1].contact!r} and None"),
+        (put(None, "steps", EXCHANGE, "arrival"), f"steps[{EXCHANGE}]: an exchange names the wrong fingers: "
+                                                  f"{REGRASP.steps[EXCHANGE].contact!r} and None"),
     ],
 )  # fmt: skip
 def test_damaged_regrasp(change: Callable[[dict[str, Any]], None], message: str, tmp_path: Path) -> None:
@@ -228,7 +229,7 @@ def test_readable_regrasp_that_is_wrong_does_not_verify(
 
 def test_a_step_with_more_contacts_than_fingers(tmp_path: Path) -> None:
     path = tmp_path / "plan.json"
-    turned = replace(REGRASP, steps=REGRASP.steps[1:-1], orientations=REGRASP.orientations[1:-1])
+    turned = replace(REGRASP, steps=REGRASP.steps[EXCHANGE:-1], orientations=REGRASP.orientations[EXCHANGE:-1])
     more = replace(turned, steps=(ROTATION, *turned.steps), orientations=(0.0, *turned.orientations))
     write_plan(more, path)
     with pytest.raises(rg.InvalidInput, match=r"plan.json: step 2 has more contacts than there are fingers"):
@@ -673,8 +674,8 @@ def test_regrasp_that_cannot_be(capsys: pytest.CaptureFixture[str], tmp_path: Pa
     status, out, err = regrasp(capsys, "plan", path, "-o", tmp_path / "out")
     assert (status, out) == (3, "")
     assert err == (
-        f"Error: {path}: no two fingers of the start hold the load at 0 deg, "
-        "so none of its fingers can leave or arrive\n"
+        f"Error: {path}: no two fingers of the start hold the load at 0 deg, only at 90, 270 deg, "
+        "so none of its fingers can leave or arrive; there would be one with friction 2.21 instead of 0.001\n"
     )
 
 

@@ -85,9 +85,7 @@ def _reason(problem: "RegraspProblem", start: tuple[int, ...], goal: tuple[int, 
             )
     count = int((graph.margins.max(axis=0) >= 0).sum())
     common = tuple(sorted(set(start) & set(goal) - {-1}))
-    apart = (
-        "the turns between are too large" if problem.allowed is None else "the fingers' arcs keep them apart"
-    )
+    apart = "the turns between are too large" if problem.allowed is None else "the arcs keep them apart"
     where = (
         f"both ends have points in component {_listed(common)}, but {apart}"
         if common
