@@ -21,8 +21,9 @@ from regrasp.mechanics.grasp import Grasp
 
 # Points thinner than this fraction of their extent lie in a flat.
 _FLAT = 1e-10
-# A squeeze that is a combination of others to this fraction is no new one.
-_SAME = 1e-13
+# A squeeze that is a combination of others to this fraction is no new one: the first of these by which there
+# are enough. Rounding grows by the inverse, so that there is nothing to be had below the last.
+_SAME = (1e-1, 1e-2, 1e-4, 1e-6, 1e-8)
 
 
 class SqueezeBasis(NamedTuple):
@@ -44,25 +45,21 @@ def pair_squeezes(grasp: Grasp) -> tuple[tuple[tuple[int, int], ...], Array]:
 
 
 def squeeze_basis(grasp: Grasp) -> SqueezeBasis:
-    """Independent coordinates of the internal forces: the first independent pairs, then forces across.
+    """Independent coordinates of the internal forces: the first clearly independent pairs, then forces across.
 
     Raises ``InvalidInput`` where contacts are so near to one line or plane that rounding decides.
     """
     pairs, squeezes = pair_squeezes(grasp)
-    names, rows = [], []
-    orthonormal = np.zeros((0, grasp.positions.size))
-    for (i, j), row in zip(pairs, squeezes.reshape(len(pairs), -1), strict=True):
-        rest = row
-        for _ in range(2):
-            rest = rest - (orthonormal @ rest) @ orthonormal
-        if (left := float(np.linalg.norm(rest))) > _SAME:
-            orthonormal = np.vstack([orthonormal, rest / left])
-            names.append(f"{grasp.names[i]}-{grasp.names[j]}")
-            rows.append(row)
-    for name, across in _across(grasp):
-        names.append(name)
-        rows.append(across)
+    flat = squeezes.reshape(len(pairs), -1)
     internal = grasp.internal_forces.reshape(-1, grasp.positions.size)
+    across = _across(grasp)
+    for same in _SAME:
+        chosen = _independent(flat, same)
+        if len(chosen) + len(across) >= len(internal):
+            break
+    names = [f"{grasp.names[i]}-{grasp.names[j]}" for i, j in (pairs[p] for p in chosen)]
+    names += [name for name, _ in across]
+    rows = [*flat[chosen], *(forces for _, forces in across)]
     if len(rows) != len(internal):
         raise InvalidInput(
             f"the contacts {', '.join(grasp.names)} are so near to one line or plane that rounding decides "
@@ -70,6 +67,19 @@ def squeeze_basis(grasp: Grasp) -> SqueezeBasis:
         )
     exact = np.array(rows).reshape(internal.shape) @ internal.T @ internal
     return SqueezeBasis(tuple(names), read_only(exact.reshape(-1, *grasp.positions.shape)))
+
+
+def _independent(rows: Array, same: float) -> list[int]:
+    """The first rows that differ from every combination of those before them by more than ``same``."""
+    orthonormal, chosen = np.zeros((0, rows.shape[1])), []
+    for place, row in enumerate(rows):
+        rest = row
+        for _ in range(2):
+            rest = rest - (orthonormal @ rest) @ orthonormal
+        if (left := float(np.linalg.norm(rest))) > same:
+            orthonormal = np.vstack([orthonormal, rest / left])
+            chosen.append(place)
+    return chosen
 
 
 def _across(grasp: Grasp) -> list[tuple[str, Array]]:

@@ -28,7 +28,8 @@ class SqueezeLocus(ArrayValue):
     They are f = f0 + sum x_k b_k: f0 the equilibrium with the least sum of squares, b_k one newton of each
     of ``dimension`` independent internal forces, x the coordinates, the **squeezes** [N]. Three contacts not
     on a line have one along each side of their triangle, positive where two fingers push towards each other.
-    More contacts have the first independent pairs, in the order of the contacts, that ``coordinates`` names.
+    More contacts have the first pairs, in the order of the contacts, that are clearly independent; they are
+    named in ``coordinates``.
     Contacts too many for one plane or line that holds them all also have forces across it, which no squeeze
     makes: one newton at a further contact, borne by the first ones.
 
