@@ -38,6 +38,7 @@ class _Contact(Strict):
     normal: list[float]
     friction: float
     max_force: float | None
+    torsion: float | None = None  # of a soft finger
 
 
 class _Scaling(Strict):
@@ -191,6 +192,7 @@ def _document(plan: Transition) -> dict[str, Any]:
                 "friction": c.friction,
                 "max_force": c.max_force,
             }
+            | ({} if c.torsion is None else {"torsion": c.torsion})
             for c in plan.grasp
         ],
         "start": plan.start.forces.tolist(),
@@ -240,7 +242,8 @@ def _document(plan: Transition) -> dict[str, Any]:
 
 def _plan(stored: _Transition) -> Transition:
     grasp = Grasp(
-        Contact(c.position, c.normal, c.friction, max_force=c.max_force, name=c.name) for c in stored.contacts
+        Contact(c.position, c.normal, c.friction, max_force=c.max_force, torsion=c.torsion, name=c.name)
+        for c in stored.contacts
     )
     for key in ("rate_limits", "least_normals"):
         count = len(getattr(stored.record, key))

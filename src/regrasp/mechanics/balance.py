@@ -34,7 +34,7 @@ def nearest_equilibrium(
     """
     n, d = forces.shape
     weight = np.ones(matrix.shape[0])
-    weight[d:] = 1 / length
+    weight[2 if matrix.shape[0] == 3 else 3 :] = 1 / length
     g, w = matrix * weight[:, None], load * weight
     heaviest = float(abs(w).max())
     scale = max(float(abs(forces).max()), heaviest)

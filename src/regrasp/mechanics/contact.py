@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan, hypot
+from typing import Any
 
 from numpy.typing import ArrayLike
 
@@ -23,6 +24,9 @@ class Contact(ArrayValue):
     normal: (d,), points **into** the object; any non-zero vector, stored with unit length.
     friction: Coulomb coefficient mu >= 0; the friction cone has half-angle atan(mu).
     max_force: largest force magnitude the finger can make [N], or None for no limit.
+    torsion: in space, of a soft finger: the most torque about the normal per normal force [m], greater than
+    0, or None for a point contact. Together with the tangential force it stays inside the limit surface
+    (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research 15, 1996).
     name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
 
     Raises ``InvalidInput`` for anything else.
@@ -32,6 +36,7 @@ class Contact(ArrayValue):
     normal: Array
     friction: float
     max_force: float | None = field(default=None, kw_only=True)
+    torsion: float | None = field(default=None, kw_only=True)
     name: str | None = field(default=None, kw_only=True)
 
     def __init__(
@@ -41,6 +46,7 @@ class Contact(ArrayValue):
         friction: float,
         *,
         max_force: float | None = None,
+        torsion: float | None = None,
         name: str | None = None,
     ) -> None:
         if name is not None and (not isinstance(name, str) or not name.strip()):
@@ -68,12 +74,27 @@ class Contact(ArrayValue):
         if max_force is not None:
             max_force = number(max_force, f"{label}: max_force", above=0)
         object.__setattr__(self, "max_force", max_force)
+        if torsion is not None:
+            torsion = number(torsion, f"{label}: torsion", above=0)
+            if where.size == 2 or self.friction == 0:
+                without = "in the plane" if where.size == 2 else "without friction"
+                raise InvalidInput(
+                    f"{label}: a contact {without} has no torsion; leave it out, got {torsion:g}"
+                )
+        object.__setattr__(self, "torsion", torsion)
         object.__setattr__(self, "name", name)
 
     @cached_property
     def dimension(self) -> int:
         """2 in the plane, 3 in space."""
         return int(self.position.size)
+
+    @property
+    def kind(self) -> str:
+        """``frictionless``, ``point`` (with friction) or ``soft``."""
+        if self.torsion is not None:
+            return "soft"
+        return "point" if self.friction else "frictionless"
 
     @property
     def half_angle(self) -> float:
@@ -87,12 +108,18 @@ class Contact(ArrayValue):
 
     def named(self, name: str) -> "Contact":
         """The same contact under another name."""
-        return Contact(self.position, self.normal, self.friction, max_force=self.max_force, name=name)
+        return self.changed(name=name)
+
+    def changed(self, **fields: Any) -> "Contact":
+        """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``."""
+        kept = {"max_force": self.max_force, "torsion": self.torsion, "name": self.name} | fields
+        return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
 
     def __repr__(self) -> str:
         limit = "" if self.max_force is None else f", max_force={self.max_force:g}"
+        soft = "" if self.torsion is None else f", torsion={self.torsion:g}"
         name = "" if self.name is None else f", name={self.name!r}"
         return (
             f"Contact({numbers(self.position)}, normal={numbers(self.normal)}, "
-            f"friction={self.friction:g}{limit}{name})"
+            f"friction={self.friction:g}{limit}{soft}{name})"
         )

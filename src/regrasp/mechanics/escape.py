@@ -49,7 +49,7 @@ class EscapeTwist(ArrayValue, Pictured):
     def velocities(self) -> Array:
         """(n, d) velocity of the object at each contact, v + omega x r_i."""
         moved: Array = self.grasp.matrix.T @ self.twist
-        return moved.reshape(len(self.grasp), self.grasp.dimension)
+        return moved.reshape(len(self.grasp), self.grasp.width)[:, : self.grasp.dimension]
 
     @cached_property
     def load_power(self) -> float:
@@ -149,10 +149,11 @@ class EscapeTwist(ArrayValue, Pictured):
         return float(velocity @ spin) / hypot(*spin) ** 2 if self.turns else inf
 
     def __str__(self) -> str:
-        d = self.grasp.dimension
+        d, centre = self.grasp.dimension, self.centre
         velocity, spin = self.twist[:d], self.twist[d:]
-        if not self.turns:
-            return f"sliding along {numbers(_without_noise(velocity / hypot(*velocity), 1.0))}"
+        if centre is not None:
+            turn = "clockwise" if spin[0] < 0 else "counter-clockwise"
+            return f"turning {turn} about {numbers(_without_noise(centre, self.grasp.size))}"
         if self.axis is not None:
             point, direction = self.axis
             pitch = float(_without_noise(np.array([self.pitch]), self.grasp.size)[0])
@@ -161,8 +162,7 @@ class EscapeTwist(ArrayValue, Pictured):
                 f"turning about the axis through {numbers(_without_noise(point, self.grasp.size))} along "
                 f"{numbers(_without_noise(direction, 1.0))}{advance}"
             )
-        turn = "clockwise" if spin[0] < 0 else "counter-clockwise"
-        return f"turning {turn} about {numbers(_without_noise(self.centre, self.grasp.size))}"
+        return f"sliding along {numbers(_without_noise(velocity / hypot(*velocity), 1.0))}"
 
     @property
     def explanation(self) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.frames import tangent_pairs
 from regrasp.mechanics.value import ArrayValue
@@ -114,6 +115,21 @@ class Grasp(ArrayValue):
         return self.contacts[0].dimension
 
     @cached_property
+    def is_soft(self) -> bool:
+        """Whether any finger is soft."""
+        return any(contact.torsion is not None for contact in self.contacts)
+
+    @property
+    def width(self) -> int:
+        """Numbers per force: d; 4 where a finger is soft, the last one its torque about the normal [N m]."""
+        return 4 if self.is_soft else self.dimension
+
+    @cached_property
+    def cones(self) -> Cones:
+        """The friction cones, soft fingers' limit surfaces included, as circular cones."""
+        return Cones(self.matrix, self.normals, self.frictions, self.torsions)
+
+    @cached_property
     def positions(self) -> Array:
         """(n, d) [m]."""
         return read_only(np.array([c.position for c in self.contacts]))
@@ -130,17 +146,17 @@ class Grasp(ArrayValue):
             return read_only(tangent_pairs(self.normals))
         return read_only(np.column_stack([-self.normals[:, 1], self.normals[:, 0]]))
 
-    def tangential(self, forces: Array) -> Array:
-        """|f_t| of forces (..., n, d), (..., n) [N]."""
-        normal = (forces * self.normals).sum(axis=-1)
-        across = forces - normal[..., None] * self.normals
-        result: Array = np.sqrt((across * across).sum(axis=-1))
-        return result
-
     @cached_property
     def frictions(self) -> Array:
         """(n,) Coulomb coefficients."""
         return read_only(np.array([c.friction for c in self.contacts]))
+
+    @cached_property
+    def torsions(self) -> Array | None:
+        """(n,) torsion coefficients [m], 0 for point contacts; None where no finger is soft."""
+        if not self.is_soft:
+            return None
+        return read_only(np.array([c.torsion or 0.0 for c in self.contacts]))
 
     @cached_property
     def max_forces(self) -> Array:
@@ -154,12 +170,26 @@ class Grasp(ArrayValue):
 
     @cached_property
     def matrix(self) -> Array:
-        """Grasp matrix G, (3, 2n) or (6, 3n): stacked forces (f_1, ..., f_n) to total wrench."""
+        """Grasp matrix G, (3, 2n) or (6, 3n): stacked forces (f_1, ..., f_n) to total wrench.
+
+        (6, 4n) where a finger is soft: forces are then (f_x, f_y, f_z, m) with a torque m about the normal.
+        """
         n, d = self.positions.shape
         axes = np.eye(d)  # a unit force along each axis, at each contact
         arms = torque(self.positions[:, None], axes)  # (n, d, 1) or (n, d, 3)
         blocks = np.concatenate([np.broadcast_to(axes[:, None], (d, n, d)), np.moveaxis(arms, -1, 0)])
-        return read_only(blocks.reshape(-1, n * d))
+        if self.is_soft:
+            about = np.concatenate([np.zeros((3, n, 1)), self.normals.T[..., None]])
+            blocks = np.concatenate([blocks, about], axis=2)
+        return read_only(blocks.reshape(-1, n * self.width))
+
+    def wrenches(self, forces: Array) -> Array:
+        """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces."""
+        pushed = forces[..., : self.dimension]
+        torques = torque(self.positions, pushed)
+        if self.is_soft:
+            torques = torques + forces[..., 3:] * self.normals
+        return np.concatenate([pushed, torques], axis=-1)
 
     @cached_property
     def internal_forces(self) -> Array:
@@ -171,7 +201,7 @@ class Grasp(ArrayValue):
         scaled[self.dimension :] /= self.size or 1.0  # so that the rank does not depend on the length unit
         _, values, rows = np.linalg.svd(scaled)
         rank = int((values > 1e-12 * values[0]).sum())
-        return read_only(rows[rank:].reshape(-1, len(self), self.dimension))
+        return read_only(rows[rank:].reshape(-1, len(self), self.width))
 
     @cached_property
     def free_twists(self) -> Array:

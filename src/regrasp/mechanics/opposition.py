@@ -16,12 +16,15 @@ def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple
     Pushing with 1 N against v = v_n n + v_t t does the work (mu |v_t| - v_n) / sqrt(1 + mu^2) on the
     nearer edge of the cone, or |v| where -v lies inside the cone. At most |v_n| + |v_t| mu, scaled by n.
     """
-    d, motion = grasp.dimension, exact(twist)
+    w, motion = grasp.width, exact(twist)
     columns = [exact(column) for column in grasp.matrix.T]
     result = []
-    for i, (normal, mu_float) in enumerate(zip(grasp.normals, frictions, strict=True)):
-        v = [dot(motion, column) for column in columns[i * d : i * d + d]]
-        n, mu = exact(normal), Fraction(mu_float)
+    for i, (contact, mu_float) in enumerate(zip(grasp, frictions, strict=True)):
+        v = [dot(motion, column) for column in columns[i * w : i * w + w]]
+        n, mu = exact(contact.normal), Fraction(mu_float)
+        if w > grasp.dimension:  # the turn about the normal, by the arm e / mu of the torque (``cones``)
+            arm = Fraction(contact.torsion or 0) / (Fraction(contact.friction) or 1)
+            v[3], n = v[3] * arm, [*n, Fraction(0)]
         nn, vn, vv = dot(n, n), dot(v, n), dot(v, v)
         tangential = vv * nn - vn * vn  # |v_t|^2 |n|^2
         if vn <= 0 and tangential <= mu * mu * vn * vn:

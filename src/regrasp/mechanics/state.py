@@ -15,7 +15,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import IDLE, Margins, margins
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.mechanics.wrench import Wrench, torque
+from regrasp.mechanics.wrench import Wrench
 
 # Rounding of a tangential force, as a fraction of the force.
 _ROUNDING = 2.0**-50
@@ -25,7 +25,8 @@ _ROUNDING = 2.0**-50
 class GraspState(ArrayValue):
     """A grasp, the load on the object and the finger forces, taken as they are.
 
-    forces: (n, d) [N], force of each finger **on the object**, object frame.
+    forces: (n, d) [N], force of each finger **on the object**, object frame; (n, 4) where a finger is soft,
+    the last number its torque about the normal [N m], 0 for point contacts.
 
     Nothing is corrected: ``residual`` says how far G f + w_ext is from zero and ``margins`` how far each
     force is inside its cone; ``balanced()`` is the nearest state in equilibrium inside the cones.
@@ -41,12 +42,15 @@ class GraspState(ArrayValue):
         check_load(grasp, load)
         object.__setattr__(self, "grasp", grasp)
         object.__setattr__(self, "load", load)
-        object.__setattr__(self, "forces", array(forces, "forces", (len(grasp), grasp.dimension)))
+        given = array(forces, "forces", (len(grasp), grasp.width))
+        if grasp.torsions is not None and given[grasp.torsions == 0, 3].any():
+            raise InvalidInput(f"forces: point contacts make no torque about their normals, got {forces!r}")
+        object.__setattr__(self, "forces", given)
 
     @cached_property
     def wrenches(self) -> Array:
         """w_i = (f_i, r_i x f_i), (n, 3) in the plane, (n, 6) in space [N, N m]."""
-        return read_only(np.hstack([self.forces, torque(self.grasp.positions, self.forces)]))
+        return read_only(self.grasp.wrenches(self.forces))
 
     @cached_property
     def imbalance(self) -> Array:
@@ -61,12 +65,13 @@ class GraspState(ArrayValue):
     @cached_property
     def margins(self) -> Margins:
         """Margins of each contact, arrays of shape (n,)."""
-        return margins(self.forces, self.grasp.normals, self.grasp.frictions)
+        cones = self.grasp.cones
+        return margins(cones.measured(self.forces), cones.normals, self.grasp.frictions)
 
     @property
     def magnitudes(self) -> Array:
         """|f_i|, (n,) [N]."""
-        result: Array = np.sqrt((self.forces**2).sum(axis=1))
+        result: Array = np.sqrt((self.forces[:, : self.grasp.dimension] ** 2).sum(axis=1))
         return result
 
     @property
@@ -77,7 +82,7 @@ class GraspState(ArrayValue):
         return tuple(name for name, yes in zip(self.grasp.names, used, strict=True) if yes)
 
     def force(self, contact: str | int) -> Array:
-        """(d,) force of one finger, by name or index [N]."""
+        """(d,) force of one finger, by name or index [N]; (4,) in a grasp with soft fingers."""
         force: Array = self.forces[self.grasp.index(contact)]
         return force
 
@@ -101,7 +106,8 @@ class GraspState(ArrayValue):
 
     def _judged(self, reserve: float) -> bool:
         d, contacts, load = self.grasp.dimension, self.grasp.contacts, self.load.plain
-        rows, total = self.forces.tolist(), self.imbalance.tolist()
+        rows, total = self.grasp.cones.measured(self.forces).tolist(), self.imbalance.tolist()
+        more = [0.0] * (self.grasp.width - d)
         magnitudes = [hypot(*f) for f in rows]
         largest = max(*magnitudes, hypot(*load[:d]))
         torques = max(largest * self.grasp.size, hypot(*load[d:]))
@@ -110,7 +116,7 @@ class GraspState(ArrayValue):
         for contact, f, magnitude in zip(contacts, rows, magnitudes, strict=True):
             n = contact.plain[d : 2 * d]
             normal = sum(map(mul, f, n))
-            tangential = dist(f, [normal * along for along in n])
+            tangential = dist(f, [*(normal * along for along in n), *more])
             edge = kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude
             if normal < 0 or tangential > edge:
                 return False
@@ -130,10 +136,10 @@ class GraspState(ArrayValue):
             return self
         grasp = self.grasp
         forces = nearest_equilibrium(
-            self.forces,
-            grasp.matrix,
+            grasp.cones.measured(self.forces),
+            grasp.cones.matrix,
             self.load.vector,
-            grasp.normals,
+            grasp.cones.normals,
             np.array([kept_friction(c.friction, reserve) for c in grasp]),
             np.array([kept_force(limit, reserve) for limit in grasp.max_forces]),
             grasp.size or 1.0,
@@ -143,7 +149,7 @@ class GraspState(ArrayValue):
                 f"no forces of {', '.join(grasp.names)} inside their friction cones and force limits "
                 f"balance {self.load!r}"
             )
-        return GraspState(grasp, self.load, forces)
+        return GraspState(grasp, self.load, grasp.cones.forces(forces))
 
     def __repr__(self) -> str:
         rows = "".join(

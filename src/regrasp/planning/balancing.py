@@ -65,7 +65,7 @@ def eased(grasp: Grasp, fraction: float) -> Grasp:
 
 def with_limit(contact: Contact, limit: float) -> Contact:
     """The same contact with another force limit [N]."""
-    return Contact(contact.position, contact.normal, contact.friction, max_force=limit, name=contact.name)
+    return contact.changed(max_force=limit)
 
 
 def scaling_of(duration: float | None, scaling: TimeScaling | None) -> TimeScaling:

@@ -182,10 +182,14 @@ def _ends(grasp: Grasp, gone: int, whole: _Side, rest: _Side) -> tuple[GraspStat
     # The state of fewer fingers first: it is the one that may not exist.
     fewer, choice, change = rest.found(grasp.without(gone))
     more, other_choice, other_change = whole.found(grasp)
-    idle = [0.0] * grasp.dimension
+    width = grasp.width
+    fewer_forces = [
+        list(force) + [0.0] * (width - len(force)) for force in fewer.forces
+    ]  # no soft one is left
+    idle = [0.0] * width
     return (
         more if isinstance(more, GraspState) else GraspState(grasp, whole.load, more.forces),
-        GraspState(grasp, rest.load, [*fewer.forces[:gone], idle, *fewer.forces[gone:]]),
+        GraspState(grasp, rest.load, [*fewer_forces[:gone], idle, *fewer_forces[gone:]]),
         Record(
             reserve=rest.criteria.reserve,
             choices=tuple(c for c in (choice, other_choice) if c is not None),

@@ -40,14 +40,20 @@ class Found(NamedTuple):
 
 
 class Chooser:
-    """Chooses forces of one grasp under one load with one back end."""
+    """Chooses forces of one grasp under one load with one back end.
+
+    Forces are (n, w) as the cones measure them (``regrasp.mechanics.cones``).
+    """
 
     def __init__(
         self, grasp: Grasp, load: Wrench, backend: str, facets: int | None, limits: list[float]
     ) -> None:
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         size = grasp.size or 1.0
-        self.matrix, self.vector = grasp.matrix.copy(), load.vector.copy()  # torques divided by the size
+        self.matrix, self.vector = (
+            grasp.cones.matrix.copy(),
+            load.vector.copy(),
+        )  # torques divided by the size
         self.matrix[grasp.dimension :] /= size
         self.vector[grasp.dimension :] /= size
         self.unit = force_unit(grasp, load)
@@ -124,8 +130,7 @@ class Chooser:
         grasp = self.grasp
         forces = self._shifted(wanted)
         if forces is not None:
-            normal = (forces * grasp.normals).sum(axis=1)
-            tangential = grasp.tangential(forces)
+            normal, tangential = grasp.cones.normal(forces), grasp.cones.tangential(forces)
             inside = (normal >= 0) & (tangential <= np.array(frictions) * normal)
             if inside.all() and ((forces**2).sum(axis=1) <= np.array(limits) ** 2).all():
                 return forces
@@ -133,12 +138,15 @@ class Chooser:
 
     def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """The forces nearest to ``forces`` in equilibrium, inside cones and limits; None if none are."""
-        g, mu, limit = self.grasp, np.array(frictions), np.array(limits)
-        return nearest_equilibrium(forces, g.matrix, self.load.vector, g.normals, mu, limit, g.size or 1.0)
+        size, cones = self.grasp.size or 1.0, self.grasp.cones
+        mu, limit = np.array(frictions), np.array(limits)
+        return nearest_equilibrium(forces, cones.matrix, self.load.vector, cones.normals, mu, limit, size)
 
     def _wanted(self, answer: Solution) -> Array:
-        d = self.grasp.dimension
-        wanted: Array = answer.value[: d * len(self.grasp)].reshape(-1, d)
+        w = self.grasp.width
+        wanted: Array = answer.value[: w * len(self.grasp)].reshape(-1, w)
+        if w == 4:  # a point contact makes no torque, whatever a solver says of a number that does nothing
+            wanted = self.grasp.cones.measured(self.grasp.cones.forces(wanted))
         return wanted * self.unit
 
     def _shifted(self, forces: Array) -> Array | None:
@@ -149,7 +157,7 @@ class Chooser:
         sizes = abs(forces).max(axis=1)
         f, g = forces.ravel(), self.matrix
         if sizes.min() < _IDLE * sizes.max():
-            used = np.repeat(sizes >= _IDLE * sizes.max(), self.grasp.dimension)
+            used = np.repeat(sizes >= _IDLE * sizes.max(), self.grasp.width)
             f, g = np.where(used, f, 0.0), np.where(used, g, 0.0)
         try:
             gram = np.linalg.inv(g @ g.T)

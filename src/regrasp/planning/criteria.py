@@ -5,6 +5,8 @@ from functools import cached_property, lru_cache
 from math import inf
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, choice, number
@@ -128,15 +130,19 @@ class ChosenState(GraspState):
 
 
 def objective_value(state: GraspState, objective: str) -> float:
-    """An objective at a state: ``angle`` [rad], ``effort`` [N^2], ``friction_use`` [-], others [N]."""
+    """An objective at a state: ``angle`` [rad], ``effort`` [N^2], ``friction_use`` [-], others [N].
+
+    Torques of soft fingers count as the tangential forces that use as much friction, mu m / torsion.
+    """
+    measured = state.grasp.cones.measured(state.forces)
     if objective == "angle":
         return state.margins.least_angle
     if objective == "force":
         return float(state.margins.force.min())
     if objective == "effort":
-        return float((state.forces**2).sum())
+        return float((measured**2).sum())
     if objective == "peak":
-        return float(state.magnitudes.max())
+        return float(np.sqrt((measured**2).sum(axis=1).max()))
     if objective == "friction_use":
         return state.margins.largest_friction_use
-    return float((state.forces * state.grasp.normals).sum(axis=1).max())
+    return float(state.grasp.cones.normal(measured).max())

@@ -109,7 +109,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     frictions, bounds = list(cones.values()), [limits[i] for i in cones]
     weights = None
     if known is not None:
-        weights = np.maximum((known * grasp.normals).sum(axis=1), 0.0)[list(cones)] / chooser.unit
+        weights = np.maximum(grasp.cones.normal(known), 0.0)[list(cones)] / chooser.unit
     try:
         answer = used.solved("force", frictions, bounds, weights)
     except SolverFailed as failed:
@@ -133,6 +133,6 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
 
 def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
     """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
-    whole = np.zeros((len(grasp), grasp.dimension))
+    whole = np.zeros((len(grasp), grasp.width))
     whole[list(contacts)] = forces
     return whole

@@ -130,6 +130,8 @@ def joined(
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
         scaling = plan.scaling
     assert scaling is not None  # a load in time brings its clock
+    if grasp.is_soft:
+        raise InvalidInput("paths through instants are planned for point contacts; a finger of these is soft")
     if demands.method == "closed-form":
         raise InvalidInput(
             "Eq. 1-3 holds under a constant load, and no straight path keeps these demands; use method='auto'"
@@ -204,7 +206,7 @@ def _course(
 
 def _refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
     for label, state in (("start", start), ("end", end)):
-        normal = (state.forces * state.grasp.normals).sum(axis=1)
+        normal = state.grasp.cones.normal(state.forces)
         for name, has, needs in zip(state.grasp.names, normal, least, strict=True):
             if has < needs:
                 raise InvalidInput(

@@ -51,6 +51,6 @@ class Narrowing:
 
     def level(self, forces: Array) -> float:
         """The level of forces (n, d), over the contacts that carry any."""
-        reached = margins(forces, self.grasp.normals, np.array(self.frictions))
+        reached = margins(forces, self.grasp.cones.normals, np.array(self.frictions))
         level = reached.least_angle if self.objective == "angle" else 1 - reached.largest_friction_use
         return self.top if isnan(level) else level  # nothing is used of nothing

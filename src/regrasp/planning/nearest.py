@@ -24,21 +24,21 @@ def gap_left(
     """rho, (3,) or (6,), for ``target`` = -w_ext times ``weight``, both of order one."""
     from regrasp.programs import Rows, solve
 
-    d, size = grasp.dimension, target.size
-    n = d * len(grasp)
+    w, size, cones = grasp.width, target.size, grasp.cones
+    n = w * len(grasp)
     rows = Rows(n + size)
-    rows.equal(np.hstack([grasp.matrix * weight[:, None], np.eye(size)]), -target)
+    rows.equal(np.hstack([cones.matrix * weight[:, None], np.eye(size)]), -target)
     for i, (mu, limit) in enumerate(zip(frictions, limits, strict=True)):
-        pick = np.zeros((d, n + size))
-        pick[:, d * i : d * i + d] = np.eye(d)
-        along, across = mu * grasp.normals[i] @ pick, grasp.tangents[i].reshape(d - 1, d) @ pick
-        if d == 2:
-            rows.at_least_zero([along - across[0], along + across[0], grasp.normals[i] @ pick])
+        pick = np.zeros((w, n + size))
+        pick[:, w * i : w * i + w] = np.eye(w)
+        along, across = mu * cones.normals[i] @ pick, cones.tangents[i] @ pick
+        if w == 2:
+            rows.at_least_zero([along - across[0], along + across[0], cones.normals[i] @ pick])
         else:
             rows.second_order(np.vstack([along, across]))
-            rows.at_least_zero(grasp.normals[i] @ pick)
+            rows.at_least_zero(cones.normals[i] @ pick)
         if limit < inf:
-            rows.second_order(np.vstack([np.zeros(n + size), pick]), [limit, *[0.0] * d])
+            rows.second_order(np.vstack([np.zeros(n + size), pick]), [limit, *[0.0] * w])
     try:
         answer = solve(rows.program(np.zeros(n + size), np.diag([0.0] * n + [1.0] * size)), "clarabel")
     except SolverFailed as failed:  # a direction short of the solver's tolerances may prove as much
@@ -53,17 +53,17 @@ def cleared(grasp: Grasp, twist: Array, frictions: list[float], limits: list[flo
     A solver's answer touches their cones to its tolerance; a contact that may push without limit would oppose
     it enough. Newton's steps on v_n - mu |v_t| = 0, or on v = 0 where the contact stands still.
     """
-    d = grasp.dimension
+    d, w, cones = grasp.dimension, grasp.width, grasp.cones
     length = grasp.size or 1.0
     weight = np.r_[np.ones(d), np.full(twist.size - d, length)]  # speeds at the size of the grasp
-    arms = grasp.matrix.T / weight  # velocities of the contacts from the weighted twist
+    arms = cones.matrix.T / weight  # velocities of the contacts from the weighted twist
     free = [i for i, limit in enumerate(limits) if limit == inf]
     v = twist * weight
     for _ in range(_STEPS):
         rows, misses = [], []
         speed = float(np.linalg.norm(v))
         for i in free:
-            at, n, mu = arms[d * i : d * i + d], grasp.normals[i], frictions[i]
+            at, n, mu = arms[w * i : w * i + w], cones.normals[i], frictions[i]
             moved = at @ v
             normal = float(moved @ n)
             tangent = moved - normal * n

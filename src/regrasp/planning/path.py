@@ -185,7 +185,7 @@ def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp
         flat = flat - (flat @ g.T + w) @ inverse.T
     moved = flat.reshape(forces.shape)
     normal = (moved * grasp.normals).sum(axis=-1)
-    inside = grasp.tangential(moved) <= mu * normal
+    inside = grasp.cones.tangential(moved) <= mu * normal
     inside &= (moved**2).sum(axis=-1) <= limits**2
     scale = np.maximum(abs(flat).max(axis=1), abs(w).max(axis=1))
     good = inside.all(axis=1) & (abs(flat @ g.T + w).max(axis=1) <= EQUILIBRIUM / 2 * scale)

@@ -65,7 +65,7 @@ class PathTask:
         grasp, mu = self.grasp, self.frictions
         ends = np.stack([self.start, self.end])
         normal = (ends * grasp.normals).sum(axis=-1)
-        margins = (mu * normal - grasp.tangential(ends)) / np.sqrt(1 + mu**2)
+        margins = (mu * normal - grasp.cones.tangential(ends)) / np.sqrt(1 + mu**2)
         return float(margins[:, self.stays].min())
 
     @property
@@ -169,7 +169,7 @@ class _Builder:
     def _cones(self, least_margin: float) -> None:
         grasp, mu = self.task.grasp, self.task.frictions
         rough, smooth = np.flatnonzero(mu > 0), np.flatnonzero(mu == 0)
-        n, t = grasp.normals[:, None], grasp.tangents.reshape(len(grasp), -1, self.d)
+        n, t = grasp.normals[:, None], grasp.cones.tangents
         if rough.size:
             is_round = self.d == 3 and self.facets is None
             each = np.hstack([mu[:, None, None] * n, t]) if is_round else cone_faces(grasp, mu, self.facets)

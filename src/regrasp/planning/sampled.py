@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
-from regrasp.mechanics.wrench import torque
 from regrasp.planning.course import Course
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
@@ -40,8 +39,7 @@ class SampledTransition(Transition):
 
     def wrenches(self, t: ArrayLike) -> Array:
         """Finger wrenches (n, 3) or (m, n, 3) [N, N m]; (…, 6) in space."""
-        forces = self.forces(t)
-        return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
+        return self.grasp.wrenches(self.forces(t))
 
     def rates(self, t: ArrayLike) -> Array:
         """Force rates f'(t), (n, d) or (m, n, d) [N/s]; at an instant that of the stretch after it."""

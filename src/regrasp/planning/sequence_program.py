@@ -99,20 +99,21 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
         raise SolverFailed(f"{backend}: no least change at the widest margin", answer.program, answer)
     result, begin = [], 0
     for state in states:
-        size = state.grasp.positions.size
-        wanted = answer.value[begin : begin + size].reshape(state.grasp.positions.shape) * unit
+        shape = (len(state.grasp), state.grasp.width)
+        size = shape[0] * shape[1]
+        wanted = answer.value[begin : begin + size].reshape(shape) * unit
         begin += size
         chooser = Chooser(state.grasp, state.load, backend, None, state.limits)
         forces = chooser.settled(wanted, state.frictions, state.limits)
         if forces is None:
             raise SolverFailed(f"{backend} answered forces far from equilibrium", answer.program, answer)
-        result.append(forces)
+        result.append(state.grasp.cones.forces(forces))
     return result
 
 
 def _changes(states: Sequence[SequenceState], width: int) -> sparse.csr_matrix:
     """Rows f_k+1 - f_k of every contact of two states that follow one another."""
-    d = states[0].grasp.dimension
+    d = states[0].grasp.width
     starts = np.concatenate([[0], np.cumsum([d * len(state.grasp) for state in states])])
     rows: list[int] = []
     columns: list[int] = []

@@ -25,9 +25,7 @@ def solved_forces(
     """
     criteria.demand_limit(grasp, load)
     if not criteria.unbounded and not load.vector.any():  # nothing to hold: the least of everything is zero
-        return ChosenForces(
-            [[0.0] * grasp.dimension] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0
-        )
+        return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except SolverFailed:
@@ -55,7 +53,7 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         raise infeasible(grasp, load, criteria)
     if narrows:
         found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), found.forces, limits)
-    return ChosenForces(found.forces, tuple(limits), backend, found.gap)
+    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 
 def _radius(grasp: Grasp, frictions: list[float], forces: Array, facets: int | None) -> float:

@@ -47,20 +47,23 @@ def state_form(
     has_friction: tuple[bool, ...],
     has_limit: tuple[bool, ...],
     facets: int | None,
-    dimension: int = 2,
+    width: int = 2,
 ) -> StateForm:
-    """The form of a program: constant entries, then those that ``state_program`` fills, in its order."""
-    n, d = len(has_friction), dimension
+    """The form of a program: constant entries, then those that ``state_program`` fills, in its order.
+
+    width: numbers per force, 2 in the plane, 3 in space, 4 with soft fingers.
+    """
+    n, w, d = len(has_friction), width, min(width, 3)
     rough, smooth = np.flatnonzero(has_friction), np.flatnonzero(np.logical_not(has_friction))
     limited = np.flatnonzero(has_limit)
     is_round = d == 3 and facets is None
-    sides = 3 if is_round else 2 if d == 2 else facets or 0  # rows of a friction cone
-    t = d * n
-    width = t if objective == "effort" else t + 1
-    force = np.arange(t).reshape(n, d)  # columns of each force
+    sides = w if is_round else 2 if d == 2 else facets or 0  # rows of a friction cone
+    t = w * n
+    unknowns = t if objective == "effort" else t + 1
+    force = np.arange(t).reshape(n, w)  # columns of each force
     places = _Places()
     balance = places.block(Cone.ZERO, 3 if d == 2 else 6)
-    straight = places.block(Cone.ZERO, 1, (d - 1) * smooth.size).reshape(-1, d - 1)
+    straight = places.block(Cone.ZERO, 1, (w - 1) * smooth.size).reshape(-1, w - 1)
     if is_round:
         inside = places.block(Cone.SECOND_ORDER, sides, rough.size).reshape(-1, sides)
     else:
@@ -88,13 +91,15 @@ def state_form(
     limit_rows, moving = _balls(places, force[limited], facets, None)
     varying += moving
     rows, columns, constants = places.all(varying)
-    q = np.zeros(width)
+    q = np.zeros(unknowns)
     q[t:] = -1.0 if objective == "force" else 1.0
-    P = sparse.csc_matrix(2 * np.eye(width)) if objective == "effort" else sparse.csc_matrix((width, width))
+    P = sparse.csc_matrix((unknowns, unknowns))
+    if objective == "effort":
+        P = sparse.csc_matrix(2 * np.eye(unknowns))
     for shared in (q, P.data, P.indices, P.indptr):  # all programs of this form have them in common
         shared.setflags(write=False)
     return StateForm(
-        Pattern((places.rows, width), rows, columns),
+        Pattern((places.rows, unknowns), rows, columns),
         constants,
         tuple(places.blocks),
         P,
@@ -115,10 +120,10 @@ def _each(rows: Index, columns: Index) -> tuple[Index, Index]:
 
 def _torques(balance: Index, force: Index) -> tuple[Index, Index]:
     """Entries of the torque rows: all in the plane; in space a force gives no torque about its own axis."""
-    n, d = force.shape
-    if d == 2:
+    n, w = force.shape
+    if w == 2:
         return np.full(2 * n, balance[2]), force.ravel()
-    about, axis = np.nonzero(~np.eye(3, dtype=bool))
+    about, axis = np.nonzero(~np.eye(3, w, dtype=bool))
     return np.repeat(balance[3 + about], n), force[:, axis].T.ravel()
 
 

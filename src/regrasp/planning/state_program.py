@@ -11,7 +11,7 @@ space it is of second order, or an inner pyramid of ``facets`` faces (``regrasp.
                   f.t = 0 and f.n >= 0 without friction                 zero, non-negative
     limits        |f_i| <= limit_i                                      second order
 
-    effort        minimise sum |f_i|^2
+    effort        minimise sum |f_i|^2     (soft fingers: as cones measure them, ``mechanics.cones``)
     peak          minimise t,  |f_i| <= t
     peak_normal   minimise t,  f_i.n_i <= t
     force         maximise t,  mu f.n -+ f.t >= t sqrt(1 + mu^2)   (contacts with friction; in space |f_t|)
@@ -55,8 +55,10 @@ def state_program(
     if objective not in CONVEX:
         raise InvalidInput(f"one program states {', '.join(CONVEX)}; got {objective!r}")
     d, mu, limit = grasp.dimension, np.array(frictions), np.array(limits)
-    form = state_form(objective, tuple(mu > 0), tuple(limit < inf), facets, d)
-    normals, tangents = grasp.normals, grasp.tangents.reshape(len(grasp), d - 1, d)
+    form = state_form(objective, tuple(mu > 0), tuple(limit < inf), facets, grasp.width)
+    if grasp.is_soft and facets is not None:
+        raise InvalidInput("facets stand for the cones of point contacts; leave them out with soft fingers")
+    normals, tangents = grasp.cones.normals, grasp.cones.tangents
     length = grasp.size or 1.0
     if form.is_round:
         sides = np.concatenate([mu[:, None, None] * normals[:, None], tangents], axis=1)
@@ -86,10 +88,10 @@ def state_program(
 
 def _torque_entries(grasp: Grasp) -> Array:
     """The torque rows of the grasp matrix in the order of the form, entries that are always zero left out."""
-    matrix = grasp.matrix
+    matrix = grasp.cones.matrix
     if grasp.dimension == 2:
         planar: Array = matrix[2]
         return planar
-    about, axis = np.nonzero(~np.eye(3, dtype=bool))
-    entries: Array = matrix[3:].reshape(3, len(grasp), 3)[about, :, axis]
+    about, axis = np.nonzero(~np.eye(3, grasp.width, dtype=bool))
+    entries: Array = matrix[3:].reshape(3, len(grasp), grasp.width)[about, :, axis]
     return entries.ravel()

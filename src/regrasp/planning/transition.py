@@ -169,8 +169,14 @@ class Transition(ArrayValue, Pictured):
     @property
     def steepest(self) -> Array:
         """(n,) the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
-        moved: Array = np.linalg.norm(self.start.forces - self.end.forces, axis=1)
+        moved: Array = np.linalg.norm(self._change, axis=1)
         return self.scaling.steepest * moved
+
+    @property
+    def _change(self) -> Array:
+        """(n, d) from the end to the start, forces alone [N]."""
+        change: Array = (self.start.forces - self.end.forces)[:, : self.grasp.dimension]
+        return change
 
     def load(self, t: ArrayLike) -> Array:
         """The load (3,) or (m, 3) in the object frame, constant here [N, N m]; (…, 6) in space."""
@@ -183,7 +189,8 @@ class Transition(ArrayValue, Pictured):
 
     def margins(self, t: ArrayLike) -> Margins:
         """Margins of every contact, (n,) or (m, n); NaN where a contact carries no force."""
-        return margins(self.forces(t), self.grasp.normals, self.grasp.frictions)
+        cones = self.grasp.cones
+        return margins(cones.measured(self.forces(t)), cones.normals, self.grasp.frictions)
 
     def times(self, rate: float) -> Array:
         """Sampling times [s] at ``rate`` per second, both ends included."""
@@ -215,8 +222,7 @@ class Transition(ArrayValue, Pictured):
 
     def fastest(self, rate_limit: ArrayLike) -> "Transition":
         """The same path and shape in the least time with |f_i'(t)| <= rate_limit, a number or (n,) [N/s]."""
-        change = self.start.forces - self.end.forces
-        return self.retimed(TimeScaling.fastest(change, rate_limit, self.scaling))
+        return self.retimed(TimeScaling.fastest(self._change, rate_limit, self.scaling))
 
     def to_dataframe(self, rate: float = 1000.0) -> "pandas.DataFrame":
         """Set-points as a table: index t [s], a column ``<name>_fx`` ... per contact and axis [N]."""
@@ -273,5 +279,9 @@ class Transition(ArrayValue, Pictured):
 
 
 def setpoint_columns(grasp: Grasp) -> list[str]:
-    """Column names of set-points: ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact."""
-    return [f"{name}_f{axis}" for name in grasp.names for axis in "xyz"[: grasp.dimension]]
+    """Column names of set-points: ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact.
+
+    With soft fingers ``<name>_mn``, too, the torque about the normal.
+    """
+    kinds = ("fx", "fy", "fz", "mn")[: grasp.width]
+    return [f"{name}_{kind}" for name in grasp.names for kind in kinds]

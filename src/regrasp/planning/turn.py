@@ -45,8 +45,7 @@ class Turn(ArrayValue):
         one_way = bool((steps > 0).all() or (steps < 0).all())
         if turned.size < 2 or turned[0] != 0 or not one_way or abs(steps).max() >= pi:
             raise InvalidInput(f"angles of a turn must go one way from 0 in steps below pi, got {angles!r}")
-        d = 2 if axis is None else 3
-        held = array(forces, "forces of a turn", (turned.size, None, d))
+        held = array(forces, "forces of a turn", (turned.size, None, None))
         between = None if middles is None else (turned.size - 1, *held.shape[1:])
         object.__setattr__(self, "angles", turned)
         object.__setattr__(self, "forces", held)

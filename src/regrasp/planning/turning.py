@@ -19,7 +19,6 @@ from regrasp.closed_form.turning import (
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import numbers
-from regrasp.mechanics.wrench import torque
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Transition
 from regrasp.planning.turn import Turn, rotation_matrix, still_part
@@ -66,8 +65,7 @@ class TurningTransition(Transition):
 
     def wrenches(self, t: ArrayLike) -> Array:
         """Finger wrenches (n, 3) or (m, n, 3), object frame [N, N m]; (…, 6) in space."""
-        forces = self.forces(t)
-        return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
+        return self.grasp.wrenches(self.forces(t))
 
     def load(self, t: ArrayLike) -> Array:
         """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space."""
@@ -117,9 +115,11 @@ class TurningTransition(Transition):
     @cached_property
     def _peaks(self) -> Array:
         """(K - 1, n, 2) the largest |f_i| [N] and |df_i/dtheta| [N/rad] of each piece."""
-        f, g, middles = self.turn.forces[:-1], self.turn.forces[1:], self.turn.middles
+        pushed = self.turn.forces[..., : self.grasp.dimension]
+        f, g, middles = pushed[:-1], pushed[1:], self.turn.middles
         if middles is not None:
-            pieces = zip(f, middles, g, np.diff(self.turn.angles).tolist(), strict=True)
+            between = middles[..., : self.grasp.dimension]
+            pieces = zip(f, between, g, np.diff(self.turn.angles).tolist(), strict=True)
             return np.array(
                 [[arc_peaks(*force, step) for force in zip(a, c, b, strict=True)] for a, c, b, step in pieces]
             )

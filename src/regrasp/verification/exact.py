@@ -4,6 +4,7 @@ Every double is a rational number, so the conditions are decided on the very num
 rounding and, for cones and limits, with zero tolerance:
 
     cone         f.n >= 0   and   |f|^2 |n|^2 <= (1 + mu^2) (f.n)^2
+    soft finger  f.n >= 0   and   e^2 (|f|^2 |n|^2 - (f.n)^2) + mu^2 m^2 |n|^2 <= mu^2 e^2 (f.n)^2
     limit        |f|^2 <= max_force^2
     equilibrium  |sum f_i + F|^2 <= eps^2 s^2   and   |sum r_i x f_i + tau|^2 <= eps^2 s^2 l^2
 
@@ -37,18 +38,23 @@ def check_state(state: GraspState, label: str) -> tuple[float, float, list[str]]
 
 def _check_force(state: GraspState, i: int, what: str) -> tuple[float, list[str]]:
     contact = state.grasp.contacts[i]
-    f, n = exact(state.forces[i].tolist()), exact(contact.normal.tolist())
+    d = contact.dimension
+    (*f, m), n = [*exact(state.forces[i, :d].tolist()), _torque(state, i)], exact(contact.normal.tolist())
     normal, ff, nn = dot(f, n), dot(f, f), dot(n, n)
     mu = max(Fraction(contact.friction), RESOLUTION)
+    limit, size = contact.max_force, ff
+    if contact.torsion is not None:  # as much friction as the torque uses, in the place of a tangential force
+        ff += (mu * m / Fraction(contact.torsion)) ** 2
+    elif m:
+        return -inf, [f"{what}: a point contact makes no torque about its normal, got {float(m):.3g}"]
     broken = []
     if normal < 0:
         broken.append(f"{what} pulls: normal component {float(normal):.3g}")
     elif ff * nn > (1 + mu * mu) * normal * normal:
         use = sqrt(max(ff * nn - normal * normal, Fraction(0))) / float(mu * normal) if normal else inf
         broken.append(f"{what} is outside its friction cone: it uses {use:.12g} of the friction available")
-    limit = contact.max_force
-    if limit is not None and ff > Fraction(limit) ** 2:
-        broken.append(f"{what} is {sqrt(ff):.12g}, above its limit {limit:.12g}")
+    if limit is not None and size > Fraction(limit) ** 2:
+        broken.append(f"{what} is {sqrt(size):.12g}, above its limit {limit:.12g}")
     slack = float((1 + mu * mu) - ff * nn / (normal * normal)) if normal > 0 else (inf if ff == 0 else -inf)
     return slack, broken
 
@@ -58,7 +64,11 @@ def _check_equilibrium(state: GraspState, label: str) -> tuple[float, list[str]]
     load = exact(state.load.vector.tolist())
     force, torque = load[:d], load[d:]
     positions = [exact(c.position.tolist()) for c in state.grasp.contacts]
-    forces = [exact(f) for f in state.forces.tolist()]
+    forces = [exact(f[:d]) for f in state.forces.tolist()]
+    for i, contact in enumerate(state.grasp.contacts):
+        if _torque(state, i):
+            about = [_torque(state, i) * x for x in exact(contact.normal.tolist())]
+            torque = [a + b for a, b in zip(torque, about, strict=True)]
     for r, f in zip(positions, forces, strict=True):
         force = [a + b for a, b in zip(force, f, strict=True)]
         torque = [a + b for a, b in zip(torque, cross(r, f), strict=True)]
@@ -74,6 +84,11 @@ def _check_equilibrium(state: GraspState, label: str) -> tuple[float, list[str]]
             f"(allowed {float(RESOLUTION):.1e})"
         ]
     return relative, []
+
+
+def _torque(state: GraspState, i: int) -> Fraction:
+    """The torque of a soft finger about its normal; 0 where none is."""
+    return Fraction(float(state.forces[i, 3])) if state.forces.shape[1] == 4 else Fraction(0)
 
 
 def exact(values: Sequence[float]) -> Vector:

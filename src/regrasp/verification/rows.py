@@ -30,19 +30,27 @@ class Checked(NamedTuple):
 def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checked:
     """Check forces (m, n, d) against loads (m, 3 or 6); ``labels`` names row k by ``labels.format(k)``."""
     d, doubt = grasp.dimension, float(RESOLUTION)
-    normal = (forces * grasp.normals).sum(axis=-1)
-    tangential = np.linalg.norm(forces - normal[..., None] * grasp.normals, axis=-1)
-    magnitude = np.linalg.norm(forces, axis=-1)
+    pushed = forces[..., :d]
+    normal = (pushed * grasp.normals).sum(axis=-1)
+    tangential = np.linalg.norm(pushed - normal[..., None] * grasp.normals, axis=-1)
+    magnitude = np.linalg.norm(pushed, axis=-1)
+    torques = torque(grasp.positions, pushed)
+    if grasp.torsions is not None:
+        about = forces[..., 3]
+        used = np.divide(grasp.frictions * about, grasp.torsions, out=0 * about, where=grasp.torsions > 0)
+        used[..., grasp.torsions == 0] = np.where(about[..., grasp.torsions == 0] == 0, 0.0, inf)
+        tangential = np.hypot(tangential, used)
+        torques = torques + about[..., None] * grasp.normals
     inside = grasp.frictions * normal - tangential > doubt * magnitude
     inside |= (forces == 0).all(axis=-1)  # the apex
     inside &= magnitude <= grasp.max_forces * (1 - doubt)
-    total = np.concatenate([forces, torque(grasp.positions, forces)], axis=-1).sum(axis=1) + loads
+    total = np.concatenate([pushed, torques], axis=-1).sum(axis=1) + loads
     arm = grasp.size or 1.0
     scale = np.maximum(magnitude.max(axis=1), np.linalg.norm(loads[:, :d], axis=1))
     off = np.maximum(np.linalg.norm(total[:, :d], axis=1), np.linalg.norm(total[:, d:], axis=1) / arm)
     settled = inside.all(axis=1) & (off <= doubt / 2 * scale)
     with np.errstate(divide="ignore", invalid="ignore"):
-        slack_of = 1 + grasp.frictions**2 - (magnitude / normal) ** 2
+        slack_of = grasp.frictions**2 - (tangential / normal) ** 2
         relative = np.where(scale > 0, off / scale, 0.0)[settled]
     violations = []
     slacks = [float(slack_of[settled][magnitude[settled] > 0].min(initial=inf))]

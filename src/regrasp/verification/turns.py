@@ -94,7 +94,8 @@ def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
         if contact.max_force is None:
             continue
         limit = Fraction(contact.max_force)
-        f, g = exact(turn.forces[k, i].tolist()), exact(turn.forces[k + 1, i].tolist())
+        d = contact.dimension
+        f, g = exact(turn.forces[k, i, :d].tolist()), exact(turn.forces[k + 1, i, :d].tolist())
         peak2 = _peak(f, g, c, s)
         if peak2 > (limit * (1 + RESOLUTION)) ** 2:
             broken.append(
