@@ -45,7 +45,7 @@ def pair_squeezes(grasp: Grasp) -> tuple[tuple[tuple[int, int], ...], Array]:
 
 
 def squeeze_basis(grasp: Grasp) -> SqueezeBasis:
-    """Independent coordinates of the internal forces: the first clearly independent pairs, then forces across.
+    """Coordinates of the internal forces: the first pairs that are clearly independent, then forces across.
 
     Raises ``InvalidInput`` where contacts are so near to one line or plane that rounding decides.
     """
