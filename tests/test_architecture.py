@@ -124,7 +124,7 @@ def may_import(module: str, package: str) -> bool:
         return module in (
             "regrasp.closed_form.compiled",
             "regrasp.closed_form.compiled_holds",
-            "regrasp.closed_form.compiled_pair",
+            "regrasp.closed_form.compiled_pairs",
             "regrasp.closed_form.compiled_paths",
             "regrasp.programs.audit",
         )

@@ -238,8 +238,8 @@ def test_the_margin_without_branches_is_that_of_the_best_state() -> None:
             continue
         held += 1
         found = turning_margin(
-            fx, fy, turned, one, two, load_cone.own_reach(one), load_cone.own_reach(two), inf, inf, 2.0,
-            load_cone.idle_below(far),
+            fx, fy, turned, one, two, load_cone.own_reach(one), load_cone.own_reach(two),
+            False, inf, inf, 2.0, load_cone.idle_below(far),
         )  # fmt: skip
         least = min(side(first[2:], mu1, f[:2]), side(second[2:], mu2, f[2:]))
         assert found == pytest.approx(max(least, 0.0), abs=2e-8)

@@ -25,6 +25,10 @@ BLOCK = 1024
 MODULES = (locus, best, choice)
 
 
+INNER: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of functions that only compiled code calls: with no way in from outside they compile faster."""
+
+
 def compiled(modules: tuple[ModuleType, ...], **options: Any) -> dict[str, Any]:
     """All functions of the modules; they call one another through this dictionary of names."""
     names: dict[str, Any] = {"__builtins__": __builtins__}
@@ -34,7 +38,7 @@ def compiled(modules: tuple[ModuleType, ...], **options: Any) -> dict[str, Any]:
         for name, function in vars(module).items():
             if isinstance(function, FunctionType) and function.__module__ == module.__name__:
                 mine = FunctionType(function.__code__, names, name)
-                names[name] = njit(error_model="numpy", forceinline=True, **options)(mine)
+                names[name] = njit(**INNER, forceinline=True, **options)(mine)
     return names
 
 

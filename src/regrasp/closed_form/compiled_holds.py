@@ -1,6 +1,6 @@
 """Holds by the million: margins of every pair of points under every load direction, and steps between holds.
 
-Pairs are shared out to the threads; ``compiled_pair`` does all loads of a pair together.
+Pairs are shared out to the threads, a block at a time; ``compiled_pairs`` does all loads of a pair together.
 """
 
 from typing import Any
@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
-from regrasp.closed_form import compiled_pair
+from regrasp.closed_form import compiled_pairs
 from regrasp.closed_form.compiled import digest
-from regrasp.closed_form.compiled_pair import described, held_loads, workspace_for
+from regrasp.closed_form.compiled_pairs import held_loads, workspace_for
 from regrasp.closed_form.turning_margin import NO_HOLD as NO_HOLD
 
 _BLOCK = 16  # pairs whose margins share a cache line
@@ -21,46 +21,40 @@ STRETCH = 4096
 def _loops(sources: str) -> tuple[Any, Any]:
     @njit(error_model="numpy", parallel=True, cache=True)
     def margins(first, second, loads, candidates, result):  # type: ignore[no-untyped-def]
-        """The margin of each pair under each load.
-
-        candidates: points, unit normals, frictions, limits (inf for none), peak ratio. No load is zero.
-        """
+        """Writes the margin of each pair under each load to ``result`` (loads, pairs)."""
         _ = sources
-        each_load = described(loads)
+        turned = loads.T.copy()
         for block in prange((first.size + _BLOCK - 1) // _BLOCK):
             begin, end = block * _BLOCK, min((block + 1) * _BLOCK, first.size)
             for o in range(len(loads)):
                 for p in range(begin, end):
                     result[o, p] = NO_HOLD
-            workspace = workspace_for(len(loads))
-            places, found = workspace[5], workspace[6]
-            for p in range(begin, end):
-                for k in range(held_loads(candidates, first[p], second[p], each_load, workspace)):
-                    result[places[k], p] = found[k]
+            pair, load, margin = workspace_for(_BLOCK, len(loads))
+            for k in range(held_loads(candidates, first, second, begin, end, turned, pair, load, margin)):
+                result[load[k], pair[k]] = margin[k]
 
     @njit(error_model="numpy", parallel=True, cache=True)
     def widest(  # type: ignore[no-untyped-def]
         first, second, loads, candidates, allowed, place, best, where, counts
     ):
         _ = sources
-        each_load = described(loads)
+        turned = loads.T.copy()
         each = 1 if len(allowed) > 1 else 0
         for stretch in prange(len(counts)):
-            workspace = workspace_for(len(loads))
-            places, found = workspace[5], workspace[6]
-            for p in range(stretch * STRETCH, min((stretch + 1) * STRETCH, first.size)):
-                if allowed[:, p].any():
-                    for k in range(held_loads(candidates, first[p], second[p], each_load, workspace)):
-                        o, m = places[k], np.float32(found[k])
-                        if m >= 0.0 and allowed[each * o, p]:
-                            counts[stretch, o] += 1
-                            if m > best[p]:
-                                best[p], where[p] = m, place + o
+            pair, load, margin = workspace_for(_BLOCK, len(loads))
+            for begin in range(stretch * STRETCH, min((stretch + 1) * STRETCH, first.size), _BLOCK):
+                end = min(begin + _BLOCK, first.size)
+                for k in range(held_loads(candidates, first, second, begin, end, turned, pair, load, margin)):
+                    p, o, m = pair[k], load[k], np.float32(margin[k])
+                    if m >= 0.0 and allowed[each * o, p]:
+                        counts[stretch, o] += 1
+                        if m > best[p]:
+                            best[p], where[p] = m, place + o
 
     return margins, widest
 
 
-hold_margins, _widest = _loops(digest((*compiled_pair.FORMULAS, compiled_pair)))
+hold_margins, _widest = _loops(digest((*compiled_pairs.FORMULAS, compiled_pairs)))
 
 
 def widest_margins(

@@ -41,9 +41,12 @@ _HALF_PI = 1.5707963267948966
 
 def turning_margin(
     fx: float, fy: float, turned: Turned, first: Cone, second: Cone, reach1: Reach, reach2: Reach,
-    limit1: float, limit2: float, ratio: float, idle: float,
+    limited: bool, limit1: float, limit2: float, ratio: float, idle: float,
 ) -> float:  # fmt: skip
-    """The margin [rad] to 1e-8, for a load inside the pair's cone; or ``NO_HOLD``, or ``UNSURE``."""
+    """The margin [rad] to 1e-8, for a load inside the pair's cone; or ``NO_HOLD``, or ``UNSURE``.
+
+    ratio: infinite if both contacts have limits. idle: of the load, below which a contact may carry nothing.
+    """
     ux, uy, ax, ay, bx, by = turned
     phi, a, b = ux * fx + uy * fy, ax * fx + ay * fy, bx * fx + by * fy
     size = abs(fx) + abs(fy)
@@ -51,9 +54,15 @@ def turning_margin(
     lo1, hi1 = _own_interval(reach1, a)
     lo2, hi2 = _own_interval(reach2, b)
     room1, room2 = (limit1 - a) * (limit1 + a), (limit2 - b) * (limit2 + b)
-    end1, end2 = sqrt(_larger(room1, 0.0)), sqrt(_larger(room2, 0.0))
-    lo = _larger(_larger(lo1, -end1), -phi - _smaller(hi2, end2))
-    hi = _smaller(_smaller(hi1, end1), -phi - _larger(lo2, -end2))
+    if limited:
+        end1, end2 = sqrt(_larger(room1, 0.0)), sqrt(_larger(room2, 0.0))
+        lo1, hi1, lo2, hi2 = (
+            _larger(lo1, -end1),
+            _smaller(hi1, end1),
+            _larger(lo2, -end2),
+            _smaller(hi2, end2),
+        )
+    lo, hi = _larger(lo1, -phi - hi2), _smaller(hi1, -phi - lo2)
     x, square = _least_peak(lo, hi, phi, a, b)
     square = ratio * ratio * square
     end1, end2 = sqrt(_larger(square - a * a, 0.0)), sqrt(_larger(square - b * b, 0.0))
@@ -69,11 +78,11 @@ def turning_margin(
     margin = _lesser_margin(first, x, a, second, -(x + phi), b)
     # What is left to the formula of one grasp
     gap, terms = hi - lo, abs(lo) + abs(hi) + size
-    unsure = (
-        (abs(a) < idle * size) | (abs(b) < idle * size) | (abs(gap) < _SURE * terms)
-        | (abs(room1) < _SURE * limit1 * limit1) | (abs(room2) < _SURE * limit2 * limit2)
-    )  # fmt: skip
-    margin = NO_HOLD if (gap < 0.0) | (room1 < 0.0) | (room2 < 0.0) else margin
+    unsure = (abs(a) < idle * size) | (abs(b) < idle * size) | (abs(gap) < _SURE * terms)
+    if limited:
+        meets1, meets2 = abs(room1) < _SURE * limit1 * limit1, abs(room2) < _SURE * limit2 * limit2
+        unsure = unsure | meets1 | meets2
+        margin = NO_HOLD if (gap < 0.0) | (room1 < 0.0) | (room2 < 0.0) else margin
     return UNSURE if unsure else margin
 
 
