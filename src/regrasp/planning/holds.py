@@ -161,7 +161,8 @@ class HoldGraph:
         """(P,) whether two contacts are far enough from each other."""
         first, second = self.pairs
         least = max(self.min_distance, 1e-9 * abs(self._points).max())
-        apart: NDArray[np.bool_] = np.hypot(*(self._points[first] - self._points[second]).T) >= least
+        x, y = self._points.T
+        apart: NDArray[np.bool_] = np.hypot(x[first] - x[second], y[first] - y[second]) >= least
         return apart
 
     def _kept(self, o: int) -> NDArray[np.bool_]:
