@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 Array = np.ndarray
-CHUNK = 4096
-"""Pairs at a time: their numbers stay in the cache."""
+CHUNK = 16384
+"""Pairs at a time, the fastest of powers of two: fewer cost calls, more leave the cache."""
 
 
 def margins(
@@ -44,19 +44,20 @@ def margins(
     return result
 
 
-def _edges(c: Array, s: Array, mu: Array) -> Iterator[tuple[Array, Array]]:
-    """(slope, per a) of slope x + (per a) a >= 0, the two sides of a cone of normal (c, s)."""
-    yield mu * c + s, mu * s - c
-    yield mu * c - s, mu * s + c
+def _edges(c: Array, s: Array, mu: Array) -> Iterator[tuple[Array, Array, Array]]:
+    """(bound per a, 0 or -inf, 0 or inf) of the two sides of a cone of normal (c, s).
+
+    A side asks slope x + offset a >= 0. No orientation changes its bound per a, nor whether that is one from
+    below or from above; what it is not is infinite.
+    """
+    for slope, offset in ((mu * c + s, mu * s - c), (mu * c - s, mu * s + c)):
+        yield -offset / slope, np.where(slope > 0, 0.0, -np.inf), np.where(slope < 0, 0.0, np.inf)
 
 
-def _interval(edges: list[tuple[Array, Array]], across: Array) -> tuple[Array, Array]:
-    lo, hi = np.full(across.size, -np.inf), np.full(across.size, np.inf)
-    for slope, per in edges:
-        bound = -per * across / slope
-        lo = np.where(slope > 0, np.maximum(lo, bound), lo)
-        hi = np.where(slope < 0, np.minimum(hi, bound), hi)
-    return lo, hi
+def _interval(edges: list[tuple[Array, Array, Array]], across: Array) -> tuple[Array, Array]:
+    (per1, below1, above1), (per2, below2, above2) = edges
+    bound1, bound2 = per1 * across, per2 * across
+    return np.maximum(bound1 + below1, bound2 + below2), np.minimum(bound1 + above1, bound2 + above2)
 
 
 def _widest(lo, hi, phi, a, b, ratio, first, second):
