@@ -14,8 +14,10 @@ from regrasp.planning.change import plan_addition, plan_removal
 from regrasp.planning.choice import choose_state
 from regrasp.planning.criteria import ChosenState
 from regrasp.planning.directions import HeldDirections, held_directions
+from regrasp.planning.held_sphere import HeldSphere, held_sphere
 from regrasp.planning.loads import LoadSeries
 from regrasp.planning.locus import EquilibriumLocus
+from regrasp.planning.pyramid_loss import PyramidLosses, pyramid_losses
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.regrasping import plan_regrasp, plan_regrasps
 from regrasp.planning.rotation import plan_rotation
@@ -37,12 +39,14 @@ __all__ = [
     "Grasp",
     "GraspState",
     "HeldDirections",
+    "HeldSphere",
     "Infeasible",
     "InvalidInput",
     "LoadSeries",
     "Margins",
     "Mesh",
     "Outline",
+    "PyramidLosses",
     "RegraspError",
     "RegraspPlan",
     "SampledTransition",
@@ -58,12 +62,14 @@ __all__ = [
     "best_squeezes",
     "choose_state",
     "held_directions",
+    "held_sphere",
     "locus_intervals",
     "plan_addition",
     "plan_regrasp",
     "plan_regrasps",
     "plan_removal",
     "plan_rotation",
+    "pyramid_losses",
     "sensitivity",
     "verify",
 ]
