@@ -1,6 +1,6 @@
 """The triple graph: millions at once are the same as one at a time; order, filters, memory and refusals."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import atan, inf
 
 import numpy as np
@@ -91,7 +91,7 @@ def test_more_facets_come_close_to_the_exact_margin() -> None:
     contacts, loads = candidates(6, 6, friction=0.5), directions(12)
     contacts = tuple(rg.Contact(c.position, c.normal, c.friction, max_force=2.0) for c in contacts)
     graphs = [TripleGraph(contacts, loads, facets=m) for m in (4, 8, 16, 32)]
-    for coarse, fine in zip(graphs, graphs[1:], strict=False):
+    for coarse, fine in pairwise(graphs):
         assert (fine.margins >= coarse.margins - 1e-6).all()
     held = np.argwhere(graphs[-1].margins >= 0)
     assert len(held) > 20
@@ -207,7 +207,7 @@ def test_bad_samples_are_refused(among: list, text: str) -> None:
 
 def test_tables_that_are_too_large_are_refused_before_they_are_made() -> None:
     graph = TripleGraph(candidates(0, 10), directions(10), most_bytes=1000)
-    with pytest.raises(rg.InvalidInput, match="120 triples under 10 loads need .* allow more by most_bytes"):
+    with pytest.raises(rg.InvalidInput, match=r"120 triples under 10 loads need .* allow more by most_bytes"):
         _ = graph.margins
     with pytest.raises(rg.InvalidInput, match="more than"):
         _ = graph.holds

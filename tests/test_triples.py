@@ -137,7 +137,7 @@ def test_frame_units_and_order_change_nothing(
 ) -> None:
     case = random_case(seed)
     other = case.moved(motion.rotation, motion.scale, newton, list(order))
-    verdict, margin, forces = hold(case, facets)
+    verdict, margin, _ = hold(case, facets)
     if is_clear(case, facets):
         again = hold(other, facets)
         assert again[0] == verdict

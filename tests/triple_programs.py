@@ -1,7 +1,7 @@
 """Three fingers under a load, the long way round: programs over the edges of pyramids, and over exact cones.
 
-Written from the definitions: a force in an inner pyramid is a sum of non-negative multiples of its m edges, which
-lie on the cone. Nothing here knows of squeezes, facets or frames.
+Written from the definitions: a force in an inner pyramid is a sum of non-negative multiples of its m edges,
+which lie on the cone. Nothing here knows of squeezes, facets or frames.
 """
 
 from dataclasses import dataclass, replace

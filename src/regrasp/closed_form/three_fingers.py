@@ -89,25 +89,29 @@ def judged(
     answer = solve(work, work.basis)
     if answer[0] == NONE:
         return (NO_STATE, nan, _NO_FORCES), answer
-    forces = _forces(frame, start, size, answer)
-    if answer[0] == UNDECIDED or not is_state(fingers, force, torque, forces):
+    if answer[0] == UNDECIDED:
         return (OPEN, nan, _NO_FORCES), answer
-    margin = max(attained(normals, fingers.mu, forces), 0.0)
-    if not with_margin:
-        return (HOLDS, margin, forces), answer
+    forces = _forces(frame, start, size, answer)
+    sound = is_state(fingers, force, torque, forces)
+    if sound and not with_margin:
+        return (HOLDS, max(attained(normals, fingers.mu, forces), 0.0), forces), answer
     for c in range(3):
         work.narrow[c] = work.basis[c]
+    p = inf
     if max(limits[0], limits[1], limits[2]) == inf:
         p, answer = least_peak(work, mu, own, answer)
-        if p != p:
-            return (HOLDS, 0.0, forces), answer
         p *= peak_ratio
         write_limits(work, mu, (min(own[0], p), min(own[1], p), min(own[2], p)))
-    narrowed, answer = widest(work, mu, cos_half, answer)
-    better = _forces(frame, start, size, answer)
-    if is_state(fingers, force, torque, better):
-        return (HOLDS, min(narrowed, max(attained(normals, fingers.mu, better), 0.0)), better), answer
-    return (HOLDS, 0.0, forces), answer
+    if p == p:
+        # A force that is small beside the others meets the edge of its cone with their rounding. Away from
+        # the edge it need not.
+        narrowed, answer = widest(work, mu, cos_half, answer)
+        better = _forces(frame, start, size, answer)
+        if is_state(fingers, force, torque, better):
+            return (HOLDS, min(narrowed, max(attained(normals, fingers.mu, better), 0.0)), better), answer
+    if sound:
+        return (HOLDS, 0.0, forces), answer
+    return (OPEN, nan, _NO_FORCES), answer
 
 
 def _forces(frame: Frame, start: Three, size: float, answer: Answer) -> Three:

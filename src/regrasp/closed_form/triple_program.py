@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from regrasp.closed_form.dual_simplex import Answer, least
+from regrasp.closed_form.dual_simplex import UNDECIDED, Answer, least
 from regrasp.closed_form.pyramid import write_tangents
 from regrasp.closed_form.triple import Frame, Three, Vector, cross, dot, plus
 
@@ -93,7 +93,12 @@ def write_limits(work: Workspace, mu: Vector, limits: Vector) -> None:
 
 def solve(work: Workspace, basis: Any) -> Answer:
     """The program as it stands, from a basis of one before."""
-    return least(work.rows, work.goal[0], work.goal[1], work.goal[2], basis)
+    goal = work.goal
+    answer = least(work.rows, goal[0], goal[1], goal[2], basis)
+    if answer[0] == UNDECIDED:  # another way there may be open
+        basis[0], basis[1], basis[2] = 0, 1, 2
+        answer = least(work.rows, goal[0], goal[1], goal[2], basis)
+    return answer
 
 
 def largest(forces: Three) -> float:
