@@ -11,6 +11,7 @@ import pytest
 import regrasp as rg
 from regrasp.mechanics.frames import tangent_pairs
 from regrasp.planning.faces import ball_faces, cone_faces
+from regrasp.planning.held_sphere import even_directions
 from regrasp.planning.state_program import state_program
 from regrasp.programs import solve
 from space import best_by_cvxpy, nose_cone, random_grasp, random_load, random_rotation, rotated
@@ -200,3 +201,11 @@ def test_two_fingers_say_which_turn_they_leave_free():
     assert "at the end no force of P1, P2 resists turning about the line" in str(removal)
     assert NOSE.freedom is None
     assert NOSE.subset([0]).freedom == "turning about P1"
+
+
+def test_forces_many_times_the_load_are_found():
+    grasp, load = random_grasp(np.random.default_rng(26), 5, 0.8), rg.Wrench(even_directions(100)[14])
+    for objective in ("peak", "force", "effort"):
+        assert rg.choose_state(grasp, load, objective).value == pytest.approx(
+            best_by_cvxpy(grasp, load, objective), rel=1e-5
+        )

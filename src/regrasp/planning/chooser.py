@@ -12,7 +12,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.state_program import state_program
-from regrasp.programs import Solution, Status, solve
+from regrasp.programs import Program, Solution, Status, solve
 
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
 # 1e-10 and less, is inside the reserve and not beyond it.
@@ -25,6 +25,8 @@ FEASIBLE = 1e-7
 _MOVED = 1e-5
 # A force below this fraction of the largest is a solver's noise at a finger that carries none.
 _IDLE = 1e-8
+# Forces this many times the unit are better measured by a unit of their own.
+_FAR = 4.0
 
 
 def force_unit(grasp: Grasp, load: Wrench) -> float:
@@ -80,9 +82,30 @@ class Chooser:
         *,
         slack: float = SLACK,
     ) -> Solution:
-        """The back end's answer to one of the convex objectives, in units of ``unit``."""
+        """The back end's answer to one of the convex objectives, in units of ``unit``.
+
+        Where it has none and stopped at forces far larger than the load, it is asked again with their size
+        as the unit.
+        """
+        try:
+            return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+        except SolverFailed as failed:
+            size = float(abs(self._wanted(failed.solution)).max())
+            if not _FAR * self.unit < size < inf:
+                raise
+            self.unit = size
+        return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+
+    def _program(
+        self,
+        objective: str,
+        frictions: list[float],
+        limits: list[float],
+        weights: Array | None,
+        slack: float,
+    ) -> Program:
         kept = 1 - slack
-        program = state_program(
+        return state_program(
             self.grasp,
             self.load,
             objective,
@@ -92,7 +115,6 @@ class Chooser:
             self.facets,
             weights,
         )
-        return solve(program, self.backend)
 
     def best(self, objective: str, frictions: list[float], limits: list[float]) -> Found | None:
         """The best forces for a convex objective; None where the back end says there are none."""
