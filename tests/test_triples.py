@@ -234,3 +234,16 @@ def test_a_verdict_without_state_has_no_forces() -> None:
     limited = replace(away, limits=np.full(3, 1.0))
     assert hold(limited)[0] == NO_STATE
     assert repr(hold(limited)[1]) == repr(nan) or isnan(hold(limited)[1])
+
+
+def test_a_finger_that_hardly_pushes_is_no_reason_to_give_up() -> None:
+    """At the least sum of normal forces one finger is all but idle, and rounding puts it off its cone."""
+    points = np.array([[-0.5, -1, 0], [0.5, -1, 0], [0, 1, 0]])
+    normals = np.array([[0.0, 1, 0], [0, 1, 0], [0, -1, 0]])
+    case = Case(points, normals, np.ones(3), np.full(3, inf), np.array([1.0, 0, 0]), np.array([0, 0, 0.25]))
+    assert is_held(case.with_friction(0.999), 8)
+    for with_margin in (False, True):
+        verdict, margin, forces = hold(case, with_margin=with_margin)
+        assert verdict == HOLDS
+        assert residual(case, forces) < 2.0**-40
+    assert margin == pytest.approx(widest_angle(case, 8, 3.0), abs=1e-6)

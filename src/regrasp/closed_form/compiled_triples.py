@@ -174,4 +174,5 @@ def triples_of(count: int) -> np.ndarray:
     result[:, 0], result[:, 1] = np.repeat(first, lengths), np.repeat(second, lengths)
     starts = np.repeat(np.cumsum(lengths) - lengths, lengths)
     result[:, 2] = np.arange(len(result)) - starts + result[:, 1] + 1
+    result.setflags(write=False)
     return result

@@ -86,7 +86,7 @@ class TripleGraph:
             raise InvalidInput(f"among must be indices of contacts, 0 to {len(self.contacts) - 1}")
         if (np.diff(rows, axis=1) <= 0).any():
             raise InvalidInput("every row of among must be rising, i < j < k")
-        rows.setflags(write=False)
+        rows.setflags(write=False)  # like all triples: Numba compiles anew for arrays that may be written
         return rows
 
     def triple(self, i: int, j: int, k: int) -> int:
