@@ -1,5 +1,7 @@
 """The picture of a regrasp tells, for every step, who holds, leaves and arrives, and how the object turns."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from matplotlib.patches import Wedge
@@ -7,6 +9,9 @@ from matplotlib.patches import Wedge
 import regrasp as rg
 from paper import STATE
 from regrasp import plots
+from regrasp.outline import parts
+from regrasp.plots.labels import Labels
+from regrasp.plots.trade_off import plot_trade_off
 
 ELLIPSE = rg.Outline.ellipse(2, 1)
 WEIGHT = rg.Wrench([0, -3.0])
@@ -86,3 +91,60 @@ def test_bad_input():
         rg.InvalidInput, match="plan must be a RegraspPlan, got Transition; see plot_transition"
     ):
         plots.plot_regrasp(rg.plan_removal(STATE, "P3"))
+
+
+# -- labels and the trade-off -------------------------------------------------------------------------------
+
+
+def test_words_keep_clear_of_one_another():
+    labels = Labels(points_per_unit=10.0, gap=1.0)
+    labels.occupy((0, 0), 0.5)
+    ways = [labels.direction("leaves", (0.0, 0.6), np.array([0.0, 1.0]), 6.5) for _ in range(2)]
+    assert ways[0] == pytest.approx([0, 1])
+    boxes = labels.taken
+    for a, b in combinations(boxes, 2):
+        assert min(a[2], b[2]) <= max(a[0], b[0]) or min(a[3], b[3]) <= max(a[1], b[1])
+
+
+def test_words_of_fingers_that_stand_close_do_not_collide():
+    outline = parts.bracket()
+
+    def grasp(places, prefix):
+        contacts = (outline.contact_at(s * outline.length, friction=0.4) for s in places)
+        return rg.Grasp(c.named(f"{prefix}{i}") for i, c in enumerate(contacts, 1))
+
+    plan = rg.plan_regrasp(
+        outline, grasp((0.25, 0.31, 0.79), "A"), grasp((0.27, 0.52, 0.58), "B"), rg.Wrench([0, -2.0]),
+        friction=0.4, orientations=36, goal_orientation=np.pi / 2, candidates=80,
+    )  # fmt: skip
+    figure = plots.plot_regrasp(plan, outline)
+    figure.canvas.draw()
+    pairs = 0
+    for ax in figure.axes:
+        words = [text for text in ax.texts if text.get_text() in ("leaves", "arrives")]
+        for a, b in combinations(words, 2):
+            pairs += 1
+            assert not a.get_window_extent().overlaps(b.get_window_extent())
+    assert pairs >= 2
+
+
+def test_the_trade_off_is_a_staircase_of_plans():
+    ends = grasp_on((0.52, 0.85, 0.2), "A"), grasp_on((0.2, 0.5, 0.85), "B")
+    plans = rg.plan_regrasps(ELLIPSE, *ends, WEIGHT, friction=0.5, orientations=1, candidates=40, extra=6)
+    assert len(plans) >= 2
+    ax = plot_trade_off(plans[::-1])
+    (discs,) = by_gid(ax, "plans")
+    moves, margins = discs.get_data()
+    assert list(moves) == [len(plan.moves) for plan in plans]
+    assert margins == pytest.approx([np.degrees(plan.margin) for plan in plans])
+    assert list(np.diff(moves) > 0) == [True] * (len(plans) - 1)
+    (stairs,) = by_gid(ax, "stairs")
+    assert stairs.get_drawstyle() == "steps-post"
+    words = [text.get_text() for text in ax.texts]
+    assert words == [f"{np.degrees(p.margin):.3g}°, {len(p.steps)} steps" for p in plans]
+    assert ax.get_xlabel() == "finger moves"
+    assert ax.get_ylabel() == "worst angle margin [deg]"
+    ax.figure.canvas.draw()
+    for bad in ([], [STATE], plans[0]):
+        with pytest.raises(rg.InvalidInput, match="plans must be RegraspPlans"):
+            plot_trade_off(bad)

@@ -140,9 +140,10 @@ class HoldGraph:
         found: dict[int, NDArray[np.int64]] = {}
         for o, load in enumerate(self.loads if not self.one_finger else ()):
             through = held_alone(self._points, load)
-            if through.size:
-                first, second = self.pairs
-                found[o] = np.flatnonzero((np.isin(first, through) | np.isin(second, through)) & self._apart)
+            first, second = self.pairs
+            pairs = np.flatnonzero((np.isin(first, through) | np.isin(second, through)) & self._apart)
+            if pairs.size:
+                found[o] = pairs
         return found
 
     def _shared(self, o: int, places: NDArray[np.int64]) -> NDArray[np.float32]:

@@ -1,6 +1,6 @@
 """Why there is no sequence of holds, and what would make one possible."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from math import ceil, degrees, floor, log10
@@ -33,9 +33,9 @@ _DIGITS = 3
 class RegraspObstacle:
     """Why no sequence of holds leads from a start to a goal; the ``certificate`` of its ``Infeasible``.
 
-    start, goal: components of the hold graph, over all orientations, with contacts of the ends; -1 stands
-    for contacts without any hold. friction: with at least this coefficient at every contact there is a
-    sequence [-]. max_force: with this limit in place of smaller ones there is one [N]. margin: the widest
+    start, goal: components of the hold graph, over all orientations, of the contacts that hold at each end;
+    -1 stands for contacts without any hold. friction: with at least this coefficient at every contact there
+    is a sequence [-]. max_force: with this limit in place of smaller ones there is one [N]. margin: the widest
     least margin of any sequence where a least margin is asked for [rad]. Each None where it is not what is
     missing, or where nothing up to a friction of 16, or limits of ten thousand loads, would do.
     without: options that alone would leave a sequence if they were not given.
@@ -54,9 +54,8 @@ def why_not(problem: "RegraspProblem") -> Infeasible:
     unheld = _unheld_end(problem)
     if unheld is not None:
         return unheld
-    graph, (start, goal, _) = problem.graph, problem.places
-    component = graph.components()
-    parts = [tuple(sorted({int(component[i]) for i in places})) for places in (start, goal)]
+    graph, (start, goal, last) = problem.graph, problem.places
+    parts = [_components(graph, places, o) for places, o in ((start, 0), (goal, last))]
     if problem.least_margin > 0 and _possible(problem, graph):
         margin = _widest(problem)
         return Infeasible(
@@ -68,6 +67,13 @@ def why_not(problem: "RegraspProblem") -> Infeasible:
         parts[0], parts[1], _friction(problem), _force(problem), without=tuple(_without(problem))
     )
     return Infeasible(f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}", obstacle)
+
+
+def _components(graph: HoldGraph, places: tuple[int, ...], o: int) -> tuple[int, ...]:
+    """The components of an end's points that hold there, or of all its points if none do."""
+    held = {v for i in places for j in places if i != j and graph.margin(i, j, o) >= 0 for v in (i, j)}
+    component = graph.components()
+    return tuple(sorted({int(component[i]) for i in held or places}))
 
 
 def _reason(problem: "RegraspProblem", start: tuple[int, ...], goal: tuple[int, ...]) -> str:
@@ -123,12 +129,19 @@ def _unheld_end(problem: "RegraspProblem") -> Infeasible | None:
         contacts = [problem.contacts[i] for i in places]
         reason = _refusal(contacts, load, problem.criteria)
         if isinstance(reason, Infeasible):
-            possible = partial(_held_with, contacts, load, problem.criteria)
-            friction = _least(possible, min(c.friction for c in contacts), _MOST_FRICTION)
+            held = partial(_held_with, contacts, load, problem.criteria)
+            friction = _least(
+                lambda mu: held(friction=mu),  # noqa: B023
+                min(c.friction for c in contacts),
+                _MOST_FRICTION,
+            )
+            force = _least_force(lambda limit: held(force=limit), contacts, problem.load)  # noqa: B023
+            ways = [] if friction is None else [f"with friction {friction:g}"]
+            ways += [] if force is None else [f"with force limits of {force:g}"]
             needs = (
-                f"no friction up to {_MOST_FRICTION:g} would do"
-                if friction is None
-                else f"they would with friction {friction:g}"
+                f"they would {' or '.join(ways)}"
+                if ways
+                else f"no friction up to {_MOST_FRICTION:g} would do"
             )
             return Infeasible(
                 f"the fingers of the {what} cannot hold the load at {degrees(graph.angles[o]):.4g} deg: "
@@ -146,8 +159,12 @@ def _refusal(contacts: list[Contact], load: Wrench, criteria: Criteria) -> Regra
     return None
 
 
-def _held_with(contacts: list[Contact], load: Wrench, criteria: Criteria, friction: float) -> bool:
-    return _refusal([_raised(c, friction) for c in contacts], load, criteria) is None
+def _held_with(
+    contacts: list[Contact], load: Wrench, criteria: Criteria, friction: float = 0.0, force: float = 0.0
+) -> bool:
+    """Whether a grasp holds with at least this friction, and at least this force where it is limited."""
+    raised = [_allowed(_raised(c, friction), force) for c in contacts]
+    return _refusal(raised, load, replace(criteria, max_force=None)) is None
 
 
 def _possible(problem: "RegraspProblem", graph: HoldGraph, arcs: bool = True) -> bool:
@@ -178,16 +195,34 @@ def _friction(problem: "RegraspProblem") -> float | None:
 
 
 def _force(problem: "RegraspProblem") -> float | None:
-    contacts = problem.contacts
-    limits = [c.max_force for c in contacts if c.max_force is not None]
-    if not limits:
-        return None
-
     def possible(limit: float) -> bool:
-        raised = [c if c.max_force is None else with_limit(c, max(limit, c.max_force)) for c in contacts]
-        return _possible(problem, problem.graph_on(raised))
+        return _possible(problem, problem.graph_on([_allowed(c, limit) for c in problem.contacts]))
 
-    return _least(possible, min(limits), _MOST_LOADS * float(np.hypot(*problem.load.force)))
+    least = _least_force(possible, problem.contacts, problem.load)
+    if least is None:
+        return None
+    for share in (1.0, 1.01, 1.03, 1.1, 1.3, 2.0):  # forces grow while the object turns
+        limit = _rounded_up(share * least)
+        try:
+            _with_force(problem, limit).plans()
+        except Infeasible:
+            continue
+        return limit
+    return None
+
+
+def _with_force(problem: "RegraspProblem", limit: float) -> "RegraspProblem":
+    """The same problem with at least this force where it is limited."""
+    start, goal = (Grasp(_allowed(c, limit) for c in grasp) for grasp in (problem.start, problem.goal))
+    most = None if problem.max_force is None else max(limit, problem.max_force)
+    return replace(problem, start=start, goal=goal, max_force=most)
+
+
+def _least_force(
+    possible: Callable[[float], bool], contacts: Iterable[Contact], load: Wrench
+) -> float | None:
+    limits = [c.max_force for c in contacts if c.max_force is not None]
+    return _least(possible, min(limits), _MOST_LOADS * float(np.hypot(*load.force))) if limits else None
 
 
 def _without(problem: "RegraspProblem") -> Iterator[str]:
@@ -209,6 +244,11 @@ def _raised(contact: Contact, friction: float) -> Contact:
     return Contact(contact.position, contact.normal, mu, max_force=contact.max_force, name=contact.name)
 
 
+def _allowed(contact: Contact, force: float) -> Contact:
+    """The contact with at least this force, where it has a limit."""
+    return contact if contact.max_force is None else with_limit(contact, max(force, contact.max_force))
+
+
 def _least(possible: Callable[[float], bool], now: float, most: float) -> float | None:
     """The least value above ``now``, to three digits, with which it is possible; None up to ``most``."""
     if not possible(most):
@@ -217,6 +257,10 @@ def _least(possible: Callable[[float], bool], now: float, most: float) -> float 
     while high - low > 10.0 ** (floor(log10(high)) - _DIGITS) and high > 1e-6 * most:
         middle = (low + high) / 2 if low > high / 4 else max(high / 4, 2 * low)
         low, high = (low, middle) if possible(middle) else (middle, high)
-    unit = 10.0 ** (floor(log10(high)) + 1 - _DIGITS)
-    rounded = float(f"{ceil(high / unit - 1e-9) * unit:.{_DIGITS + 1}g}")
+    rounded = _rounded_up(high)
     return rounded if possible(rounded) else high
+
+
+def _rounded_up(value: float) -> float:
+    unit = 10.0 ** (floor(log10(value)) + 1 - _DIGITS)
+    return float(f"{ceil(value / unit - 1e-9) * unit:.{_DIGITS + 1}g}")

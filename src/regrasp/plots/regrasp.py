@@ -12,9 +12,11 @@ from regrasp.mechanics.checks import Array
 from regrasp.outline.outline import Outline
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.plots.arrows import arrow
+from regrasp.plots.labels import Labels
 from regrasp.plots.overview import png
 from regrasp.plots.style import (
     GREY,
+    PALETTE,
     SMALL,
     TEXT,
     WIDTH,
@@ -31,6 +33,8 @@ from regrasp.plots.world import Finger, Stage, moment_of
 _COLUMNS = 4
 _PANEL = WIDTH / 2  # [in]
 _ROOM = 1.15  # for the words beside the fingers
+_INSIDE = 0.8  # of a panel: its axes
+_WORD = 6.5  # [pt]
 
 
 def plot_regrasp(plan: RegraspPlan, outline: Outline | None = None, *, units: Units = SI) -> Figure:
@@ -78,16 +82,27 @@ def _step(ax: Axes, plan: RegraspPlan, k: int, stage: Stage) -> None:
     step = plan.steps[k]
     moment = moment_of(plan, k, 0.0)
     stage.draw(ax, moment)
+    labels = Labels(72 * _INSIDE * _PANEL / (2 * _ROOM * stage.reach), gap=1.0)
+    for finger in moment.fingers:
+        labels.occupy(stage.tip(finger), stage.finger)
     for finger, name in _named(moment.fingers, plan.fingers[k]):
-        if name in step.idle_at_end:
-            stage.label(ax, finger, "leaves")
-        elif name in step.idle_at_start:
-            stage.label(ax, finger, "arrives")
+        word = "leaves" if name in step.idle_at_end else "arrives" if name in step.idle_at_start else ""
+        if word:
+            _label(ax, stage, labels, finger, word)
     turn = plan.orientations[k + 1] - plan.orientations[k]
     if turn:
-        _draw_turn(ax, moment.angle, turn, 0.3 * stage.size)
+        _draw_turn(ax, labels, moment.angle, turn, 0.3 * stage.size)
     title = f"{k + 1} {step.kind}" + _at(plan.orientations[k])
     ax.set_title(title, fontsize=TEXT, loc="left")
+
+
+def _label(ax: Axes, stage: Stage, labels: Labels, finger: Finger, word: str) -> None:
+    """A word beside a finger, outside if there is room."""
+    outwards = stage.tip(finger) - finger.at
+    way = labels.direction(word, stage.tip(finger) + outwards, outwards, _WORD)
+    at = stage.tip(finger) + 1.2 * stage.finger * way
+    colour = PALETTE[finger.number % len(PALETTE)]
+    note(ax, word, at, way, gap=1.0, color=colour, fontsize=_WORD, zorder=8)
 
 
 def _named(fingers: tuple[Finger, ...], names: tuple[str | None, ...]) -> list[tuple[Finger, str]]:
@@ -98,12 +113,12 @@ def _at(angle: float) -> str:
     return f", {short(round(degrees(angle), 1))}\N{DEGREE SIGN}" if angle else ""
 
 
-def _draw_turn(ax: Axes, start: float, turn: float, radius: float) -> None:
+def _draw_turn(ax: Axes, labels: Labels, start: float, turn: float, radius: float) -> None:
     """An arc from the object's x axis to where it will be."""
     angles = start + np.linspace(0, turn, max(8, ceil(abs(turn) / 0.05)))
     arc: Array = radius * np.column_stack([np.cos(angles), np.sin(angles)])
     ax.plot(*arc[:-2].T, color=GREY, linewidth=1.4, zorder=3)
     arrow(ax, arc[-3], arc[-1], gid="turn", color=GREY, zorder=3, mutation_scale=7)
     middle = arc[len(arc) // 2]
-    sign = "+" if turn > 0 else ""
-    note(ax, f"{sign}{short(round(degrees(turn), 1))}\N{DEGREE SIGN}", middle, middle, gap=3, color=GREY)
+    text = f"{'+' if turn > 0 else ''}{short(round(degrees(turn), 1))}\N{DEGREE SIGN}"
+    note(ax, text, middle, labels.direction(text, middle, middle, SMALL), gap=3, color=GREY)

@@ -15,7 +15,7 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.transition import Transition
 from regrasp.plots.arrows import arrow
-from regrasp.plots.style import INK, PALE, PALETTE, literal, note
+from regrasp.plots.style import INK, PALE, PALETTE, literal
 
 # As fractions of the object's size.
 _FINGER, _CONE, _LONGEST = 0.035, 0.2, 0.4
@@ -135,11 +135,14 @@ class Stage:
                 mutation_scale=self.heads,
             )
 
-    def label(self, ax: Axes, finger: Finger, text: str) -> None:
-        """A word beside a finger, outside."""
-        away = -finger.normal if finger.normal is not None else finger.at
-        at = finger.at + 2.2 * _FINGER * self.size * away / (np.hypot(*away) or 1.0)
-        note(ax, text, at, away, gap=1.0, color=PALETTE[finger.number % len(PALETTE)], fontsize=6.5, zorder=8)
+    @property
+    def finger(self) -> float:
+        """The radius of a finger's tip [m]."""
+        return _FINGER * self.size
+
+    def tip(self, finger: Finger) -> Array:
+        """(2,) the middle of a finger's tip in the world frame [m]."""
+        return finger.at if finger.normal is None else finger.at - self.finger * finger.normal
 
 
 def as_regrasp(plan: RegraspPlan | Transition) -> RegraspPlan:
