@@ -203,7 +203,7 @@ def test_bad_requests(options, kind, words):
 
 
 def test_an_outline_is_needed():
-    with pytest.raises(rg.InvalidInput, match="outline must be an Outline, got 3"):
+    with pytest.raises(rg.InvalidInput, match="a regrasp needs an Outline or a Mesh, got 3"):
         rg.plan_regrasp(3, START, GOAL, WEIGHT, friction=0.5)
 
 

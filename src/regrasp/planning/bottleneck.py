@@ -67,7 +67,7 @@ def bottleneck(
     if way is None:
         return None
     points = sorted({v for hold in way for v in hold[:2]})
-    pairs = sorted({hold[:2] for hold in way})
+    pairs = sorted({(hold[0], hold[1]) for hold in way})
     narrow = min(way, key=lambda hold: graph.margin(*hold))
 
     def needed(without: NDArray[np.bool_]) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.fingering import Fingering, Places, Triple
+from regrasp.planning.stances import Holds, Places, Stances
 
 Node = tuple[int, int]
 """A hold by its number, and the place of an orientation."""
@@ -33,15 +33,15 @@ class Costs:
 class CheapEnd:
     """Least costs of ways from one end, move by move; ``tables[i]`` with at most i moves."""
 
-    def __init__(self, fingers: Fingering, costs: Costs, ways: list[Places], o: int, other: int) -> None:
+    def __init__(self, fingers: Stances, costs: Costs, ways: list[Places], o: int, other: int) -> None:
         self.fingers, self.costs, self.ends = fingers, costs, [fingers.of(way) for way in ways]
         self.turns = costs.turning * fingers.turning
         self.rest = costs.turning * fingers.apart[other]  # the turn to the other end, at the least
-        count = fingers.holds[4].size
+        count = fingers.rows.size
         first = np.full((count, costs.worth.shape[1]), inf)
         for holds in self.ends:
             for h in holds:
-                first[h, o] = costs.worth[fingers.holds[4][h], o]
+                first[h, o] = costs.worth[fingers.rows[h], o]
         self.first, reached = first, first.copy()
         for holds in self.ends:
             for h, row in zip(holds, self._inside(holds, first, 0.0), strict=True):
@@ -56,29 +56,28 @@ class CheapEnd:
 
     def move(self, most: float) -> None:
         """One finger move further, for whole ways that cost at most ``most``."""
-        from regrasp.closed_form.compiled_paths import cheapest_after_move, threads
+        from regrasp.closed_form.compiled_paths import threads
 
         fingers, costs = self.fingers, self.costs
         bound = np.asarray(most * (1 + 1e-12) - self.rest)
         frontier = np.flatnonzero(self.fresh)
-        table, self.fresh = cheapest_after_move(
-            frontier, self.fresh, self.last, costs.move, costs.worth, fingers.holds, fingers.near, self.turns,
-            costs.step, bound, threads(),
+        table, self.fresh = fingers.moves.cheapest(
+            frontier, self.fresh, self.last, costs.move, costs.worth, fingers.rows, fingers.holds,
+            fingers.count, fingers.near, self.turns, costs.step, bound, threads(),
         )  # fmt: skip
         self.tables.append(table)
 
     def way(self, node: Node, moves: int) -> list[Node]:
         """A least way with at most ``moves`` moves, from the end to ``node``."""
-        from regrasp.closed_form.compiled_paths import others
-
+        others = self.fingers.moves.others
         (h, o), way = node, [node]
         while True:
             value = self.tables[moves][h, o]
             while moves > 0 and self.tables[moves - 1][h, o] <= value:
                 moves -= 1
             known, move = (self.tables[moves - 1], self.costs.move) if moves else (self.first, 0.0)
-            thirds = range(self.fingers.holds[0].shape[1])
-            around = ((h, *others(self.fingers.holds, h, third)) for third in thirds)
+            points = range(self.fingers.count)
+            around = ((h, *others(self.fingers.holds, h, point)) for point in points)
             for holds in self.ends if moves == 0 else (t for t in around if min(t) >= 0):
                 if h not in holds:
                     continue
@@ -92,21 +91,21 @@ class CheapEnd:
                 return way[::-1]
             moves -= 1
 
-    def _inside(self, holds: Triple, known: Array, move: float) -> Array:
-        """(3, O) least costs within a triple."""
+    def _inside(self, holds: Holds, known: Array, move: float) -> Array:
+        """(n, O) least costs within a stance."""
         from regrasp.closed_form.compiled_paths import cheapen
 
         fingers, costs = self.fingers, self.costs
-        result = np.empty((3, known.shape[1]))
+        result = np.empty((len(holds), known.shape[1]))
         free = np.full(known.shape[1], inf)
         cheapen(
-            tuple(int(h) for h in holds), known, move, costs.worth, fingers.holds[4], fingers.near,
+            tuple(int(h) for h in holds), known, move, costs.worth, fingers.rows, fingers.near,
             self.turns, costs.step, free, result,
         )  # fmt: skip
         return result
 
-    def _back(self, holds: Triple, inside: Array, entry: Array, at: Node) -> list[Node]:
-        """Steps within a triple, backwards, from a node to where the way entered it."""
+    def _back(self, holds: Holds, inside: Array, entry: Array, at: Node) -> list[Node]:
+        """Steps within a stance, backwards, from a node to where the way entered it."""
         steps: list[Node] = []
         while inside[at] < entry[at]:
             o = at[1]
@@ -127,7 +126,7 @@ class Cheapest:
 
 
 def cheapest(
-    fingers: Fingering,
+    fingers: Stances,
     costs: Costs,
     start: Places,
     goal: Places,
@@ -146,7 +145,7 @@ def cheapest(
         i, j = (len(end.tables) - 1 for end in ends)
         if split is None or (i, j) == split:
             total = ends[0].last + costs.move + ends[1].last
-            total -= np.where(total < inf, costs.worth[fingers.holds[4]], 0.0)
+            total -= np.where(total < inf, costs.worth[fingers.rows], 0.0)
             at = np.unravel_index(int(np.argmin(total)), total.shape)
             if total[at] < (best[0] if best else inf):
                 best = float(total[at]), i, j, (int(at[0]), int(at[1]))
@@ -169,12 +168,12 @@ def cheapest(
     return Cheapest(tuple(way), moves_of(fingers, start, way, goal), cost)
 
 
-def moves_of(fingers: Fingering, start: Places, way: list[Node], goal: Places) -> int:
-    """How often a finger goes to another point: how often the three points change."""
+def moves_of(fingers: Stances, start: Places, way: list[Node], goal: Places) -> int:
+    """How often a finger goes to another point: how often the stance changes."""
     here, moves = frozenset(start), 0
     for (a, _), (b, _) in pairwise(way):
         points = frozenset((*fingers.points(a), *fingers.points(b)))
-        if len(points) == 3:
+        if len(points) == len(start):
             moves += points != here
             here = points
     return moves + (here != frozenset(goal))

@@ -5,68 +5,60 @@ that shares a hold. Where all fingers may touch everywhere it does not matter wh
 is of two certain fingers.
 """
 
-from copy import copy
 from itertools import permutations
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.mechanics.checks import Array
 from regrasp.planning.holds import HoldGraph
+from regrasp.planning.stances import Holds, Places, Stances, nearest_turns
+
+if TYPE_CHECKING:
+    from regrasp.closed_form.compiled_paths import Moves
 
 _FINGERS = ((0, 1), (0, 2), (1, 2))
 """The two fingers of a hold, by its slot."""
 
-Places = tuple[int, ...]
-"""Three contacts by their places in the graph; of fingers 1, 2, 3 where it matters which is which."""
 
-Triple = tuple[int, int, int]
-"""The numbers of three holds: of fingers 1 and 2, 1 and 3, 2 and 3."""
-
-
-class Fingering:
+class Fingering(Stances):
     """The holds of three fingers on the contacts of a graph.
 
     max_turn: of the object at a time [rad]. least: margin [rad] below which a pair does not hold. allowed:
     (3, V) which finger may touch which contact; None where all may touch all.
-    holds: numbers of holds by slot and points, and of each hold its slot, points and row of margins; as
-    ``compiled_paths`` takes them. margins: (rows, O) [rad]; -1 where a pair does not hold.
-    near: (O, k) from where the object may turn to an orientation in one step, the nearest first; turning:
-    (O, k) these turns [rad]; apart: (O, O) angles between all orientations [rad].
+    Holds are numbered by slot and points, ``holds`` has of each its slot and points.
     """
+
+    fingers: ClassVar[int] = 3
 
     def __init__(
         self, graph: HoldGraph, max_turn: float, least: float = 0.0, allowed: NDArray[np.bool_] | None = None
     ) -> None:
         self.allowed = allowed
-        self.margins: NDArray[np.float32] = np.ascontiguousarray(graph.margins.T)
+        self.margins = np.ascontiguousarray(graph.margins.T)
         if least > 0:
             self.margins[self.margins < least] = -1.0
-        self.holds = _alike(graph) if allowed is None else _of_fingers(graph, allowed)
+        self.count = len(graph.contacts)
+        *holds, self.rows = _alike(graph) if allowed is None else _of_fingers(graph, allowed)
+        self.holds = tuple(holds)
         angles = graph.angles
-        self.apart: Array = abs((angles[:, None] - angles + pi) % (2 * pi) - pi)
-        within = self.apart <= max_turn + 1e-9
-        order = np.argsort(np.round(self.apart, 9), axis=1, kind="stable")[:, : within.sum(axis=1).max()]
-        own = np.arange(len(order))[:, None]  # fills the row where fewer are near
-        self.near = np.where(np.take_along_axis(within, order, axis=1), order, own).astype(np.int64)
-        self.turning: Array = np.take_along_axis(self.apart, self.near, axis=1)
+        self.apart = abs((angles[:, None] - angles + pi) % (2 * pi) - pi)
+        self.near, self.turning = nearest_turns(self.apart, max_turn)
 
-    def only(self, useful: NDArray[np.bool_]) -> "Fingering":
-        """The same with useful holds numbered alone; the last number stands for all others: no holds."""
-        few = copy(self)
-        ids, slots, first, second, rows = self.holds
-        kept = np.append(np.flatnonzero(useful), 0)
-        numbers = np.where(useful, np.cumsum(useful) - 1, kept.size - 1)
-        few.margins = self.margins[rows[kept]]
-        few.margins[-1] = -1.0
-        few.holds = (
-            np.where(ids < 0, -1, numbers[ids]), slots[kept], first[kept], second[kept], np.arange(kept.size),
-        )  # fmt: skip
-        return few
+    @property
+    def moves(self) -> "Moves":
+        """The compiled loops over stances."""
+        from regrasp.closed_form.compiled_stances import PAIRS
 
-    def of(self, contacts: Places) -> Triple:
+        return PAIRS
+
+    def renumbered(self, numbers: NDArray[np.int64], kept: NDArray[np.int64]) -> tuple[Any, ...]:
+        """``holds`` with other numbers, of the holds ``kept``."""
+        ids, slots, first, second = self.holds
+        return np.where(ids < 0, -1, numbers[ids]), slots[kept], first[kept], second[kept]
+
+    def of(self, contacts: Places) -> Holds:
         """The holds of fingers 1, 2, 3 on three contacts."""
         a, b, c = contacts
         ids = self.holds[0]

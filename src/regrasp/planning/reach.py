@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.planning.cheapest import Cheapest, Costs, cheapest
-from regrasp.planning.fingering import Fingering, Places
+from regrasp.planning.fingering import Fingering
 from regrasp.planning.holds import HoldGraph
+from regrasp.planning.stances import Places, Stances
 from regrasp.planning.widest import ALIKE, Widest, widest_by_moves
 
-Hold = tuple[int, int, int]
-"""Two contacts and an orientation, by their places in the graph."""
+Hold = tuple[int, ...]
+"""The contacts and the orientation of a hold, by their places in the graph."""
 
 MAX_TURN = 2 * pi / 3
 """Default largest turn during one step [rad]: forces grow by 1 / cos(turn / 2) = 2 at most on the way."""
@@ -40,7 +41,7 @@ class Sequence:
     @property
     def exchanges(self) -> int:
         """How often the hold is exchanged for another; a turn in one hold is none."""
-        return sum(a[:2] != b[:2] for a, b in pairwise(self.holds))
+        return sum(a[:-1] != b[:-1] for a, b in pairwise(self.holds))
 
 
 def sequences(
@@ -62,18 +63,23 @@ def sequences(
     must have. allowed: (3, V) which finger may touch which contact; by default all may touch all.
     """
     fingers = Fingering(graph, max_turn, least_margin, allowed)
-    found = widest_by_moves(fingers, start, goal, goal_orientation, extra)
-    return [_shortest(fingers, start, goal, goal_orientation, wide) for wide in found]
+    return preferred(fingers, start, goal, goal_orientation, extra)
 
 
-def as_sequence(fingers: Fingering, found: Cheapest) -> Sequence:
+def preferred(fingers: Stances, start: Places, goal: Places, o: int, extra: int = 0) -> list[Sequence]:
+    """The same for any stances: the goal is held at the orientation of place ``o``."""
+    found = widest_by_moves(fingers, start, goal, o, extra)
+    return [_shortest(fingers, start, goal, o, wide) for wide in found]
+
+
+def as_sequence(fingers: Stances, found: Cheapest) -> Sequence:
     """Holds by their contacts in place of their numbers."""
     holds = tuple((*fingers.points(h), o) for h, o in found.way)
-    margin = min(float(fingers.margins[fingers.holds[4][h], o]) for h, o in found.way)
+    margin = min(float(fingers.margins[fingers.rows[h], o]) for h, o in found.way)
     return Sequence(holds, margin, found.moves)
 
 
-def _shortest(fingers: Fingering, start: Places, goal: Places, o: int, wide: Widest) -> Sequence:
+def _shortest(fingers: Stances, start: Places, goal: Places, o: int, wide: Widest) -> Sequence:
     """The sequence of fewest steps with so many moves and no less margin."""
     few = fingers.only(wide.useful)
     worth = np.where(few.margins >= wide.margin - ALIKE, _MARGIN * (pi / 2 - few.margins), inf)

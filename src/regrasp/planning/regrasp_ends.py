@@ -18,13 +18,16 @@ _SAME = 1e-9
 class Ends:
     """Contacts of both grasps among the candidates: those at one place are one.
 
-    contacts: of the start, then of the goal. start, goal: (3,) their places.
+    contacts: of the start, then of the goal. start, goal: their places.
     """
 
-    def __init__(self, start: Grasp, goal: Grasp, max_force: float | None) -> None:
+    def __init__(
+        self, start: Grasp, goal: Grasp, max_force: float | None, *, fingers: int = 3, dimension: int = 2
+    ) -> None:
+        wanted = "three planar contacts" if fingers == 3 else "four contacts in space"
         for what, grasp in (("start", start), ("goal", goal)):
-            if not isinstance(grasp, Grasp) or len(grasp) != 3 or grasp.dimension != 2:
-                raise InvalidInput(f"{what} must be a Grasp of three planar contacts, got {grasp!r}")
+            if not isinstance(grasp, Grasp) or len(grasp) != fingers or grasp.dimension != dimension:
+                raise InvalidInput(f"{what} must be a Grasp of {wanted}, got {grasp!r}")
         self._limit = max_force
         self.contacts: list[Contact] = []
         self.start = tuple(self._place(c, f"start {c.name}") for c in start)

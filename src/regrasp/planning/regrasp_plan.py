@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
@@ -17,7 +17,7 @@ from regrasp.planning.transition import Transition
 class FingerMove(ArrayValue):
     """A finger without force that moves before a step.
 
-    step: the step before which it moves. finger: its number, from 0. origin, target: (2,) contact points in
+    step: the step before which it moves. finger: its number, from 0. origin, target: (d,) contact points in
     the object frame, relative to the centre of mass [m]; their names in the plan.
     """
 
@@ -51,19 +51,22 @@ class RegraspPlan(ArrayValue, Pictured):
 
     def orientation(self, t: ArrayLike) -> Array:
         """The object's angle [rad] at times in [0, duration] [s], of the shape of t."""
+        k, local = self._place(t)
+        result = np.empty(local.shape)
+        for step in range(len(self.steps)):
+            here = k == step
+            result[here] = self.orientations[step] + self.steps[step].orientation(local[here])
+        return result
+
+    def _place(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
+        """The step of each time and the time from its start [s]."""
         times = np.asarray(t, dtype=float)
         if not ((times >= 0) & (times <= self.duration * (1 + 1e-12))).all():
             raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
-        ends = np.cumsum([step.duration for step in self.steps])
+        lengths = np.array([step.duration for step in self.steps])
+        ends = np.cumsum(lengths)
         k = np.minimum(np.searchsorted(ends, times, side="right"), len(self.steps) - 1)
-        result = np.empty(times.shape)
-        for step in range(len(self.steps)):
-            here = k == step
-            local = np.clip(
-                times[here] - (ends[step] - self.steps[step].duration), 0, self.steps[step].duration
-            )
-            result[here] = self.orientations[step] + self.steps[step].orientation(local)
-        return result
+        return k, np.clip(times - (ends - lengths)[k], 0, lengths[k])
 
     @property
     def moves(self) -> tuple[FingerMove, ...]:
@@ -107,7 +110,7 @@ class RegraspPlan(ArrayValue, Pictured):
             f"least margin {np.degrees(self.margin):.2f} deg"
         ]
         for k, (step, (a, b)) in enumerate(zip(self.steps, pairwise(self.orientations), strict=True), 1):
-            turn = f", turning from {np.degrees(a):.4g} to {np.degrees(b):.4g} deg" if a != b else ""
+            turn = self._turn_in_words(step, a, b)
             held = ", ".join(step.grasp.names)
             what = step.kind if step.contact is None else f"{step.kind} of {step.contact}"
             what += f" for {step.arrival}" if step.arrival else ""
@@ -115,3 +118,6 @@ class RegraspPlan(ArrayValue, Pictured):
         return "\n".join(lines)
 
     __repr__ = __str__
+
+    def _turn_in_words(self, step: Transition, before: float, after: float) -> str:
+        return f", turning from {np.degrees(before):.4g} to {np.degrees(after):.4g} deg" if step.turn else ""

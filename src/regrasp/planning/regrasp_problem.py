@@ -7,7 +7,7 @@ from math import pi
 from typing import Required, TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import choice, number
@@ -20,7 +20,7 @@ from regrasp.planning.arcs import Arcs, arc_lengths, on_arcs
 from regrasp.planning.bottleneck import Bottleneck, bottleneck
 from regrasp.planning.cheapest import cheapest
 from regrasp.planning.criteria import PEAK_RATIO, Criteria
-from regrasp.planning.fingering import Fingering, Places
+from regrasp.planning.fingering import Fingering
 from regrasp.planning.holds import Filter, HoldGraph, evenly
 from regrasp.planning.obstacle import why_not
 from regrasp.planning.reach import MAX_TURN, Sequence, as_sequence, sequences
@@ -28,11 +28,17 @@ from regrasp.planning.regrasp_ends import Ends
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.regrasp_steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.regrasp_weights import RegraspWeights
+from regrasp.planning.stances import Places
 from regrasp.planning.timing import TimeScaling
+from regrasp.planning.triples import TripleFilter
 
 
 class RegraspOptions(TypedDict, total=False):
-    """The options of a regrasp; what they mean and their defaults stand in ``RegraspProblem``."""
+    """The options of a regrasp; what they mean stands in ``RegraspProblem`` and ``SpaceRegraspProblem``.
+
+    ``goal_rotation``, ``facets`` and ``seed`` are of solids; ``goal_orientation``, ``arcs``, ``one_finger``
+    and ``weights`` of outlines.
+    """
 
     friction: Required[float]
     orientations: int
@@ -43,7 +49,7 @@ class RegraspOptions(TypedDict, total=False):
     max_turn: float
     least_margin: float
     min_distance: float
-    keep: Filter | None
+    keep: Filter | TripleFilter | None
     arcs: Arcs | None
     one_finger: bool
     weights: RegraspWeights | None
@@ -51,6 +57,9 @@ class RegraspOptions(TypedDict, total=False):
     peak_ratio: float
     reserve: float
     step_duration: float
+    goal_rotation: ArrayLike | None
+    facets: int
+    seed: int
 
 
 @dataclass(frozen=True, eq=False)

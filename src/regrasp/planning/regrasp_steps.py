@@ -27,22 +27,29 @@ from regrasp.planning.turning import TurningTransition
 class Chosen:
     """A state of a regrasp and how it was chosen.
 
-    places: (n,) of its contacts among all. angle: of the object [rad]. forces: (n, 2) [N]; limits: (n,) [N].
+    places: (n,) of its contacts among all. forces: (n, d) [N]; limits: (n,) [N]. angle: of the object [rad],
+    in the plane.
     """
 
     places: tuple[int, ...]
-    angle: float
     load: Wrench
     grasp: Grasp
     forces: Array
     limits: tuple[float, ...]
     objective: str
     method: str
+    angle: float = 0.0
 
     def among(self, places: tuple[int, ...]) -> Array:
-        """(m, 2) forces of other contacts, zero for those that this state does not have."""
+        """(m, d) forces of other contacts, zero for those that this state does not have."""
         known = dict(zip(self.places, self.forces, strict=True))
-        return np.array([known.get(place, np.zeros(2)) for place in places])
+        idle = np.zeros(self.forces.shape[1])
+        return np.array([known.get(place, idle) for place in places])
+
+    @property
+    def all_work(self) -> bool:
+        """Whether every finger carries force."""
+        return all(_in_use(self.forces))
 
 
 def chosen_states(
@@ -62,15 +69,17 @@ def chosen_states(
     """
     turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
     whole = replace(criteria, objective="force")
-    states = [_chosen(start, 0.0, contacts, load, whole, 1.0)]
+    states = [chosen_state(start, contacts, load, whole)]
     for k, ((i, j, _), angle) in enumerate(zip(sequence.holds, turned, strict=True)):
         beside = [abs(b - a) for a, b in pairwise(turned[max(k - 1, 0) : k + 2])]
         ease = cos(max(beside, default=0.0) / 2) * (1 - 1e-9)  # forces grow while the object turns
-        state = _chosen((i, j), angle, contacts, load, criteria, ease)
-        if not one_finger and not all(_in_use(state.forces)):
-            state = _chosen((i, j), angle, contacts, load, whole, ease)
-        states.append(state)
-    return [*states, _chosen(goal, turned[-1], contacts, load, whole, 1.0)]
+        seen = turned_load(load, angle)
+        state = chosen_state((i, j), contacts, seen, criteria, ease)
+        if not one_finger and not state.all_work:
+            state = chosen_state((i, j), contacts, seen, whole, ease)
+        states.append(replace(state, angle=angle))
+    last = chosen_state(goal, contacts, turned_load(load, turned[-1]), whole)
+    return [*states, replace(last, angle=turned[-1])]
 
 
 def spread_states(states: list[Chosen], criteria: Criteria) -> list[Chosen]:
@@ -97,31 +106,40 @@ def regrasp_of(
     states: list[Chosen], contacts: tuple[Contact, ...], scaling: TimeScaling, reserve: float
 ) -> RegraspPlan:
     """The steps between states that follow one another."""
-    steps = [_step(a, b, contacts, scaling, reserve) for a, b in pairwise(states)]
+    steps = [step_between(a, b, contacts, scaling, reserve, b.angle - a.angle) for a, b in pairwise(states)]
     holds = [GraspState(s.grasp, s.load, s.forces) for s in states[1:-1]]
     margin = min(hold.margins.least_angle for hold in holds)
     return RegraspPlan(tuple(steps), tuple(s.angle for s in states), margin)
 
 
-def _chosen(
+def chosen_state(
     places: tuple[int, ...],
-    angle: float,
     contacts: tuple[Contact, ...],
     load: Wrench,
     criteria: Criteria,
-    ease: float,
+    ease: float = 1.0,
 ) -> Chosen:
-    """The best forces of some contacts within a fraction ``ease`` of their limits."""
-    seen, grasp = turned_load(load, angle), Grasp(contacts[i] for i in places)
-    best = choose_forces(eased(grasp, ease), seen, replace(criteria, max_force=None))
-    forces = np.array(best.forces)
-    return Chosen(places, angle, seen, grasp, forces, best.force_limits, criteria.objective, best.method)
+    """The best forces of some contacts under a load, within a fraction ``ease`` of their limits."""
+    grasp = Grasp(contacts[i] for i in places)
+    best = choose_forces(eased(grasp, ease), load, replace(criteria, max_force=None))
+    return Chosen(
+        places, load, grasp, np.array(best.forces), best.force_limits, criteria.objective, best.method
+    )
 
 
-def _step(
-    before: Chosen, after: Chosen, contacts: tuple[Contact, ...], scaling: TimeScaling, reserve: float
+def step_between(
+    before: Chosen,
+    after: Chosen,
+    contacts: tuple[Contact, ...],
+    scaling: TimeScaling,
+    reserve: float,
+    turn: float,
+    axis: Array | None = None,
 ) -> Transition:
-    """From one state to the next: a finger leaves, arrives or is exchanged, or only the object turns."""
+    """From one state to the next: a finger leaves, arrives or is exchanged, or only the object turns.
+
+    turn: of the object [rad], about ``axis`` in space, where all of the load turns.
+    """
     places = max(before.places, after.places, key=len)
     if len(before.places) == len(after.places):
         places = tuple(dict.fromkeys((*before.places, *after.places)))
@@ -135,15 +153,14 @@ def _step(
     contact = (leaving or arriving or [None])[0]
     arrival = arriving[0] if kind == "exchange" else None
     record = Record(reserve, (_choice("start", before), _choice("end", after)))
-    turn = after.angle - before.angle
     if turn == 0:
         return Transition(kind, contact, start, end, scaling, record, arrival=arrival)
-    knots = Turn([0.0, turn], [start.forces, end.forces])
+    knots = Turn([0.0, turn], [start.forces, end.forces], axis)
     return TurningTransition(kind, contact, start, end, scaling, record, arrival=arrival, turn=knots)
 
 
 def _in_use(forces: Array) -> tuple[bool, ...]:
-    sizes = np.hypot(*forces.T)
+    sizes = np.linalg.norm(forces, axis=1)
     return tuple((sizes > 1e-9 * sizes.max()).tolist())
 
 

@@ -1,16 +1,23 @@
-"""Planning whole regrasps of a planar object."""
+"""Planning whole regrasps, of a planar object with three fingers and of a solid one with four."""
 
-from typing import Unpack
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import TYPE_CHECKING, Unpack
 
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.regrasp_problem import RegraspOptions, RegraspProblem
+from regrasp.planning.space_problem import SpaceRegraspProblem
+
+if TYPE_CHECKING:
+    from regrasp.mesh.mesh import Mesh
 
 
 def plan_regrasp(
-    outline: Outline, start: Grasp, goal: Grasp, load: Wrench, **options: Unpack[RegraspOptions]
+    outline: "Outline | Mesh", start: Grasp, goal: Grasp, load: Wrench, **options: Unpack[RegraspOptions]
 ) -> RegraspPlan:
     """The regrasp of fewest finger moves, and of these the one of the widest least angle margin.
 
@@ -21,7 +28,9 @@ def plan_regrasp(
     With ``weights`` the one of least cost.
 
     outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
-    ...) are those of ``RegraspProblem``.
+    ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
+    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan is a
+    ``SpaceRegraspPlan``.
 
     What is proven: every state, every path between two, and that no regrasp on the sampled points and
     orientations has fewer moves or, with as few, a wider least margin; or costs less. Points and orientations
@@ -29,21 +38,39 @@ def plan_regrasp(
     Raises ``Infeasible`` where no sequence of holds leads from one to the other, and says why and what would
     make one possible; ``InvalidInput`` for arguments that are not what they must be.
     """
-    return RegraspProblem(outline, start, goal, load, **options).plans()[0]
+    return _problem(outline, start, goal, load, options).plans()[0]
 
 
 def plan_regrasps(
-    outline: Outline,
+    outline: "Outline | Mesh",
     start: Grasp,
     goal: Grasp,
     load: Wrench,
     *,
     extra: int = 0,
     **options: Unpack[RegraspOptions],
-) -> list[RegraspPlan]:
+) -> Sequence[RegraspPlan]:
     """The trade-off between finger moves and margin, as a list of plans.
 
     First that of ``plan_regrasp``, then those of up to ``extra`` more moves, each with a wider least margin
     than the one before it. Arguments and errors are those of ``plan_regrasp``; ``weights`` have no trade-off.
     """
-    return RegraspProblem(outline, start, goal, load, **options).plans(extra)
+    return _problem(outline, start, goal, load, options).plans(extra)
+
+
+def _problem(
+    shape: "Outline | Mesh", start: Grasp, goal: Grasp, load: Wrench, options: RegraspOptions
+) -> RegraspProblem | SpaceRegraspProblem:
+    """The problem for an outline or a mesh. Raises ``InvalidInput`` for an option that it does not have."""
+    from regrasp.mesh.mesh import Mesh
+
+    if not isinstance(shape, (Outline, Mesh)):
+        raise InvalidInput(f"a regrasp needs an Outline or a Mesh, got {shape!r}")
+    kind = RegraspProblem if isinstance(shape, Outline) else SpaceRegraspProblem
+    known = [field.name for field in fields(kind)][4:]
+    unknown = [name for name in options if name not in known]
+    if unknown or "friction" not in options:
+        wrong = f"unknown option {unknown[0]!r}" if unknown else "friction is missing"
+        where = "outline" if kind is RegraspProblem else "mesh"
+        raise InvalidInput(f"{wrong}; a regrasp on an {where} takes {', '.join(known)}")
+    return kind(shape, start, goal, load, **options)  # type: ignore[arg-type, misc]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.planning.fingering import Fingering, Places
+from regrasp.planning.stances import Places, Stances
 
 ALIKE = 1e-6
 """Margins nearer than this [rad] are one: those of a graph are in single precision."""
@@ -43,17 +43,17 @@ class WideEnd:
     (H,) whether the last move widened it.
     """
 
-    def __init__(self, fingers: Fingering, ways: list[Places], o: int) -> None:
+    def __init__(self, fingers: Stances, ways: list[Places], o: int) -> None:
         from regrasp.closed_form.compiled_paths import widen
 
         self.fingers, self.moves = fingers, 0
-        margins, rows = fingers.margins, fingers.holds[4]
+        margins, rows = fingers.margins, fingers.rows
         ends = [fingers.of(way) for way in ways]
         known = np.full((rows.size, margins.shape[1]), -1.0, dtype=np.float32)
         for holds in ends:
             for h in holds:
                 known[h, o] = margins[rows[h], o]
-        result, inside = np.empty((3, margins.shape[1])), []
+        result, inside = np.empty((fingers.fingers, margins.shape[1])), []
         for holds in ends:
             widen(holds, known, margins, rows, fingers.near, _NONE, result)
             inside.append(result.astype(np.float32))
@@ -65,18 +65,18 @@ class WideEnd:
 
     def move(self, floor: float) -> None:
         """One finger move further, where that leads to margins above ``floor``."""
-        from regrasp.closed_form.compiled_paths import threads, widest_after_move
+        from regrasp.closed_form.compiled_paths import threads
 
         fingers = self.fingers
-        self.fresh = widest_after_move(
-            np.flatnonzero(self.fresh), self.fresh, self.known, fingers.margins, fingers.holds, fingers.near,
-            floor, threads(),
+        self.fresh = fingers.moves.widest(
+            np.flatnonzero(self.fresh), self.fresh, self.known, fingers.margins, fingers.rows, fingers.holds,
+            fingers.count, fingers.near, floor, threads(),
         )  # fmt: skip
         self.top[self.fresh] = self.known[self.fresh].max(axis=1)
         self.moves += 1
 
 
-def widest_by_moves(fingers: Fingering, start: Places, goal: Places, o: int, extra: int) -> Iterator[Widest]:
+def widest_by_moves(fingers: Stances, start: Places, goal: Places, o: int, extra: int) -> Iterator[Widest]:
     """The widest margin of the fewest moves, then that of more moves wherever it is wider.
 
     The start is held at the first orientation, the goal at that of place ``o``. At most ``extra`` moves more
