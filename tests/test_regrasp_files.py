@@ -229,7 +229,9 @@ def test_readable_regrasp_that_is_wrong_does_not_verify(
 
 def test_a_step_with_more_contacts_than_fingers(tmp_path: Path) -> None:
     path = tmp_path / "plan.json"
-    turned = replace(REGRASP, steps=REGRASP.steps[EXCHANGE:-1], orientations=REGRASP.orientations[EXCHANGE:-1])
+    turned = replace(
+        REGRASP, steps=REGRASP.steps[EXCHANGE:-1], orientations=REGRASP.orientations[EXCHANGE:-1]
+    )
     more = replace(turned, steps=(ROTATION, *turned.steps), orientations=(0.0, *turned.orientations))
     write_plan(more, path)
     with pytest.raises(rg.InvalidInput, match=r"plan.json: step 2 has more contacts than there are fingers"):
@@ -599,7 +601,7 @@ def test_parts_of_scenarios_are_the_parts_there_are() -> None:
 START_POINT = "[-0.01, -0.007]"
 TASK_KEYS = (
     "kind, orientations, goal_degrees, candidates, max_turn_degrees, min_distance, objective, states, "
-    "least_margin_degrees, max_force, peak_ratio, reserve, step_duration, rate"
+    "least_margin_degrees, one_finger, arcs, weights, max_force, peak_ratio, reserve, step_duration, rate"
 )
 
 
@@ -713,3 +715,26 @@ def test_states_together_and_a_least_margin_reach_the_planner() -> None:
     assert joint.steps[1].record.choices[0].objective == "joint force"
     with pytest.raises(rg.Infeasible, match=r"keeps angle margins of 1\.396 rad"):
         plan_scenario(scenario((kind, f"{kind}\nleast_margin_degrees = 80.0")))
+
+
+def test_arcs_weights_and_single_fingers_reach_the_planner() -> None:
+    kind = 'kind = "regrasp"'
+    lazy = plan_scenario(scenario((kind, f"{kind}\nweights = {{ moves = 0.0, turning = 1.0 }}")))
+    usual = plan_scenario(scenario())
+    assert abs(np.diff(lazy.orientations)).sum() <= abs(np.diff(usual.orientations)).sum() + 1e-9
+    assert abs(np.diff(lazy.orientations)).sum() == pytest.approx(np.pi)  # as far as it must turn
+    with pytest.raises(rg.InvalidInput, match="is not on the arc of finger 2"):
+        plan_scenario(scenario((kind, f"{kind}\narcs = [[], [[0.0, 1e-4]], []]")))
+    free = plan_scenario(scenario((kind, f"{kind}\narcs = [[], [], []]\none_finger = false")))
+    assert (len(free.moves), free.margin) == (len(usual.moves), pytest.approx(usual.margin, abs=1e-6))
+    assert scenario((kind, f"{kind}\none_finger = true")).task.one_finger
+
+
+def test_bad_weights_and_arcs(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    kind = 'kind = "regrasp"'
+    changes = [(kind, f"{kind}\nweights = {{ moves = 0.0 }}\narcs = [[], []]")]
+    lines = [
+        "task.arcs: expected at least 3 entries, got [[], []]",
+        "task.weights: at least one must be greater than 0",
+    ]
+    check_bad(changed(WHOLE, *changes), lines, capsys, tmp_path)

@@ -99,10 +99,11 @@ def test_bad_input():
 def test_words_keep_clear_of_one_another():
     labels = Labels(points_per_unit=10.0, gap=1.0)
     labels.occupy((0, 0), 0.5)
-    ways = [labels.direction("leaves", (0.0, 0.6), np.array([0.0, 1.0]), 6.5) for _ in range(2)]
-    assert ways[0] == pytest.approx([0, 1])
-    boxes = labels.taken
-    for a, b in combinations(boxes, 2):
+    up = np.array([0.0, 1.0])
+    ways = [labels.direction("leaves", (x, 0.6), up, 6.5) for x in (0.0, 1.0, -1.0)]
+    assert ways[0] == pytest.approx(up)  # nothing is in the way
+    assert all(way @ up < 0.9 for way in ways[1:])
+    for a, b in combinations(labels.taken, 2):
         assert min(a[2], b[2]) <= max(a[0], b[0]) or min(a[3], b[3]) <= max(a[1], b[1])
 
 

@@ -32,6 +32,7 @@ _REGRASP_OPTIONS = (
     "objective",
     "states",
     "min_distance",
+    "one_finger",
     "max_force",
     "peak_ratio",
     "reserve",
@@ -67,6 +68,8 @@ def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
         friction=scenario.friction,
         goal_orientation=radians(task.goal_degrees),
         least_margin=radians(task.least_margin_degrees),
+        weights=None if task.weights is None else task.weights.value,
+        arcs=None if task.arcs is None else [arc or None for arc in task.arcs],
         max_turn=MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
         **_taken(task, _REGRASP_OPTIONS),
     )

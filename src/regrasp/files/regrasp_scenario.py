@@ -17,6 +17,7 @@ from regrasp.outline.outline import Outline
 from regrasp.outline.parts import PARTS
 from regrasp.planning.criteria import PEAK_RATIO, Objective
 from regrasp.planning.reach import MAX_TURN
+from regrasp.planning.regrasp_weights import RegraspWeights
 
 Ring = Annotated[list[Vector], Field(min_length=3)]
 
@@ -111,6 +112,28 @@ class Places(Strict):
         return self
 
 
+class Weights(Strict):
+    """What a sequence costs; the least cost is then looked for, not the fewest moves."""
+
+    moves: float = Field(1.0, ge=0, description="for each finger move")
+    turning: float = Field(0.0, ge=0, description="per radian that the object turns")
+    time: float = Field(0.0, ge=0, description="per second of the plan")
+    effort: float = Field(0.0, ge=0, description="for each hold times its least largest force, in loads")
+
+    @property
+    def value(self) -> RegraspWeights:
+        """The weights."""
+        return RegraspWeights(self.moves, self.turning, self.time, self.effort)
+
+    @model_validator(mode="after")
+    def _not_all_zero(self) -> "Weights":
+        try:
+            _ = self.value
+        except InvalidInput as error:
+            raise ValueError(str(error).removeprefix("weights: ")) from None
+        return self
+
+
 class RegraspTask(Strict):
     """How to get from the start to the goal."""
 
@@ -127,6 +150,13 @@ class RegraspTask(Strict):
     objective: Objective = Field("angle", description="what the state of every hold is chosen for")
     states: Literal["each", "joint"] = Field("each", description="chosen each by itself, or all together")
     least_margin_degrees: float = Field(0.0, ge=0, description="angle margin every hold must have")
+    one_finger: bool = Field(False, description="whether one finger of a hold may carry the whole load")
+    arcs: Annotated[list[list[Vector]], Field(min_length=3, max_length=3)] | None = Field(
+        None,
+        description="[m], for each finger the arcs it may touch, counter-clockwise from one arc length to "
+        "another; an empty list is the whole outline",
+    )
+    weights: Weights | None = None
     max_force: Positive | None = Field(None, description="limit on every force [N]")
     peak_ratio: PeakRatio = PEAK_RATIO
     reserve: Reserve = RESERVE
