@@ -133,6 +133,16 @@ def test_nothing_held_and_everything_held():
     assert everything.twists == ()
 
 
+def test_soft_fingers():
+    soft = rg.held_sphere(rg.Grasp(c.changed(torsion=0.3) for c in NOSE), count=100)
+    assert soft.forces.shape == (100, 3, 4)
+    assert (soft.held >= rg.held_sphere(NOSE, count=100).held).all()
+    inside = soft.directions[soft.held].mean(axis=0)
+    state = soft.state(inside)
+    assert state.is_balanced()
+    assert not hasattr(state, "criteria")
+
+
 def test_is_drawn():
     angles = rg.held_sphere(RING, objective="angle", count=12)
     assert angles.label == "least angle margin [deg]"

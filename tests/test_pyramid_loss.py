@@ -104,6 +104,12 @@ def test_units_change_nothing_and_frames_the_pyramids_only(length, force):
     assert turned.losses[4] != pytest.approx(here.losses[4], rel=1e-3)
 
 
+def test_soft_fingers_have_no_pyramids():
+    soft = rg.Grasp(c.changed(torsion=0.1) for c in NOSE)
+    with pytest.raises(rg.InvalidInput, match="leave them out with soft fingers"):
+        rg.pyramid_losses(soft, DOWN)
+
+
 def test_what_nobody_holds_is_infeasible():
     with pytest.raises(rg.Infeasible, match="the object escapes"):
         rg.pyramid_losses(nose_cone(3, 0.05), rg.Wrench([0, 0, 1.0]))

@@ -43,7 +43,7 @@ class HeldSphere(ArrayValue):
 
     magnitude: of the load [N]. directions: (m, 3), unit, of the load in the object frame. values: (m,) the
     objective reached, units as for ``choose_state``; NaN where the load is not held. forces: (m, n, 3) of
-    those states [N], NaN where not held.
+    those states [N], NaN where not held; (m, n, 4) with soft fingers, as in ``GraspState``.
 
     Sampled: between the directions nothing is said but by ``holds``, which decides for any one.
     """
@@ -174,7 +174,7 @@ def held_sphere(
         raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
     criteria = criteria_of(objective, max_force, peak_ratio, reserve)
     directions = even_directions(count)
-    values, forces = np.full(count, nan), np.full((count, len(grasp), 3), nan)
+    values, forces = np.full(count, nan), np.full((count, len(grasp), grasp.width), nan)
     twists: list[EscapeTwist] = []
     for k, direction in enumerate(directions):
         load = Wrench(magnitude * direction)

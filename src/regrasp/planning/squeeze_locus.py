@@ -35,7 +35,7 @@ class SqueezeLocus(ArrayValue):
 
     max_force: a limit on every force besides the contacts' own [N], or None. Friction is used in full;
     ``best`` keeps a reserve back. The locus is convex: a straight path between two of its states stays in it.
-    Raises ``InvalidInput`` for fewer than two contacts.
+    Raises ``InvalidInput`` for fewer than two contacts and for soft fingers.
     """
 
     grasp: Grasp
@@ -45,6 +45,11 @@ class SqueezeLocus(ArrayValue):
     def __post_init__(self) -> None:
         if not isinstance(self.grasp, Grasp) or len(self.grasp) < 2:
             raise InvalidInput(f"a squeeze locus needs a Grasp of two contacts or more, got {self.grasp!r}")
+        if self.grasp.is_soft:
+            raise InvalidInput(
+                "a squeeze locus is of point contacts, got soft fingers; leave their torsion out, or ask "
+                "choose_state for their states"
+            )
         check_load(self.grasp, self.load)
         if self.max_force is not None:
             number(self.max_force, "max_force", above=0)
