@@ -12,6 +12,7 @@ half-way, directions are fitted to the shape that the walks have found.
 """
 
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,12 +36,19 @@ def walked(
     """
     basis = _directions(grasp)
     centre = _centre(grasp, held, basis, limits, backend)
+    tangents = grasp.tangents.reshape(len(grasp), -1, grasp.dimension)
+    frames = np.concatenate([grasp.normals[:, None], tangents], axis=1)
+    chords = _Chords(
+        np.einsum("nij,nj->ni", frames, centre).ravel(),
+        np.einsum("nij,knj->kni", frames, basis).reshape(len(basis), -1),
+        grasp.frictions,
+        np.array(limits),
+    )
     k = len(basis)
-    walks = max(count, _WALKS * k)
-    here, shape = np.zeros((walks, k)), np.eye(k)  # coordinates along basis, from the centre
+    here, shape = np.zeros((max(count, _WALKS * k), k)), np.eye(k)  # coordinates along basis, from the centre
     for _ in range(2):
         for _ in range(_STEPS * k):
-            here = _step(grasp, centre, basis, limits, here, rng.normal(size=here.shape) @ shape, rng)
+            here = chords.step(here, rng.normal(size=here.shape) @ shape, rng.uniform(size=len(here)))
         values, vectors = np.linalg.eigh(np.atleast_2d(np.cov(here.T)))
         shape = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
     forces: Array = centre + np.tensordot(here[:count], basis, 1)
@@ -95,45 +103,51 @@ def _centre(grasp: Grasp, held: Array, basis: Array, limits: list[float], backen
     return centre
 
 
-def _step(
-    grasp: Grasp,
-    centre: Array,
-    basis: Array,
-    limits: list[float],
-    here: Array,
-    towards: Array,
-    rng: np.random.Generator,
-) -> Array:
-    """One step of all walks (w, k); a walk whose new point rounding puts outside stays where it is."""
-    f, r = centre + np.tensordot(here, basis, 1), np.tensordot(towards, basis, 1)
-    a, b, c = _quadratics(grasp, limits, f, r)  # (w, 2n)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(np.maximum(b * b - a * c, 0.0))
-        real = b * b >= a * c
-        ahead = np.where(real, (root - b) / a, -inf).max(axis=1)
-        behind = np.where(real, (-root - b) / a, inf).min(axis=1)
-        lo, hi = 1 / np.minimum(behind, 0.0), 1 / np.maximum(ahead, 0.0)
-    s = lo + (hi - lo) * rng.uniform(size=len(here))
-    s = np.where(np.isfinite(s), s, 0.0)
-    there: Array = here + s[:, None] * towards
-    f = centre + np.tensordot(there, basis, 1)
-    inside = (_quadratics(grasp, limits, f, np.zeros_like(f))[0] > 0).all(axis=1)
-    inside &= ((f * grasp.normals).sum(axis=-1) >= 0).all(axis=1)
-    return np.where(inside[:, None], there, here)
+class _Chords(NamedTuple):
+    """The set walked in: forces centre + y . basis in frames (normal, tangents) of the contacts, flat.
 
+    centre: (n d,). basis: (k, n d). frictions, limits: (n,).
+    """
 
-def _quadratics(grasp: Grasp, limits: list[float], f: Array, r: Array) -> tuple[Array, Array, Array]:
-    """a, b, c (w, 2n) of the quadratics along f + s r, forces (w, n, d)."""
-    n, mu = grasp.normals, grasp.frictions
-    fn, rn = (f * n).sum(axis=-1), (r * n).sum(axis=-1)
-    ft, rt = f - fn[..., None] * n, r - rn[..., None] * n
-    rough, square = mu > 0, np.array(limits) ** 2
-    a = np.where(rough, mu**2 * fn * fn - (ft * ft).sum(axis=-1), fn)
-    b = np.where(rough, mu**2 * fn * rn - (ft * rt).sum(axis=-1), rn / 2)
-    c = np.where(rough, mu**2 * rn * rn - (rt * rt).sum(axis=-1), 0.0)
-    ball = square - (f * f).sum(axis=-1), -(f * r).sum(axis=-1), -(r * r).sum(axis=-1)
-    return (
-        np.concatenate([a, ball[0]], axis=-1),
-        np.concatenate([b, ball[1]], axis=-1),
-        np.concatenate([c, ball[2]], axis=-1),
-    )
+    centre: Array
+    basis: Array
+    frictions: Array
+    limits: Array
+
+    def step(self, here: Array, towards: Array, share: Array) -> Array:
+        """All walks (w, k) moved to a ``share`` (w,) of their chord along ``towards`` (w, k).
+
+        A walk whose new point rounding puts outside stays where it is.
+        """
+        a, b, c = self._quadratics(self._forces(here), self._split(towards @ self.basis))  # (w, 2n)
+        inner = b * b - a * c
+        root = np.sqrt(np.maximum(inner, 0.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ahead = np.where(inner >= 0, (root - b) / a, -inf).max(axis=1)
+            behind = np.where(inner >= 0, (-root - b) / a, inf).min(axis=1)
+            lo, hi = 1 / np.minimum(behind, 0.0), 1 / np.maximum(ahead, 0.0)
+            s = lo + (hi - lo) * share
+        there: Array = here + np.where(np.isfinite(s), s, 0.0)[:, None] * towards
+        f = self._forces(there)
+        inside = np.all(self._values(f, f, self.limits**2) > 0, axis=1, keepdims=True)
+        return np.where(inside & np.all(f[..., 0] >= 0, axis=1, keepdims=True), there, here)
+
+    def _forces(self, points: Array) -> Array:
+        return self._split(self.centre + points @ self.basis)
+
+    def _split(self, flat: Array) -> Array:
+        """(w, n, d) of (w, n d)."""
+        return flat.reshape(len(flat), len(self.frictions), -1)
+
+    def _quadratics(self, f: Array, r: Array) -> tuple[Array, Array, Array]:
+        """a, b, c (w, 2n) of the quadratics along f + s r, forces (w, n, d)."""
+        a, b, c = self._values(f, f, self.limits**2), self._values(f, r, 0.0), self._values(r, r, 0.0)
+        smooth = np.flatnonzero(self.frictions == 0)
+        b[:, smooth], c[:, smooth] = r[:, smooth, 0] / 2, 0.0
+        return a, b, c
+
+    def _values(self, f: Array, g: Array, bound: Array | float) -> Array:
+        """(w, 2n) the quadratics' bilinear forms at f and g, of limits ``bound`` - f.g; f.n of no friction."""
+        normal, across = f[..., 0] * g[..., 0], (f[..., 1:] * g[..., 1:]).sum(axis=-1)
+        cone = np.where(self.frictions > 0, self.frictions**2 * normal - across, f[..., 0])
+        return np.concatenate([cone, bound - normal - across], axis=-1)
