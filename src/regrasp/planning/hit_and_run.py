@@ -147,7 +147,7 @@ class _Chords(NamedTuple):
         return a, b, c
 
     def _values(self, f: Array, g: Array, bound: Array | float) -> Array:
-        """(w, 2n) the quadratics' bilinear forms at f and g, of limits ``bound`` - f.g; f.n of no friction."""
+        """(w, 2n) bilinear forms of the quadratics: ``bound`` - f.g of limits, f.n where nothing rubs."""
         normal, across = f[..., 0] * g[..., 0], (f[..., 1:] * g[..., 1:]).sum(axis=-1)
         cone = np.where(self.frictions > 0, self.frictions**2 * normal - across, f[..., 0])
         return np.concatenate([cone, bound - normal - across], axis=-1)
