@@ -20,6 +20,7 @@ bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py
 	$(BIN)/python benchmarks/programs.py
 	$(BIN)/python benchmarks/regrasps.py
+	$(BIN)/python benchmarks/space.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

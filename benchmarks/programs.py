@@ -38,28 +38,30 @@ def overhead(effort: Effort) -> Iterator[Row]:
     for fingers in (2, 3, 6):
         grasp, load = ring(fingers)
         for objective in ("effort", "peak", "peak_normal"):
-            unit = float(abs(load.vector).max())
-            program = state_program(
-                grasp, load, objective, grasp.frictions.tolist(), [np.inf] * fingers, unit
-            )
-            bare = bare_clarabel(program)
-            ours = rg.choose_state(grasp, load, objective, method="clarabel")
-            if objective != "peak_normal":  # its best forces are not unique
-                theirs = np.array(bare(None).x)[: 2 * fingers].reshape(-1, 2) * unit
-                close(ours.forces, theirs, 1e-4, f"bare Clarabel for {objective}")
-            yield Row.of(
-                f"clarabel_{objective}_{fingers}",
-                f'`choose_state(method="clarabel")`, `{objective}`, {fingers} contacts',
-                "bare Clarabel: construct and solve, matrices prebuilt",
-                effort.of(
-                    Side(lambda _, g=grasp, w=load, o=objective: rg.choose_state(g, w, o, method="clarabel")),
-                    Side(bare),
-                ),
-                Measure.TIMES,
-                2.0,
-                "about 0.1 ms of Python that does not grow with the program: filling matrices, the audit, "
-                "moving the answer into exact equilibrium, and the values",
-            )
+            yield overhead_row(effort, grasp, load, objective, f"{fingers} contacts")
+
+
+def overhead_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, objective: str, what: str) -> Row:
+    """One choice, whose value must be that of bare Clarabel."""
+    unit = float(abs(load.vector).max())
+    program = state_program(grasp, load, objective, grasp.frictions.tolist(), [np.inf] * len(grasp), unit)
+    bare = bare_clarabel(program)
+    ours = rg.choose_state(grasp, load, objective, method="clarabel").value
+    theirs = bare(None).obj_val * (unit**2 if objective == "effort" else unit)
+    close(np.array(ours), np.array(theirs), 1e-6, f"bare Clarabel for {objective}")
+    return Row.of(
+        f"clarabel_{objective}_{len(grasp)}",
+        f'`choose_state(method="clarabel")`, `{objective}`, {what}',
+        "bare Clarabel: construct and solve, matrices prebuilt",
+        effort.of(
+            Side(lambda _: rg.choose_state(grasp, load, objective, method="clarabel")),
+            Side(bare),
+        ),
+        Measure.TIMES,
+        2.0,
+        "about 0.1 ms of Python that does not grow with the program: filling matrices, the audit, "
+        "moving the answer into exact equilibrium, and the values",
+    )
 
 
 def roads(effort: Effort) -> Iterator[Row]:
@@ -99,17 +101,21 @@ def roads(effort: Effort) -> Iterator[Row]:
 
 def growth(effort: Effort) -> Iterator[Row]:
     """A path program, built, solved and audited: how its cost grows with the instants."""
-    tasks = {count: path_task(count) for count in PATH_SIZES[: 3 if effort is QUICK else 4]}
+    sizes = PATH_SIZES[: 3 if effort is QUICK else 4]
+    yield from path_growth(effort, {count: path_task(count) for count in sizes}, "path program")
 
-    def planned(count: int) -> Side:
-        return Side(lambda _: solve(path_program(tasks[count], "change"), "clarabel"))
 
-    sizes = list(tasks)
-    for small, large in ((sizes[0], sizes[-1]), (sizes[-2], sizes[-1])):
-        found = effort.of(planned(large), planned(small))
+def path_growth(effort: Effort, tasks: dict[int, PathTask], what: str) -> Iterator[Row]:
+    """The cost at the most instants beside that at the fewest, and at the next to most."""
+    sides = {
+        count: Side(lambda _, task=task: solve(path_program(task, "change"), "clarabel"))
+        for count, task in tasks.items()
+    }
+    first, *_, second, last = sides
+    for small in (first, second):
         yield Row.growth(
-            f"growth_{small}_{large}", f"path program, {large:,} instants beside {small:,}", found,
-            (large - 2) / (small - 2), 1.1,
+            f"growth_{small}_{last}", f"{what}, {last:,} instants beside {small:,}",
+            effort.of(sides[last], sides[small]), (last - 2) / (small - 2), 1.1,
             "a few more iterations, and factors that outgrow the processor's cache",
         )  # fmt: skip
 
@@ -139,19 +145,21 @@ def ring(fingers: int) -> tuple[rg.Grasp, rg.Wrench]:
     return rg.Grasp(contacts), rg.Wrench([0.2, -1.0], 0.1)
 
 
-def path_task(instants: int) -> PathTask:
-    """The paper's removal while the object swings, as a program needs it."""
-    start = paper_state()
-    end = rg.plan_removal(start, "P3").end
+def path_task(instants: int, start: rg.GraspState | None = None) -> PathTask:
+    """The last finger leaves while the object swings, as a program needs it; from the paper's state."""
+    start = paper_state() if start is None else start
+    count = len(start.grasp)
+    end = rg.plan_removal(start, count - 1).end
     t = np.linspace(0, 1, instants)
-    wave = np.sin(2 * np.pi * t)
-    loads = start.load.vector + np.stack([0.2 * wave, 0.5 * wave, 0 * wave], axis=1)
-    active = np.ones((instants, 3), dtype=bool)
-    active[-1, 2] = False
-    none = np.full(3, np.inf)
+    sway = np.zeros(start.load.vector.size)
+    sway[:2] = np.array([0.06, 0.14]) * np.linalg.norm(start.load.force)
+    loads = start.load.vector + np.sin(2 * np.pi * t)[:, None] * sway
+    active = np.ones((instants, count), dtype=bool)
+    active[-1, -1] = False
+    none = np.full(count, np.inf)
     return PathTask(
         start.grasp, t, loads, start.forces, end.forces, active, t, start.grasp.frictions, none, none,
-        np.zeros(3), np.array([True, True, False]), 3.5,
+        np.zeros(count), np.arange(count) < count - 1, float(abs(start.load.vector).max()),
     )  # fmt: skip
 
 

@@ -24,6 +24,7 @@ class Measure(Enum):
     RATE = "{:.3g} of the rate"
     SLOPE = "log-log slope {:.3g}"
     SECONDS = "{:.3g} s"
+    PERCENT = "{:.3g} %"
     BYTES = "{:.3g} bytes"
     GIB = "{:.3g} GiB"
 
@@ -76,9 +77,12 @@ class Row:
         return cls(key, what, "itself", measure, ours, theirs, value, best, goal, value <= goal, limit)
 
     @classmethod
-    def alone(cls, key: str, what: str, value: float, measure: Measure, goal: float, limit: str) -> "Row":
-        """A number that is compared with nothing but the most it may be."""
-        return cls(key, what, "", measure.name, value, value, value, value, goal, value <= goal, limit)
+    def alone(
+        cls, key: str, what: str, value: float, measure: Measure, goal: float | None = None, limit: str = ""
+    ) -> "Row":
+        """A number that is compared with nothing but the most it may be, if anything."""
+        met = None if goal is None else value <= goal
+        return cls(key, what, "", measure.name, value, value, value, value, goal, met, limit)
 
     def cells(self) -> tuple[str, ...]:
         """The row as text, one cell per column of ``COLUMNS``."""

@@ -1,12 +1,8 @@
 """Three fingers in space: speed of the triple graph beside one Clarabel solve each, and what pyramids lose.
 
-    python benchmarks/triples.py            measures and prints
-    python benchmarks/triples.py --quick    a short run, to see that it works
-
-``rows`` and ``losses`` are for a report; answers are compared before times are.
+Rows of ``space.py``. Answers are compared before times are.
 """
 
-import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from time import perf_counter
@@ -17,11 +13,10 @@ import numpy as np
 from scipy import sparse
 
 import regrasp as rg
-from closed_form import PACKAGES
 from closed_form import QUICK as QUICK_EFFORT
 from closed_form import Effort as Times
 from regrasp.planning.triples import TripleGraph, directions
-from report import Measure, Report, Row
+from report import Measure, Row
 from timing import Side
 
 FRICTION = 0.5
@@ -120,28 +115,14 @@ def rows(effort: Effort) -> Iterator[Row]:
     )  # fmt: skip
 
 
-def losses(effort: Effort) -> dict[int, float]:
-    """Of the triples that hold in their exact cones, the fraction that pyramids of so many facets miss."""
+def losses(effort: Effort) -> Iterator[Row]:
+    """Of the triples that hold in their exact cones, the share that pyramids of so many facets miss."""
     graphs = {facets: triple_graph(effort, facets) for facets in (4, 8, 16, 32)}
     graph = graphs[4]
     rng = np.random.default_rng(2)
     places = rng.integers((len(graph.loads), len(graph.triples)), size=(effort.judged, 2))
     exact = np.array([holds_by_clarabel(exact_program(graph, t, o)) for o, t in places.tolist()])
-    return {m: 1 - g.holds[tuple(places[exact].T)].mean() for m, g in graphs.items()}
-
-
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--quick", action="store_true", help="a short run")
-    effort = QUICK if parser.parse_args().quick else FULL
-    report = Report.of("triples", effort is QUICK, rows(effort), (*PACKAGES, "clarabel", "numba"))
-    print(report.markdown())
-    for facets, lost in losses(effort).items():
-        print(f"{facets} facets miss {100 * lost:.2f} % of what the exact cones hold")
-
-
-if __name__ == "__main__":
-    main()
+    what = f"of {exact.sum():,} random triples that hold in their cones, missed by pyramids of"
+    for facets, inner in graphs.items():
+        missed = 1 - inner.holds[tuple(places[exact].T)].mean()
+        yield Row.alone(f"missed_{facets}", f"{what} {facets} facets", 100 * missed, Measure.PERCENT)

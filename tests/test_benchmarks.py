@@ -90,3 +90,28 @@ def test_the_benchmark_of_regrasps_measures_every_row(tmp_path: Path) -> None:
     ]  # fmt: skip
     for row in report["rows"]:
         assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "goal")), row
+
+
+def test_the_benchmark_of_space_measures_every_row(tmp_path: Path) -> None:
+    script = SCRIPT.with_name("space.py")
+    subprocess.run([sys.executable, script, "--quick", "-o", tmp_path], check=True, capture_output=True)
+    report = json.loads((tmp_path / "results" / "space.json").read_text(encoding="utf-8"))
+    keys = [row["key"] for row in report["rows"]]
+    assert len(keys) == len(set(keys))
+    facets = (4, 8, 16, 32)
+    assert set(keys) >= {
+        *(f"clarabel_{objective}_4" for objective in ("effort", "peak", "peak_normal")),
+        *("growth_10_100", "contacts_effort_8_32", "contacts_peak_16_32"),
+        *(
+            f"pyramid_{way}_{m}"
+            for way in ("effort_clarabel", "peak_clarabel", "effort_piqp")
+            for m in facets
+        ),
+        *(f"loss_{objective}_{m}" for objective in ("effort", "peak", "force") for m in facets),
+        *("triples_8_1", "triples_16_1", "triples_margins"),
+        *(f"missed_{m}" for m in facets),
+        *("regrasp", "verify_regrasp", "verify_removal", "verify_turn", "verify_path"),
+    }
+    for row in report["rows"]:
+        least = 0 if row["measure"] == "PERCENT" else 1e-300
+        assert all(isfinite(row[name]) and row[name] >= least for name in ("ours", "theirs", "value")), row
