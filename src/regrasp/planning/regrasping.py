@@ -71,6 +71,6 @@ def _problem(
     unknown = [name for name in options if name not in known]
     if unknown or "friction" not in options:
         wrong = f"unknown option {unknown[0]!r}" if unknown else "friction is missing"
-        where = "outline" if kind is RegraspProblem else "mesh"
-        raise InvalidInput(f"{wrong}; a regrasp on an {where} takes {', '.join(known)}")
+        where = "an outline" if kind is RegraspProblem else "a mesh"
+        raise InvalidInput(f"{wrong}; a regrasp on {where} takes {', '.join(known)}")
     return kind(shape, start, goal, load, **options)  # type: ignore[arg-type, misc]
