@@ -142,7 +142,7 @@ def test_the_trade_off_is_a_staircase_of_plans():
     (stairs,) = by_gid(ax, "stairs")
     assert stairs.get_drawstyle() == "steps-post"
     words = [text.get_text() for text in ax.texts]
-    assert words == [f"{np.degrees(p.margin):.3g}°, {len(p.steps)} steps" for p in plans]
+    assert words == [f"{np.degrees(p.margin):.3g}°\n{len(p.steps)} steps" for p in plans]
     assert ax.get_xlabel() == "finger moves"
     assert ax.get_ylabel() == "worst angle margin [deg]"
     ax.figure.canvas.draw()

@@ -1,7 +1,7 @@
 """What a regrasp is to do and under which limits: the hold graph, its ends, and the plans on it."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from typing import Required, TypedDict
@@ -28,6 +28,7 @@ from regrasp.planning.regrasp_ends import Ends
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.regrasp_steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.regrasp_weights import RegraspWeights
+from regrasp.planning.remedies import allowed
 from regrasp.planning.stances import Places
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.triples import TripleFilter
@@ -225,12 +226,16 @@ class RegraspProblem:
                         error.certificate,
                     ) from None
 
+    def allowing(self, force: float) -> "RegraspProblem":
+        """The same problem with at least this force [N] wherever it is limited."""
+        start, goal = (Grasp(allowed(c, force) for c in grasp) for grasp in (self.start, self.goal))
+        most = None if self.max_force is None else max(force, self.max_force)
+        return replace(self, start=start, goal=goal, max_force=most)
+
     def bottleneck(self) -> Bottleneck | None:
         """What limits the way, however many moves it takes; None where there is none. Not with ``arcs``."""
         if self.arcs is not None:
-            raise InvalidInput(
-                "a bottleneck is known where every finger may touch everywhere; leave arcs out"
-            )
+            raise InvalidInput("a bottleneck is that of fingers that may touch everywhere; leave arcs out")
         return bottleneck(self.graph, *self.places, max_turn=self.max_turn)
 
     def _plan(self, sequence: Sequence) -> RegraspPlan:

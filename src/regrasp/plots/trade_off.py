@@ -34,9 +34,9 @@ def plot_trade_off(plans: Sequence[RegraspPlan], ax: Axes | None = None) -> Axes
     ax.plot(moves, margins, "o", color=PALETTE[0], markersize=5, zorder=4, gid="plans")
     top = max(margins) or 1.0
     for plan, x, y in zip(ordered, moves, margins, strict=True):
-        steps = f"{len(plan.steps)} step{'s'[: len(plan.steps) - 1]}"
-        note(ax, f"{short(round(y, 2))}\N{DEGREE SIGN}, {steps}", (x, y), (1, 1), gap=3, color=INK)
-    ax.set(xlim=(moves[0] - 0.25, last), ylim=(0, 1.22 * top))
+        text = f"{short(round(y, 2))}\N{DEGREE SIGN}\n{len(plan.steps)} steps"
+        note(ax, text, (x, y), (1, -1), gap=4, color=INK)  # under its own stair, clear of the next disc
+    ax.set(xlim=(moves[0] - 0.25, last), ylim=(0, 1.08 * top))
     ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     ax.set_xlabel("finger moves", fontsize=TEXT)
     ax.set_ylabel("worst angle margin [deg]", fontsize=TEXT)
