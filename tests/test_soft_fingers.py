@@ -224,3 +224,19 @@ def test_kinds_of_contact():
     ]
     assert kinds == ["frictionless", "point", "soft"]
     assert "torsion=0.1" in repr(rg.Contact([0, 0, 1], [0, 0, -1], 0.5, torsion=0.1))
+
+
+def test_pictures_show_forces_without_their_torques():
+    import matplotlib.pyplot as plt
+
+    from regrasp import plots
+
+    whole = pair(0.2).with_contact(rg.Contact([0, 0, 1], [0, 0, -1], 0.5))
+    removal = rg.plan_removal(whole, 2, load=TWIST)
+    first = [line.get_ydata()[0] for line in plots.plot_magnitudes(removal).get_lines()[:3]]
+    assert first == pytest.approx(removal.start.magnitudes, rel=1e-12)
+    for draw in (plots.plot_state, plots.plot_transition):
+        draw(removal.start if draw is plots.plot_state else removal)
+    plots.figures(removal)
+    assert "Plotly" in plots.html(removal)
+    plt.close("all")

@@ -15,7 +15,7 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
     """|f_i(t)| of every finger (Fig. 9a)."""
     ax = axes_or_new(ax)
     t = _times(transition)
-    magnitudes = np.linalg.norm(transition.forces(t), axis=-1)
+    magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
     _lines(ax, transition, t, magnitudes, units)
     ax.set_ylim(bottom=-0.03 * float(magnitudes.max()))  # a line along zero stays visible
     label_axis(ax.yaxis, r"$|f_i|$", units.force, float(magnitudes.max()))

@@ -106,10 +106,10 @@ def _figure(value: GraspState | Transition, mesh: Any, units: Units) -> Trace:
     stays = body_traces(grasp, colours, triangles, CONE * size)
     layout = _layout(units, facing_view(grasp.positions, grasp.normals))
     if isinstance(value, GraspState):
-        return {"data": stays + forces(value.forces, value.load.vector), "layout": layout}
+        return {"data": stays + forces(value.wrenches[:, :3], value.load.vector), "layout": layout}
     stays += history_traces(value, colours, units)
     times = np.linspace(0, value.duration, _FRAMES + 1).tolist()
-    moves = [forces(value.forces(t), value.load(t)) + marker_traces(t, value) for t in times]
+    moves = [forces(value.wrenches(t)[..., :3], value.load(t)) + marker_traces(t, value) for t in times]
     places = list(range(len(stays), len(stays) + len(moves[0])))
     frames = [{"name": str(k), "data": data, "traces": places} for k, data in enumerate(moves)]
     return {

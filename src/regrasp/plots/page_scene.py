@@ -92,7 +92,7 @@ def history_traces(transition: Transition, colours: Colours, units: Units) -> li
     """Angle margins and magnitudes over time, a line for each finger, on the axes x, y and x2, y2."""
     t = np.linspace(0, transition.duration, _SAMPLES)
     margins = np.degrees(transition.margins(t).angle)
-    magnitudes = np.linalg.norm(transition.forces(t), axis=-1)
+    magnitudes = np.linalg.norm(transition.wrenches(t)[..., :3], axis=-1)
     traces: list[Trace] = []
     for values, axis, unit in ((margins, "", "deg"), (magnitudes, "2", escape(units.force))):
         for i, name in enumerate(transition.grasp.names):
@@ -115,7 +115,7 @@ def history_traces(transition: Transition, colours: Colours, units: Units) -> li
 def marker_traces(t: float, transition: Transition) -> list[Trace]:
     """Where the time is, a dot on every line of ``history_traces``."""
     margins = np.degrees(transition.margins(t).angle)
-    magnitudes = np.linalg.norm(transition.forces(t), axis=-1)
+    magnitudes = np.linalg.norm(transition.wrenches(t)[..., :3], axis=-1)
     look = {"type": "scatter", "mode": "markers", "marker": {"color": INK, "size": 7}}
     rest = {"showlegend": False, "hoverinfo": "skip", "name": "now"}
     return [

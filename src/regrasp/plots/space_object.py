@@ -58,9 +58,8 @@ def draw_transition(
     ax = _scene(ax, transition.start, size, scale, colours, mesh)
     _forces(ax, transition.start, scale, colours, "start force")
     _forces(ax, transition.end, scale, colours, "end force", **END_LOOK)
-    heads = transition.grasp.positions + scale * transition.forces(
-        np.linspace(0, transition.duration, _SAMPLES)
-    )
+    pushes = transition.wrenches(np.linspace(0, transition.duration, _SAMPLES))[..., :3]
+    heads = transition.grasp.positions + scale * pushes
     for i, name in enumerate(transition.grasp.names):
         ax.plot(*heads[:, i].T, color=colours[name], linewidth=2.6, alpha=0.45, gid=f"path {name}", zorder=3)
     longest = max(*(m for s in ends for m in s.magnitudes), float(np.linalg.norm(ends[0].load.force)))
@@ -107,7 +106,7 @@ def _scene(
 
 def _forces(ax: Any, state: GraspState, scale: float, colours: Colours, what: str, **look: object) -> None:
     used = state.in_use
-    for name, r, f in zip(state.grasp.names, state.grasp.positions, state.forces, strict=True):
+    for name, r, f in zip(state.grasp.names, state.grasp.positions, state.wrenches[:, :3], strict=True):
         if name in used:
             base = {"facecolor": colours[name], "edgecolor": colours[name], "zorder": 5}
             arrow3d(ax, r, r + scale * f, gid=f"{what} {name}", **(base | look))
