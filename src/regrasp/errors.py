@@ -14,7 +14,8 @@ class InvalidInput(RegraspError, ValueError):
 class Infeasible(RegraspError):
     """No forces inside the friction cones and force limits balance the load.
 
-    ``certificate`` is the ``EscapeTwist`` that proves it, or None where only the message can say why.
+    ``certificate`` is the ``EscapeTwist`` that proves it, a ``RegraspObstacle`` of a whole regrasp, or None
+    where only the message can say why.
     """
 
     def __init__(self, message: str, certificate: Any = None) -> None:

@@ -1,4 +1,4 @@
-"""Holds by the million: margins of every pair of points under every load direction, and steps between holds.
+"""Holds by the million: margins of every pair of points under every load direction.
 
 Pairs are shared out to the threads, a block at a time; ``compiled_pairs`` does all loads of a pair together.
 """
@@ -75,25 +75,6 @@ def widest_margins(
     over the stretches.
     """
     _widest(first, second, loads, candidates, np.atleast_2d(allowed), place, best, where, counts)
-
-
-@njit(error_model="numpy", parallel=True, cache=True)
-def relaxed(first, second, margins, reach, result):  # type: ignore[no-untyped-def]
-    """Widest least margin of a path that ends in a hold with each point, one exchange further.
-
-    reach (orientations, points): of a path to a hold with that point, from which the object may turn to that
-    orientation. A hold is entered over either of its points, and lends its value to both.
-    """
-    for o in prange(len(margins)):
-        for p in range(first.size):
-            m = margins[o, p]
-            if m >= 0.0:
-                i, j = first[p], second[p]
-                value = min(max(reach[o, i], reach[o, j]), m)
-                if value > result[o, i]:
-                    result[o, i] = value
-                if value > result[o, j]:
-                    result[o, j] = value
 
 
 def pairs_of(count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -31,6 +31,7 @@ from regrasp.plots.sensitivity import plot_sensitivity
 from regrasp.plots.sphere import load_sphere_figure, plot_load_map, plot_load_sphere
 from regrasp.plots.style import contact_colours
 from regrasp.plots.timing import plot_scaling
+from regrasp.plots.trade_off import plot_trade_off
 from regrasp.plots.units import SI, Units
 from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
 from regrasp.plots.wrench_space import plot_locus_segment, plot_wrench_cone, plot_wrench_plane
@@ -62,6 +63,7 @@ __all__ = [
     "plot_scaling",
     "plot_sensitivity",
     "plot_state",
+    "plot_trade_off",
     "plot_transition",
     "plot_wrench_components",
     "plot_wrench_cone",
