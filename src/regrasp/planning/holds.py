@@ -140,6 +140,8 @@ class HoldGraph:
         found: dict[int, NDArray[np.int64]] = {}
         for o, load in enumerate(self.loads if not self.one_finger else ()):
             through = held_alone(self._points, load)
+            if not through.size:
+                continue
             first, second = self.pairs
             pairs = np.flatnonzero((np.isin(first, through) | np.isin(second, through)) & self._apart)
             if pairs.size:
