@@ -162,8 +162,8 @@ COURSE = {
         (put("x", "turn", "forces", 0, 1, 0), "turn.forces[0][1][0]: expected a number, got 'x'"),
         (put([1.0], "turn", "end_load"), "a wrench must have 3 (plane) or 6 (space) numbers, got 1"),
         (put(COURSE, "course"), "a plan has a course or a turn, not both"),
-        (put([0.0, 1.0, 0.2], "load"), "a turning path holds a force through the centre of mass; this load "
-                                       "has a torque: plan it with a load function of time"),
+        (put([0.0, 1.0, 0.2], "load"), "a part of the load, Wrench(force=(0, 0), torque=0.2), does not turn: "
+                                       "middles are needed, states between angles"),
     ],
 )  # fmt: skip
 def test_damaged_rotation(change: Callable[[dict[str, Any]], None], message: str, tmp_path: Path) -> None:
@@ -474,7 +474,7 @@ def check_bad(text: str, lines: list[str], capsys: pytest.CaptureFixture[str], t
 
 ROTATION_KEYS = (
     "objective, method, duration, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, "
-    "degrees, kind"
+    "degrees, axis, kind"
 )
 
 
@@ -489,10 +489,8 @@ ROTATION_KEYS = (
           f"task.angle: unknown key; known here: {ROTATION_KEYS}"]),
         ([("degrees = 150.0", 'degrees = 150.0\ncontact = "thumb"')],
          [f"task.contact: unknown key; known here: {ROTATION_KEYS}"]),
-        ([("force = [0.0, -3.0]", "force = [0.0, -3.0]\ntorque = 0.1"),
-          ("friction = 0.6", "friction = 0.6\nforce = [1.0, 0.0]")],
-         ["load.torque: a rotation needs a force through the centre of mass, without a torque; got 0.1",
-          "contacts[1].force: a required key is missing; others have it, so give it to all or none",
+        ([("friction = 0.6", "friction = 0.6\nforce = [1.0, 0.0]")],
+         ["contacts[1].force: a required key is missing; others have it, so give it to all or none",
           "contacts[2].force: a required key is missing; others have it, so give it to all or none"]),
         ([("[load]", "[[load]]\ntime = 1.0\nforce = [0.0, -3.0]\n\n[[load]]\ntime = 0.0")],
          ["load: times of a load must rise from 0, two or more; got [1.0, 0.0]"]),
