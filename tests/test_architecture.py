@@ -126,6 +126,7 @@ def may_import(module: str, package: str) -> bool:
             "regrasp.closed_form.compiled_holds",
             "regrasp.closed_form.compiled_pairs",
             "regrasp.closed_form.compiled_paths",
+            "regrasp.closed_form.compiled_shift",
             "regrasp.closed_form.compiled_stances",
             "regrasp.closed_form.compiled_triples",
             "regrasp.programs.audit",

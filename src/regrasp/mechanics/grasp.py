@@ -46,6 +46,13 @@ class Grasp(ArrayValue):
         _refuse_coincident(named)
         object.__setattr__(self, "contacts", named)
 
+    @cached_property
+    def _hash(self) -> int:
+        return super().__hash__()
+
+    def __hash__(self) -> int:
+        return self._hash
+
     # -- lookup ---------------------------------------------------------------------------------------
 
     @cached_property
@@ -182,6 +189,18 @@ class Grasp(ArrayValue):
             about = np.concatenate([np.zeros((3, n, 1)), self.normals.T[..., None]])
             blocks = np.concatenate([blocks, about], axis=2)
         return read_only(blocks.reshape(-1, n * self.width))
+
+    @cached_property
+    def lengths(self) -> Array:
+        """(3,) or (6,) what makes a wrench comparable: 1 for forces, ``size`` for torques."""
+        lengths = np.full(len(self.matrix), self.size or 1.0)
+        lengths[: self.dimension] = 1.0
+        return read_only(lengths)
+
+    @cached_property
+    def scaled_matrix(self) -> Array:
+        """``cones.matrix`` with torques divided by ``size``, so that all rows are forces."""
+        return read_only(self.cones.matrix / self.lengths[:, None])
 
     def wrenches(self, forces: Array) -> Array:
         """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces."""

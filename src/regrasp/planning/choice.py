@@ -69,9 +69,9 @@ def choose_forces(
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
     if method == "closed-form" or (method == "auto" and planar_pair and facets is None):
         return best_forces(grasp, load, criteria)
-    from regrasp.programs import available_backends
+    from regrasp.programs.backends import available_backends, is_available
 
-    if method != "auto" and method.partition(":")[0] not in available_backends():
+    if method != "auto" and not is_available(method):
         known = ", ".join(("auto", "closed-form", *available_backends()))
         raise InvalidInput(f"method must be one of {known}; got {method!r}")
     from regrasp.planning.solved_state import solved_forces

@@ -23,15 +23,14 @@ LOOSE = 1e6
 FEASIBLE = 1e-7
 # An answer that exact equilibrium moves by more than this fraction of the forces is not the best one.
 _MOVED = 1e-5
-# A force below this fraction of the largest is a solver's noise at a finger that carries none.
-_IDLE = 1e-8
 # Forces this many times the unit are better measured by a unit of their own.
 _FAR = 4.0
 
 
 def force_unit(grasp: Grasp, load: Wrench) -> float:
     """The size of the load as a force [N], torque divided by the grasp's size; 0 without a load."""
-    return max(float(abs(load.force).max()), float(abs(load.torque).max()) / (grasp.size or 1.0))
+    sizes = [abs(number) for number in load.plain]
+    return max(*sizes[: grasp.dimension], max(sizes[grasp.dimension :]) / (grasp.size or 1.0))
 
 
 class Found(NamedTuple):
@@ -51,13 +50,7 @@ class Chooser:
         self, grasp: Grasp, load: Wrench, backend: str, facets: int | None, limits: list[float]
     ) -> None:
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
-        size = grasp.size or 1.0
-        self.matrix, self.vector = (
-            grasp.cones.matrix.copy(),
-            load.vector.copy(),
-        )  # torques divided by the size
-        self.matrix[grasp.dimension :] /= size
-        self.vector[grasp.dimension :] /= size
+        self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
         self.unit = force_unit(grasp, load)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
             self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
@@ -127,10 +120,11 @@ class Chooser:
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
         if objective == "force" and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
-        forces = self.exact(answer, frictions, limits)
+        wanted = self._wanted(answer)
+        forces = self.settled(wanted, frictions, limits)
         if forces is None:
             return None
-        moved = float(abs(forces - self._wanted(answer)).max())
+        moved = float(abs(forces - wanted).max())
         if moved > _MOVED * max(self.unit, float(abs(forces).max())):
             raise SolverFailed(
                 f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
@@ -141,21 +135,22 @@ class Chooser:
         return Found(forces, answer.absolute_gap * (self.unit**2 if squared else self.unit))
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
-        """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are.
-
-        The least change of all forces does, unless it leaves a cone.
-        """
+        """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are."""
         return self.settled(self._wanted(answer), frictions, limits)
 
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
-        """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none."""
-        grasp = self.grasp
-        forces = self._shifted(wanted)
-        if forces is not None:
-            normal, tangential = grasp.cones.normal(forces), grasp.cones.tangential(forces)
-            inside = (normal >= 0) & (tangential <= np.array(frictions) * normal)
-            if inside.all() and ((forces**2).sum(axis=1) <= np.array(limits) ** 2).all():
-                return forces
+        """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none.
+
+        The least change of all forces does, idle fingers left idle, unless it leaves a cone.
+        """
+        from regrasp.closed_form.compiled_shift import shifted_inside
+
+        mu, limit = np.array(frictions), np.array(limits)
+        given = wanted, self.matrix, self.vector, self.grasp.cones.normals, mu, limit
+        forces, is_answer = shifted_inside(*given, EQUILIBRIUM / 2)
+        if is_answer:
+            found: Array = forces
+            return found
         return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
 
     def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
@@ -170,22 +165,3 @@ class Chooser:
         if w == 4:  # a point contact makes no torque, whatever a solver says of a number that does nothing
             wanted = self.grasp.cones.measured(self.grasp.cones.forces(wanted))
         return wanted * self.unit
-
-    def _shifted(self, forces: Array) -> Array | None:
-        """The forces nearest to ``forces`` with G f + w = 0, whatever the cones, idle fingers left idle.
-
-        None where rounding forbids.
-        """
-        sizes = abs(forces).max(axis=1)
-        f, g = forces.ravel(), self.matrix
-        if sizes.min() < _IDLE * sizes.max():
-            used = np.repeat(sizes >= _IDLE * sizes.max(), self.grasp.width)
-            f, g = np.where(used, f, 0.0), np.where(used, g, 0.0)
-        try:
-            gram = np.linalg.inv(g @ g.T)
-        except np.linalg.LinAlgError:
-            return None
-        for _ in range(2):
-            f = f - g.T @ (gram @ (g @ f + self.vector))
-        off, largest = abs(g @ f + self.vector).max(), max(float(abs(f).max()), float(abs(self.vector).max()))
-        return f.reshape(forces.shape) if off <= EQUILIBRIUM / 2 * largest else None

@@ -24,7 +24,7 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.narrowing``.
     """
     criteria.demand_limit(grasp, load)
-    if not criteria.unbounded and not load.vector.any():  # nothing to hold: the least of everything is zero
+    if not criteria.unbounded and not any(load.plain):  # nothing to hold: the least of everything is zero
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
     try:
         return _solved(grasp, load, criteria, backend, facets)

@@ -20,7 +20,9 @@ space it is of second order, or an inner pyramid of ``facets`` faces (``regrasp.
 which is the program ``force`` over narrower cones.
 """
 
+from functools import lru_cache
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +31,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.faces import ball_faces, cone_faces
-from regrasp.planning.state_form import state_form
+from regrasp.planning.state_form import StateForm, state_form
 from regrasp.programs import Program
 
 CONVEX = ("effort", "peak", "peak_normal", "force")
@@ -54,17 +56,41 @@ def state_program(
     """
     if objective not in CONVEX:
         raise InvalidInput(f"one program states {', '.join(CONVEX)}; got {objective!r}")
-    d, mu, limit = grasp.dimension, np.array(frictions), np.array(limits)
-    form = state_form(objective, tuple(mu > 0), tuple(limit < inf), facets, grasp.width)
     if grasp.is_soft and facets is not None:
         raise InvalidInput("facets stand for the cones of point contacts; leave them out with soft fingers")
+    asked = grasp, objective, tuple(frictions), tuple(limit < inf for limit in limits), facets
+    rows = _rows(*asked) if weights is None else _new_rows(*asked, weights)
+    b = np.zeros(rows.form.rows)
+    b[: load.vector.size] = load.vector / (unit * grasp.lengths)
+    if rows.form.limited.size:
+        b[rows.form.limit_rows] = (rows.shares * np.array(limits)[rows.form.limited, None]).ravel() / unit
+    return rows.program.with_right_side(b)
+
+
+class _Rows(NamedTuple):
+    """A program whose b is yet to come, its form, and the shares (k, 1 or faces) of limits that go into b."""
+
+    form: StateForm
+    program: Program
+    shares: Array
+
+
+def _new_rows(
+    grasp: Grasp,
+    objective: str,
+    frictions: tuple[float, ...],
+    limited: tuple[bool, ...],
+    facets: int | None,
+    weights: Array | None = None,
+) -> _Rows:
+    mu = np.array(frictions)
+    form = state_form(objective, tuple(mu > 0), limited, facets, grasp.width)
     normals, tangents = grasp.cones.normals, grasp.cones.tangents
-    length = grasp.size or 1.0
     if form.is_round:
         sides = np.concatenate([mu[:, None, None] * normals[:, None], tangents], axis=1)
     else:
         sides = cone_faces(grasp, mu, facets)
-    numbers = [form.constants, _torque_entries(grasp) / -length, -sides[form.rough].ravel()]
+    numbers = [form.constants, _torque_entries(grasp), -sides[form.rough].ravel()]
     if form.smooth.size:
         numbers += [-tangents[form.smooth].ravel(), -normals[form.smooth].ravel()]
     if objective == "peak_normal":
@@ -72,23 +98,25 @@ def state_program(
     if objective == "force":
         weights = np.sqrt(1 + mu**2) if weights is None else weights
         numbers.append(np.repeat(weights[form.rough], 1 if form.is_round else sides.shape[1]))
-    radii = limit[form.limited]
+    shares = np.ones((form.limited.size, 1))
     if facets is not None:
         directions, cosines = ball_faces(grasp, mu, facets)
         if objective == "peak":
             numbers += [directions.ravel(), -cosines.ravel()]
         numbers.append(directions[form.limited].ravel())
-        radii = (cosines[form.limited] * radii[:, None]).ravel()
-    b = np.zeros(form.rows)
-    b[: load.vector.size] = load.vector / unit
-    b[d : load.vector.size] /= length
-    b[form.limit_rows] = radii / unit
-    return Program(form.P, form.q, form.pattern.filled(np.concatenate(numbers)), b, form.blocks)
+        shares = cosines[form.limited]
+    A = form.pattern.filled(np.concatenate(numbers))
+    A.data.setflags(write=False)  # programs of other loads share it
+    return _Rows(form, Program(form.P, form.q, A, np.zeros(form.rows), form.blocks), shares)
+
+
+# Loads change more often than grasps.
+_rows = lru_cache(maxsize=64)(_new_rows)
 
 
 def _torque_entries(grasp: Grasp) -> Array:
-    """The torque rows of the grasp matrix in the order of the form, entries that are always zero left out."""
-    matrix = grasp.cones.matrix
+    """Torque rows of -G, divided by the size, in the form's order, without what is always zero."""
+    matrix = -grasp.scaled_matrix
     if grasp.dimension == 2:
         planar: Array = matrix[2]
         return planar

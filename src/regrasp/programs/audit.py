@@ -1,13 +1,12 @@
 """Measures of an answer from the data of its program, in loops compiled by Numba. Imported when needed."""
 
-from functools import lru_cache
-from math import isfinite, nan, sqrt
-from typing import Any, NamedTuple
+from math import nan, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from regrasp.programs.program import Array, Block, Cone, Program
+from regrasp.programs.program import Array, Program
 
 
 class Audit(NamedTuple):
@@ -41,20 +40,14 @@ class Audit(NamedTuple):
     z: float
 
 
+_NOTHING = (nan,) * len(Audit._fields)
+
+
 def audited(program: Program, x: Array, z: Array) -> Audit:
     """The measures of an answer x (n,), z (m,)."""
-    if not isfinite(float(x.sum()) + float(z.sum())):
-        return Audit(*[nan] * len(Audit._fields))
     p, a = program.P, program.A
     data = p.indptr, p.indices, p.data, program.q, a.indptr, a.indices, a.data, program.b
-    return Audit(*_measures(*data, _codes(program.blocks), x, z))
-
-
-@lru_cache(maxsize=256)
-def _codes(blocks: tuple[Block, ...]) -> Any:
-    """Each cone as (kind, size, count)."""
-    kinds = list(Cone)
-    return np.array([(kinds.index(block.cone), block.size, block.count) for block in blocks])
+    return Audit(*_measures(*data, program.codes, x, z))
 
 
 @njit(cache=True)
@@ -96,6 +89,8 @@ def _violation(codes, s, dual):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _measures(pp, pi, pd, q, ap, ai, ad, b, codes, x, z):  # type: ignore[no-untyped-def]
+    if not (np.isfinite(x).all() and np.isfinite(z).all()):
+        return _NOTHING
     n, m = q.size, b.size
     px, ax = _product(pp, pi, pd, x, n), _product(ap, ai, ad, x, m)
     az, stationarity = 0.0, 0.0

@@ -49,6 +49,12 @@ CERTIFICATE_TOLERANCE = 1e-6
 _AUTO = ("clarabel", "daqp", "osqp", "cvxpy")
 
 
+def is_available(name: str) -> bool:
+    """Whether a back end is installed here, one of cvxpy's solvers if cvxpy is."""
+    backend = BACKENDS.get(name.partition(":")[0])
+    return backend is not None and _is_installed(backend)
+
+
 def available_backends() -> tuple[str, ...]:
     """Names of the back ends installed here; ``cvxpy:<SOLVER>`` names one of cvxpy's solvers besides."""
     return tuple(name for name, backend in BACKENDS.items() if _is_installed(backend))

@@ -6,7 +6,6 @@ from typing import Any
 
 import clarabel
 import numpy as np
-from scipy import sparse
 
 from regrasp.errors import InvalidInput
 from regrasp.programs.program import Block, Cone, Program
@@ -32,9 +31,9 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     """Solve with Clarabel; ``options`` are its settings by name."""
     started = perf_counter()
     settings = _settings(**options)
-    solver = clarabel.DefaultSolver(
-        _upper(program.P), program.q, program.A, program.b, _cones_of(program.blocks), settings
-    )
+    cones = _cones_of(program.blocks)
+    # Of P, both of whose triangles are given, it takes the upper one.
+    solver = clarabel.DefaultSolver(program.P, program.q, program.A, program.b, cones, settings)
     built = perf_counter()
     answer = solver.solve()
     solved = perf_counter()
@@ -61,14 +60,6 @@ def _settings(**options: Any) -> Any:
             raise InvalidInput(f"Clarabel has no setting {key!r}")
         setattr(settings, key, value)
     return settings
-
-
-def _upper(P: sparse.csc_matrix) -> sparse.csc_matrix:
-    """The upper triangle; of an empty or diagonal matrix that is the matrix itself."""
-    n = P.shape[0]
-    if P.nnz == 0 or (P.nnz == n and np.array_equal(P.indices, np.arange(n))):
-        return P
-    return sparse.triu(P, format="csc")
 
 
 @cache

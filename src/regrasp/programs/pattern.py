@@ -24,6 +24,7 @@ class Pattern:
         self._order = self._template.data.astype(np.intp)
         for shared in (self._template.indices, self._template.indptr):
             shared.setflags(write=False)
+        _ = self._template.has_canonical_format  # looked at once, and known of every copy
 
     def filled(self, values: NDArray[np.float64]) -> sparse.csc_matrix:
         """The matrix with ``values`` (k,) at the places, in the order the pattern was given."""

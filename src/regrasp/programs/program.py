@@ -73,13 +73,29 @@ class Program:
         if sum(block.rows for block in self.blocks) != m:
             raise InvalidInput(f"the cones must cover the {m} rows of A, got {self.blocks}")
         for name, values in (("P", self.P.data), ("q", self.q), ("A", self.A.data), ("b", self.b)):
-            if not np.isfinite(values).all():
-                raise InvalidInput(f"{name} must be finite")
+            _check_finite(name, values)
 
-    @property
+    def with_right_side(self, b: Array) -> "Program":
+        """The same program with another b (m,), at little cost: nothing but b is looked at again."""
+        if b.shape != self.b.shape:
+            raise InvalidInput(f"b must have shape {self.b.shape}, got {b.shape}")
+        _check_finite("b", b)
+        _ = self.has_second_order, self.codes  # known of every program with these rows
+        same = object.__new__(Program)
+        same.__dict__.update(self.__dict__)
+        object.__setattr__(same, "b", b)
+        return same
+
+    @cached_property
     def has_second_order(self) -> bool:
         """Whether any cone is of second order, so that a QP solver cannot take the program."""
         return any(block.cone is Cone.SECOND_ORDER for block in self.blocks)
+
+    @cached_property
+    def codes(self) -> NDArray[np.int64]:
+        """(k, 3) kind, size and count of each block, the kind by its place in ``Cone``."""
+        kinds = list(Cone)
+        return np.array([(kinds.index(block.cone), block.size, block.count) for block in self.blocks])
 
     @cached_property
     def slices(self) -> tuple[tuple[Block, slice], ...]:
@@ -89,3 +105,8 @@ class Program:
             (block, slice(int(end) - block.rows, int(end)))
             for block, end in zip(self.blocks, ends, strict=True)
         )
+
+
+def _check_finite(name: str, values: Array) -> None:
+    if not np.isfinite(values).all():
+        raise InvalidInput(f"{name} must be finite")

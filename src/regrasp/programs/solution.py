@@ -54,17 +54,17 @@ class Solution:
 
         return audited(self.program, self.value, self.duals)
 
-    @cached_property
+    @property
     def objective(self) -> float:
         """1/2 x'Px + q'x."""
         return 0.5 * self._audit.xpx + self._audit.qx
 
-    @cached_property
+    @property
     def primal_residual(self) -> float:
         """Distance of b - A x to K, relative to the largest entry of b and A x."""
         return _relative(self._audit.slack_violation, max(self._audit.b, self._audit.ax))
 
-    @cached_property
+    @property
     def dual_residual(self) -> float:
         """Largest entry of P x + q + A'z, and distance of z to K*, relative to the terms.
 
@@ -74,7 +74,7 @@ class Solution:
         stationarity = _relative(a.stationarity, max(a.px, a.q, a.az, a.p * self.program.size))
         return max(stationarity, _relative(a.dual_violation, a.z))
 
-    @cached_property
+    @property
     def gap(self) -> float:
         """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|, or to x'Px at the program's ``size``."""
         a = self._audit
@@ -86,7 +86,7 @@ class Solution:
         """|x'Px + q'x + b'z|, the distance of the objective from the dual's."""
         return abs(self._audit.xpx + self._audit.qx + self._audit.bz)
 
-    @cached_property
+    @property
     def infeasibility_residual(self) -> float:
         """How far the duals are from proving infeasibility, A'z = 0, z in K*, b'z < 0; infinite if b'z >= 0.
 
@@ -95,13 +95,13 @@ class Solution:
         a = self._audit
         return _per(max(a.az, a.dual_violation) * _ratio(a.b, a.a), -a.bz)
 
-    @cached_property
+    @property
     def unboundedness_residual(self) -> float:
         """How far value is from a direction of descent, P x = 0, -A x in K, q'x < 0; infinite if q'x >= 0."""
         a = self._audit
         return _per(max(a.px, a.ray_violation) * _ratio(a.q, a.a), -a.qx)
 
-    @cached_property
+    @property
     def residual(self) -> float:
         """The residual that decides: the worst of a solution's three, or that of the certificate."""
         if self.status is Status.INFEASIBLE:
