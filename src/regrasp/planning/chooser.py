@@ -125,7 +125,7 @@ class Chooser:
         if forces is None:
             return None
         moved = float(abs(forces - wanted).max())
-        if moved > _MOVED * max(self.unit, float(abs(forces).max())):
+        if moved > _MOVED * self.unit and moved > _MOVED * float(abs(forces).max()):
             raise SolverFailed(
                 f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
                 answer.program,
