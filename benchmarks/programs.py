@@ -33,9 +33,9 @@ from timing import Side
 PATH_SIZES = (10, 100, 1_000, 10_000)
 OVERHEAD = (
     "Clarabel itself takes a quarter more here than in a loop of its own, where all its memory stays in the "
-    "cache and its tolerances are a hundred times as wide; besides, some 70 us of Python that do not grow with "
-    "the program: about 10 for its right side, 10 to read the answer, 15 to audit it, 20 for exact equilibrium "
-    "inside the cones, and 17 for checks of arguments and the state"
+    "cache and its tolerances are a hundred times as wide; besides, some 70 us of Python that do not grow "
+    "with the program: about 10 for its right side, 10 to read the answer, 15 to audit it, 20 for exact "
+    "equilibrium inside the cones, and 17 for checks of arguments and the state"
 )
 
 
@@ -45,6 +45,27 @@ def overhead(effort: Effort) -> Iterator[Row]:
         grasp, load = ring(fingers)
         for objective in ("effort", "peak", "peak_normal"):
             yield overhead_row(effort, grasp, load, objective, f"{fingers} contacts")
+    yield first_row(effort, *ring(3), "3 contacts")
+
+
+def first_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, what: str) -> Row:
+    """Grasps that were never seen before beside one whose rows are kept from the load before."""
+    rng = np.random.default_rng(3)
+
+    def new_grasps() -> list[rg.Grasp]:
+        shares = rng.uniform(0.99, 1.0, 20).tolist()
+        return [rg.Grasp(c.changed(friction=share * c.friction) for c in grasp) for share in shares]
+
+    def chosen(grasps: list[rg.Grasp]) -> None:
+        for each in grasps:
+            rg.choose_state(each, load, "effort", method="clarabel")
+
+    return Row.of(
+        f"clarabel_first_{len(grasp)}",
+        f'`choose_state(method="clarabel")`, `effort`, {what}, a grasp seen first',
+        "a grasp under another load before",
+        effort.of(Side(chosen, 20, new_grasps), Side(lambda _: chosen([grasp] * 20), 20)), Measure.TIMES,
+    )  # fmt: skip
 
 
 def overhead_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, objective: str, what: str) -> Row:

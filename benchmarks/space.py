@@ -23,7 +23,7 @@ import triples
 from closed_form import PACKAGES
 from closed_form import QUICK as QUICK_EFFORT
 from closed_form import Effort as Times
-from programs import overhead_row, path_growth, path_task
+from programs import first_row, overhead_row, path_growth, path_task
 from regrasp.mesh import parts
 from report import Measure, Report, Row
 from timing import Side
@@ -56,6 +56,7 @@ def overhead(effort: Effort) -> Iterator[Row]:
     """``choose_state`` through Clarabel over exact cones, against bare Clarabel."""
     for objective in ("effort", "peak", "peak_normal"):
         yield overhead_row(effort.times, tripod(), WEIGHT, objective, "4 contacts in space")
+    yield first_row(effort.times, tripod(), WEIGHT, "4 contacts in space")
 
 
 def paths(effort: Effort) -> Iterator[Row]:

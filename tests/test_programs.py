@@ -250,6 +250,23 @@ def test_data_that_do_not_fit_are_refused():
         Program(good.P, good.q, good.A, good.b, (Block(Cone.ZERO, 2),))
 
 
+def test_another_right_side_keeps_the_rest():
+    rows = Rows(2)
+    rows.equal([[1.0, 1.0]], -1.0)
+    rows.second_order([[0.0, 0.0], [1.0, -1.0]], [3.0, 0.0])
+    program = rows.program([1.0, 0.0], np.array([[2.0, 0.5], [0.5, 1.0]]))
+    b = np.array([2.0, 1.0, 0.5])
+    other = program.with_right_side(b)
+    again = Program(program.P, program.q, program.A, b, program.blocks)
+    before, after = solve(program, "clarabel").value, solve(other, "clarabel").value
+    assert after == pytest.approx(solve(again, "clarabel").value, abs=1e-9)
+    assert abs(after - before).max() > 0.1
+    with pytest.raises(InvalidInput, match=r"b must have shape \(3,\), got \(2,\)"):
+        program.with_right_side(b[:2])
+    with pytest.raises(InvalidInput, match="b must be finite"):
+        program.with_right_side(b * np.inf)
+
+
 def test_distance_to_cones_measures_each_kind():
     rows = Rows(1)
     rows.equal(np.zeros((1, 1)))
