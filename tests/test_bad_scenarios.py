@@ -610,7 +610,8 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     "EquilibriumLocus: three contacts": (
         lambda: rg.EquilibriumLocus(GRASP, LOAD),
         rg.InvalidInput,
-        "an equilibrium locus needs two planar contacts, got 3 of dimension 2; use grasp.subset([...])",
+        "an equilibrium locus needs two planar contacts, got 3 of dimension 2; use grasp.subset([...]), "
+        "or a SqueezeLocus",
     ),
     "EquilibriumLocus: squeeze outside": (
         lambda: LOCUS.state(9.0),

@@ -129,5 +129,7 @@ def test_bad_input():
         held.contains(rg.Wrench([0, -1], 0.1))
     with pytest.raises(rg.InvalidInput, match=r"direction must have shape \(2,\)"):
         held.contains([1, 2, 3])
-    with pytest.raises(rg.InvalidInput, match="held directions are of a planar Grasp"):
+    with pytest.raises(
+        rg.InvalidInput, match="held directions are of a planar Grasp; in space use held_sphere"
+    ):
         rg.held_directions(rg.Grasp([rg.Contact([0, 0, 1], [0, 0, -1], 0.5)]))

@@ -28,9 +28,9 @@ def measures(mesh: rg.Mesh) -> list[float]:
 
 def test_a_box() -> None:
     assert measures(BOX) == pytest.approx([24, 52, 0, 0, 0, 2, 3, 4], abs=1e-15)
-    contact = BOX.contact_at([1.1, 0.5, -0.5], friction=0.3, max_force=7, name="A")
+    contact = BOX.contact_at([1.1, 0.5, -0.5], friction=0.3, max_force=7, torsion=0.1, name="A")
     np.testing.assert_allclose(contact.position, [1, 0.5, -0.5], atol=1e-15)
-    assert contact == rg.Contact(contact.position, [-1, 0, 0], 0.3, max_force=7, name="A")
+    assert contact == rg.Contact(contact.position, [-1, 0, 0], 0.3, max_force=7, torsion=0.1, name="A")
 
 
 def test_contacts_are_relative_to_the_centre_of_mass() -> None:

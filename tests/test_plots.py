@@ -309,7 +309,7 @@ def test_the_distance_and_the_line_of_a_force_are_marked(removal):
 def test_iso_torque_lines_need_an_arm_and_a_plane():
     with pytest.raises(rg.InvalidInput, match="centre of mass makes no torque"):
         plots.plot_iso_torque(rg.Contact([0, 0], [1, 0], 0.5))
-    with pytest.raises(rg.InvalidInput, match="pictures are planar so far, got dimension 3"):
+    with pytest.raises(rg.InvalidInput, match="this picture is of the plane, got dimension 3; in space"):
         plots.plot_iso_torque(rg.Contact([0, 1, 0], [1, 0, 0], 0.5))
 
 
@@ -705,7 +705,7 @@ def test_pictures_of_the_plane_refuse_a_grasp_in_space():
         (plots.iso_torque_figure, transition),
     ]
     for function, value in calls:
-        with pytest.raises(rg.InvalidInput, match="pictures are planar so far, got dimension 3"):
+        with pytest.raises(rg.InvalidInput, match="this picture is of the plane, got dimension 3; in space"):
             function(value)
 
 

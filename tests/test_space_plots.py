@@ -471,7 +471,7 @@ def test_a_page_shows_states_and_transitions_in_space_only(lift):
     planar = rg.GraspState(rg.Grasp([rg.Contact([1, 0], [-1, 0], 0.5)]), rg.Wrench([0, 0]), [[0, 0]])
     with pytest.raises(rg.InvalidInput, match="a page shows a grasp in space"):
         plots.html(planar)
-    with pytest.raises(rg.InvalidInput, match="a GraspState or a Transition, got Grasp"):
+    with pytest.raises(rg.InvalidInput, match="Transition, such as a step of a regrasp; got Grasp"):
         plots.html(lift.grasp)
 
 

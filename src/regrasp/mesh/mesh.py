@@ -194,10 +194,12 @@ class Mesh(ArrayValue):
         *,
         friction: float,
         max_force: float | None = None,
+        torsion: float | None = None,
         name: str | None = None,
     ) -> Contact:
         """The contact where the surface is nearest to ``point`` (3,), in the coordinates given [m].
 
+        friction, max_force, torsion, name: as of ``Contact``.
         Raises ``InvalidInput`` at an edge or corner where the normals of the faces that meet differ by more
         than 5 degrees, and for a point farther from the surface than a tenth of the object's largest side.
         """
@@ -221,7 +223,8 @@ class Mesh(ArrayValue):
                 f"point {numbers(foot)} is at an edge or corner, where {len(faces)} faces meet at up to "
                 f"{most:.3g} degrees and no normal is defined; move it into a face{advice}"
             )
-        return Contact(foot - self.centre_of_mass, normals[0], friction, max_force=max_force, name=name)
+        place = foot - self.centre_of_mass
+        return Contact(place, normals[0], friction, max_force=max_force, torsion=torsion, name=name)
 
     def sample(self, count: int, *, seed: int = 0, clearance: float | None = None) -> Array:
         """(count, 3) points spread evenly over the surface, in the coordinates given [m].

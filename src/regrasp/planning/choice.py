@@ -29,8 +29,10 @@ def choose_state(
     least largest fraction of the friction available.
     method: ``closed-form`` (two planar contacts), a back end's name, or ``auto``: the closed form where it
     exists, else Clarabel.
-    facets: let an inner polygon of so many sides stand for the circle of a force limit and of ``peak``, for
-    back ends that take no second-order cones. Safe; limits lose up to the fraction 1 - cos(pi / facets).
+    facets: let an inner polygon of so many sides stand for every circle, for back ends that take no
+    second-order cones: in the plane that of a force limit and of ``peak``; in space those across the friction
+    cones, too (inner pyramids, see ``pyramid_losses``). Safe; limits lose up to the fraction
+    1 - cos(pi / facets).
     max_force, peak_ratio, reserve: limits of the choice, see ``Criteria``; what they came to is in the
     result's ``force_limits``.
 

@@ -83,7 +83,7 @@ def held_directions(grasp: Grasp) -> HeldDirections:
     Raises ``InvalidInput`` for a grasp in space.
     """
     if not isinstance(grasp, Grasp) or grasp.dimension != 2:
-        raise InvalidInput(f"held directions are of a planar Grasp, got {grasp!r}")
+        raise InvalidInput(f"held directions are of a planar Grasp; in space use held_sphere; got {grasp!r}")
     return _spanned(-_generators(grasp))
 
 

@@ -39,7 +39,7 @@ class EquilibriumLocus(ArrayValue):
         if len(self.grasp) != 2 or self.grasp.dimension != 2:
             raise InvalidInput(
                 f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
-                f"{self.grasp.dimension}; use grasp.subset([...])"
+                f"{self.grasp.dimension}; use grasp.subset([...]), or a SqueezeLocus"
             )
         check_load(self.grasp, self.load)
 

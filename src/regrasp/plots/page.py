@@ -55,7 +55,10 @@ def html(
     plotly, the extra ``regrasp[html]``.
     """
     if not isinstance(value, (GraspState, Transition)):
-        raise InvalidInput(f"a page shows a GraspState or a Transition, got {type(value).__name__}")
+        raise InvalidInput(
+            f"a page shows a GraspState or a Transition, such as a step of a regrasp; "
+            f"got {type(value).__name__}"
+        )
     if value.grasp.dimension != 3:
         raise InvalidInput("a page shows a grasp in space; of a planar plan, animate writes one")
     text = _page(value, mesh, units)

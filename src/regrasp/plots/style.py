@@ -42,7 +42,10 @@ def contact_colours(grasp: Grasp) -> dict[str, str]:
 def refuse_space(dimension: int) -> None:
     """Raise ``InvalidInput`` for anything that is not planar."""
     if dimension != 2:
-        raise InvalidInput(f"pictures are planar so far, got dimension {dimension}")
+        raise InvalidInput(
+            f"this picture is of the plane, got dimension {dimension}; in space there are plot_state, "
+            f"plot_transition, plot_escape and html"
+        )
 
 
 def new_figure(width: float = WIDTH, height: float = 2.4) -> Figure:
