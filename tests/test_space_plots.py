@@ -129,6 +129,15 @@ def test_one_scale_holds_along_all_axes(lift, block):
     assert ax.figure.get_figwidth() == pytest.approx(3.4)
 
 
+def test_numbers_of_two_axes_do_not_run_together(lift, block):
+    ax = plots.plot_state(lift.start, mesh=block)
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        low, high = axis.get_view_interval()
+        ticks = axis.get_majorticklocs()
+        assert len(ticks) > 1
+        assert (np.minimum(ticks - low, high - ticks) >= 0.069 * (high - low)).all()
+
+
 def test_an_absent_finger_in_space_is_an_open_circle(lift):
     ax = plots.plot_state(lift.end, absent=["ring"])
     np.testing.assert_allclose(points_of(one(ax, "absent ring")), [lift.grasp["ring"].position])
@@ -163,6 +172,7 @@ def test_axes_in_space_are_kept_with_their_view_and_flat_ones_refused(lift, bloc
     ax.view_init(11, 17)
     for draw, value in ((plots.plot_state, lift.start), (plots.plot_transition, lift)):
         assert draw(value, ax, mesh=block) is ax
+        assert not ax.computed_zorder  # arrows inside the translucent object are drawn over it
         assert (ax.elev, ax.azim) == (11, 17)
         with pytest.raises(rg.InvalidInput, match=r"ax must be 3-D .*projection='3d'"):
             draw(value, Figure().add_subplot())

@@ -17,14 +17,27 @@ _FILL = 0.84
 # The least side of the box beside its longest, so that a flat grasp is not drawn on a sheet.
 _THINNEST = 0.25
 
+# No tick nearer than this to an end of its axis, as a fraction of it.
+_CORNER = 0.07
+
+
+class _ClearOfCorners(MaxNLocator):
+    """Ticks that keep away from the ends of their axis, where the numbers of two axes would run together."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        ticks = np.asarray(super().tick_values(vmin, vmax))
+        room = _CORNER * (vmax - vmin)
+        return ticks[(ticks >= vmin + room) & (ticks <= vmax - room)]
+
 
 def space_axes(ax: Any, height: float = 3.4) -> Any:
-    """The axes given, which must be 3-D; or new ones in a figure of their own."""
+    """The axes given, which must be 3-D, made to draw in our order; or new ones in a figure of their own."""
     if ax is None:
         figure = new_figure(height=height)
         figure.set_layout_engine("none")  # it reserves room for the whole box around a 3-D picture
         return space_panel(figure, (0.0, 0.04, 0.93, 0.86))
-    return in_space(ax)
+    in_space(ax).computed_zorder = False  # else the object, which is translucent, hides the arrows inside it
+    return ax
 
 
 def space_panel(figure: Figure, place: tuple[float, float, float, float]) -> Any:
@@ -49,7 +62,7 @@ def boxed(ax: Any) -> Any:
         axis.pane.fill = False
         axis.pane.set_edgecolor("#dddddd")
         axis._axinfo["grid"].update(color="#e6e6e6", linewidth=0.5)
-        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(_ClearOfCorners(4, steps=[1, 2, 5, 10]))
     return ax
 
 

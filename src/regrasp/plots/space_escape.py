@@ -55,7 +55,7 @@ def draw_escape(twist: EscapeTwist, ax: Any, *, mesh: Triangles | None, units: U
         _draw_later(ax, twist, mesh, size)
     axis = [] if twist.axis is None else [_draw_axis(ax, *twist.axis, size)]
     ax.set_title(title(twist, units), fontsize=SMALL, loc="left", pad=14)
-    legend(ax, [*key(twist), *axis])
+    legend(ax, [*key(twist), *axis], handlelength=2.2)  # long enough for a dash and a dot
     return equal_scale(ax, units)
 
 
