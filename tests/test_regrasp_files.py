@@ -178,7 +178,9 @@ def test_damaged_rotation(change: Callable[[dict[str, Any]], None], message: str
                                      "the steps, got 1"),
         (drop("margin"), "margin: a required key is missing"),
         (put("wide", "margin"), "margin: expected a number, got 'wide'"),
-        (put(3, "step"), "step: unknown key; known here: format, version, kind, steps, orientations, margin"),
+        (put(3, "step"), "step: unknown key; known here: format, version, kind, steps, orientations, margin, "
+                         "rotations"),
+        (put([], "rotations"), "rotations: leave them out in the plane"),
         (drop("steps", 1, "record"), "steps[1].record: a required key is missing"),
         (put(1, "steps", 0, "version"), "steps[0].version: unknown key; known here: kind, contact, load, "
                                         "contacts, start, end, scaling, course, record, arrival, turn"),
@@ -598,8 +600,8 @@ def test_parts_of_scenarios_are_the_parts_there_are() -> None:
 
 START_POINT = "[-0.01, -0.007]"
 TASK_KEYS = (
-    "kind, orientations, goal_degrees, candidates, max_turn_degrees, min_distance, objective, states, "
-    "least_margin_degrees, one_finger, arcs, weights, max_force, peak_ratio, reserve, step_duration, rate"
+    "kind, objective, states, least_margin_degrees, min_distance, max_force, peak_ratio, reserve, "
+    "step_duration, rate, orientations, goal_degrees, candidates, max_turn_degrees, one_finger, arcs, weights"
 )
 
 

@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
     from regrasp.files import AnyScenario
+    from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
     from regrasp.planning.regrasp_plan import RegraspPlan
     from regrasp.planning.transition import Transition
@@ -155,7 +156,7 @@ def _work(
     scenario: "AnyScenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
 ) -> None:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
-    from regrasp.files import RegraspScenario, plan_scenario, write_plan, write_setpoints
+    from regrasp.files import plan_scenario, write_plan, write_setpoints
     from regrasp.files.setpoints import checked, setpoint_blocks
     from regrasp.files.source import naming
     from regrasp.files.staging import whole_folder
@@ -181,8 +182,7 @@ def _work(
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:
-            outline = scenario.outline.value if isinstance(scenario, RegraspScenario) else None
-            _draw(planned, outline, folder)
+            _draw(planned, _shape(scenario), folder)
         written = sorted(file.name for file in folder.iterdir())
     click.echo("")
     for file in written:
@@ -207,22 +207,33 @@ def _progress() -> "Progress":
     return Progress(console=console, transient=True, disable=not console.is_terminal)
 
 
-def _draw(planned: "Transition | RegraspPlan", outline: "Outline | None", folder: Path) -> None:
+def _shape(scenario: "AnyScenario") -> "Outline | Mesh | None":
+    """The outline or the solid of a scenario, to be drawn; None where only the contacts are known."""
+    from regrasp.files import RegraspScenario
+
+    if isinstance(scenario, RegraspScenario):
+        return scenario.outline.value
+    return None if scenario.object is None else scenario.object.value
+
+
+def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", folder: Path) -> None:
     """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
     with _progress() as progress:
         task = progress.add_task("drawing figures", total=None)
         from regrasp.planning.regrasp_plan import RegraspPlan
         from regrasp.plots import overview
 
+        first = planned.steps[0] if isinstance(planned, RegraspPlan) else planned
+        solid: dict[str, Any] = {"mesh": shape} if first.grasp.dimension == 3 else {}
         if isinstance(planned, RegraspPlan):
             from regrasp.plots.regrasp import plot_regrasp
 
-            drawn = {"overview": plot_regrasp(planned, outline)}
+            drawn = {"overview": plot_regrasp(planned, shape)}
             for k, step in enumerate(planned.steps, 1):
-                drawn[f"step_{k}"] = overview.transition_figure(step)
+                drawn[f"step_{k}"] = overview.transition_figure(step, **solid)
                 progress.update(task, total=len(planned.steps), completed=k)
         else:
-            drawn = overview.figures(planned)
+            drawn = overview.figures(planned, **solid)
         progress.update(task, description="saving figures", total=len(drawn), completed=0)
         for stem, figure in drawn.items():
             figure.savefig(folder / f"{stem}.png")

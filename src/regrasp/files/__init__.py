@@ -5,11 +5,13 @@ from regrasp.files.planned import plan_scenario
 from regrasp.files.regrasp_scenario import RegraspScenario
 from regrasp.files.scenario import AnyScenario, Scenario, parse_scenario, read_scenario, scenario_schema
 from regrasp.files.setpoints import write_setpoints
+from regrasp.files.space_regrasp_scenario import SpaceRegraspScenario
 
 __all__ = [
     "AnyScenario",
     "RegraspScenario",
     "Scenario",
+    "SpaceRegraspScenario",
     "parse_scenario",
     "plan_scenario",
     "read_plan",

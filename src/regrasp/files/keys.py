@@ -26,6 +26,9 @@ Vector = Annotated[list[float], Field(min_length=2, max_length=2)]
 """A vector in the plane."""
 AnyVector = Annotated[list[float], Field(min_length=2, max_length=3)]
 """A vector in the plane or in space."""
+SpaceVector = Annotated[list[float], Field(min_length=3, max_length=3)]
+AnyForce = Annotated[list[float], Field(min_length=2, max_length=4)]
+"""A force in the plane or in space; of a soft finger its torque about the normal comes last."""
 Control = Annotated[list[float], AfterValidator(_falling)]
 Name = Annotated[str, Field(min_length=1)]
 PeakRatio = Annotated[

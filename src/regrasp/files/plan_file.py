@@ -1,6 +1,7 @@
 """A plan as a JSON file: self-contained, versioned, and read back as the equal plan, bit for bit.
 
-A whole regrasp is of kind ``regrasp`` and lists its steps, each as the plan of a transition.
+A whole regrasp is of kind ``regrasp`` and lists its steps, each as the plan of a transition; in space it has
+the object's ``rotations`` besides.
 """
 
 import json
@@ -14,6 +15,7 @@ from regrasp.errors import InvalidInput
 from regrasp.files.source import naming, text_of
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
+from regrasp.mechanics.checks import array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -21,6 +23,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.course import Course
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.sampled import SampledTransition
+from regrasp.planning.space_plan import SpaceRegraspPlan
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.transition import Choice, Record, Transition
 from regrasp.planning.turn import Turn
@@ -106,6 +109,7 @@ class _Regrasp(_Header):
     steps: list[_Transition] = Field(min_length=1)
     orientations: list[float]
     margin: float
+    rotations: list[list[list[float]]] | None = None  # in space
 
 
 def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
@@ -155,10 +159,12 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
 
 
 def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:
+    turned = {"rotations": plan.rotations.tolist()} if isinstance(plan, SpaceRegraspPlan) else {}
     return {
         "kind": "regrasp",
         "orientations": list(plan.orientations),
         "margin": plan.margin,
+        **turned,
         "steps": [_document(step) for step in plan.steps],
     }
 
@@ -173,7 +179,14 @@ def _regrasp(stored: _Regrasp) -> RegraspPlan:
         raise InvalidInput(
             f"orientations: expected {len(steps) + 1} angles, one more than the steps, got {count}"
         )
-    plan = RegraspPlan(tuple(steps), tuple(stored.orientations), stored.margin)
+    given, in_space = stored.rotations, steps[0].grasp.dimension == 3
+    if in_space != (given is not None):
+        problem = "a required key is missing, for the steps are in space"
+        raise InvalidInput(f"rotations: {problem if in_space else 'leave them out in the plane'}")
+    whole = tuple(steps), tuple(stored.orientations), stored.margin
+    plan = RegraspPlan(*whole)
+    if given is not None:
+        plan = SpaceRegraspPlan(*whole, rotations=array(given, "rotations", (count, 3, 3)))
     _ = plan.moves  # raises where a step has more fingers than the first
     return plan
 

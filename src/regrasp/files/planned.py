@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from regrasp.files.regrasp_scenario import RegraspScenario
 from regrasp.files.scenario import AnyScenario, Change, Removal, Rotation, Scenario
+from regrasp.files.space_regrasp_scenario import SpaceRegraspScenario
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
@@ -32,18 +33,20 @@ _REGRASP_OPTIONS = (
     "objective",
     "states",
     "min_distance",
-    "one_finger",
     "max_force",
     "peak_ratio",
     "reserve",
     "step_duration",
 )
+_SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
 
 
 def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
     """What a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
     if isinstance(scenario, RegraspScenario):
         return _regrasp(scenario)
+    if isinstance(scenario, SpaceRegraspScenario):
+        return _space_regrasp(scenario)
     task, load = scenario.task, scenario.external
     if isinstance(task, Rotation):
         return _rotation(scenario, task)
@@ -71,7 +74,22 @@ def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
         weights=None if task.weights is None else task.weights.value,
         arcs=None if task.arcs is None else [arc or None for arc in task.arcs],
         max_turn=MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
+        one_finger=task.one_finger,
         **_taken(task, _REGRASP_OPTIONS),
+    )
+
+
+def _space_regrasp(scenario: SpaceRegraspScenario) -> RegraspPlan:
+    task = scenario.task
+    return plan_regrasp(
+        scenario.object.value,
+        scenario.start_grasp,
+        scenario.goal_grasp,
+        Wrench(scenario.load.force),
+        friction=scenario.friction,
+        least_margin=radians(task.least_margin_degrees),
+        max_turn=radians(task.max_turn_degrees),
+        **_taken(task, _SPACE_REGRASP_OPTIONS),
     )
 
 
@@ -110,5 +128,8 @@ def _given(scenario: Scenario, grasp: Grasp, key: Literal["force", "end_force"])
     """The state of ``grasp`` whose forces stand in the scenario, if they do: all of them, or none."""
     forces = {entry.name: getattr(entry, key) for entry in scenario.contacts}
     rows = [forces[name] for name in grasp.names]
+    if None in rows:
+        return None
     load = scenario.wrench("start" if key == "force" else "end")
-    return None if None in rows else GraspState(grasp, load, rows)
+    # beside soft fingers a point contact has a fourth number, too: no torque
+    return GraspState(grasp, load, [(*row, 0.0)[: grasp.width] for row in rows])

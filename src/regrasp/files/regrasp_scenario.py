@@ -8,14 +8,13 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from regrasp.errors import InvalidInput
-from regrasp.files.keys import PeakRatio, Positive, Reserve, Vector
+from regrasp.files.keys import Positive, Vector
+from regrasp.files.regrasp_task import CommonTask
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.outline.outline import Outline
 from regrasp.outline.parts import PARTS
-from regrasp.planning.criteria import PEAK_RATIO, Objective
 from regrasp.planning.reach import MAX_TURN
 from regrasp.planning.regrasp_weights import RegraspWeights
 
@@ -134,10 +133,9 @@ class Weights(Strict):
         return self
 
 
-class RegraspTask(Strict):
+class RegraspTask(CommonTask):
     """How to get from the start to the goal."""
 
-    kind: Literal["regrasp"]
     orientations: int = Field(72, ge=1, description="angles of the object that are tried; 1 forbids turning")
     goal_degrees: float = Field(
         0.0, description="the object's angle in the end, counter-clockwise; one of the orientations"
@@ -146,10 +144,6 @@ class RegraspTask(Strict):
     max_turn_degrees: Annotated[float, Field(gt=0, lt=180)] | None = Field(
         None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"
     )
-    min_distance: float = Field(0.0, ge=0, description="[m], between two fingers that hold the object")
-    objective: Objective = Field("angle", description="what the state of every hold is chosen for")
-    states: Literal["each", "joint"] = Field("each", description="chosen each by itself, or all together")
-    least_margin_degrees: float = Field(0.0, ge=0, description="angle margin every hold must have")
     one_finger: bool = Field(False, description="whether one finger of a hold may carry the whole load")
     arcs: Annotated[list[list[Vector]], Field(min_length=3, max_length=3)] | None = Field(
         None,
@@ -157,11 +151,6 @@ class RegraspTask(Strict):
         "another; an empty list is the whole outline",
     )
     weights: Weights | None = None
-    max_force: Positive | None = Field(None, description="limit on every force [N]")
-    peak_ratio: PeakRatio = PEAK_RATIO
-    reserve: Reserve = RESERVE
-    step_duration: Positive = Field(1.0, description="[s] of each step")
-    rate: Positive = Field(1000.0, description="set-points per second")
 
     @model_validator(mode="after")
     def _goal_is_tried(self) -> "RegraspTask":

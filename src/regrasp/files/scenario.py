@@ -11,6 +11,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter, mod
 
 from regrasp.errors import InvalidInput
 from regrasp.files.keys import (
+    AnyForce,
     AnyVector,
     Control,
     Load,
@@ -24,6 +25,7 @@ from regrasp.files.keys import (
 from regrasp.files.object_entry import ObjectEntry
 from regrasp.files.regrasp_scenario import RegraspScenario
 from regrasp.files.source import text_of
+from regrasp.files.space_regrasp_scenario import SpaceRegraspScenario
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
@@ -55,12 +57,17 @@ class ContactEntry(Strict):
     max_force: Positive | None = Field(
         None, description="largest force of this finger [N]; no limit if absent"
     )
-    force: AnyVector | None = Field(
+    torsion: Positive | None = Field(
         None,
-        description="starting force on the object [N]: of every contact in touch at the start, or of none",
+        description="of a soft finger in space: most torque about the normal per normal force [m]",
     )
-    end_force: AnyVector | None = Field(
-        None, description="final force on the object [N]: of every contact in touch at the end, or of none"
+    force: AnyForce | None = Field(
+        None,
+        description="starting force on the object [N]: of every contact in touch at the start, or of none; "
+        "of a soft finger its torque about the normal [N m] comes last",
+    )
+    end_force: AnyForce | None = Field(
+        None, description="final force on the object: of every contact in touch at the end, or of none"
     )
 
     def on(self, mesh: "Mesh | None") -> Contact:
@@ -68,14 +75,20 @@ class ContactEntry(Strict):
         if mesh is None:
             assert self.normal is not None  # checked by the scenario, which knows whether there is an object
             return Contact(
-                self.position, self.normal, self.friction, max_force=self.max_force, name=self.name
+                self.position,
+                self.normal,
+                self.friction,
+                max_force=self.max_force,
+                torsion=self.torsion,
+                name=self.name,
             )
-        return mesh.contact_at(
+        contact = mesh.contact_at(
             np.array(self.position) + mesh.centre_of_mass,
             friction=self.friction,
             max_force=self.max_force,
             name=self.name,
         )
+        return contact if self.torsion is None else contact.changed(torsion=self.torsion)
 
     @model_validator(mode="after")
     def _is_a_contact(self) -> "ContactEntry":
@@ -259,10 +272,10 @@ class Scenario(Strict):
         """Vectors in the plane beside others in space; the first contact's position says which it is."""
         d = 3 if self.object is not None else len(self.contacts[0].position)
         where = "space" if d == 3 else "the plane"
-        vectors = [
+        vectors: list[tuple[str, list[float] | None]] = [
             (f"contacts[{i}].{key}", getattr(entry, key))
             for i, entry in enumerate(self.contacts)
-            for key in ("position", "normal", "force", "end_force")
+            for key in ("position", "normal")
         ]
         loads = [("load", self.load)] if isinstance(self.load, Load) else []
         if not isinstance(self.load, Load):
@@ -273,6 +286,14 @@ class Scenario(Strict):
             for name, vector in vectors
             if vector is not None and len(vector) != d
         ]
+        for i, entry in enumerate(self.contacts):
+            soft = entry.torsion is not None
+            wanted, who = (d + 1, "a soft finger") if soft else (d, "this scenario is")
+            problems += [
+                f"contacts[{i}].{key}: expected {wanted} numbers, for {who} in {where}; got {len(force)}"
+                for key, force in (("force", entry.force), ("end_force", entry.end_force))
+                if force is not None and len(force) != wanted
+            ]
         if isinstance(self.task, Rotation) and (self.task.axis is None) == (d == 3):
             problems.append(f"task.axis: {'needed in space' if d == 3 else 'leave it out in the plane'}")
         return problems
@@ -323,7 +344,7 @@ class Scenario(Strict):
         return problems
 
 
-AnyScenario = Scenario | RegraspScenario
+AnyScenario = Scenario | RegraspScenario | SpaceRegraspScenario
 
 
 def read_scenario(path: str | Path) -> AnyScenario:
@@ -347,6 +368,8 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
         raise InvalidInput(f"{file}: not TOML: {error}") from None
     task = data.get("task")
     if isinstance(task, dict) and task.get("kind") == "regrasp":
+        if "object" in data:
+            return validated(SpaceRegraspScenario, data, file)
         return validated(RegraspScenario, data, file)
     return validated(Scenario, data, file)
 

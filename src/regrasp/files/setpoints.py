@@ -4,14 +4,14 @@ import csv
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from regrasp.errors import InvalidInput
+from regrasp.files.regrasp_table import RegraspTable
+from regrasp.files.rows import Rows, check_angles, check_times
 from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
-from regrasp.mechanics.checks import Array
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.transition import Transition, setpoint_columns
 from regrasp.verification import Verification, verify_setpoints
@@ -21,32 +21,6 @@ _BLOCK = 8192
 
 # More than a day at 1000 per second; a file of that many rows is a slip of the pen.
 _MOST = 1e8
-
-# An angle in a file may differ by this much from the plan's at that time [rad].
-_SAME_ANGLE = 1e-9
-
-
-class Rows(NamedTuple):
-    """Set-points of one step, or of a plan that is one transition.
-
-    step: its number, from 0. times: (m,) from its start [s]. angles: (m,) of the object, from its start
-    [rad]. forces: (m, n, d) of the step's contacts [N].
-    """
-
-    step: int
-    times: Array
-    angles: Array
-    forces: Array
-
-
-class _Fingers(NamedTuple):
-    """Where the fingers are during a step of a regrasp: (F, 2) points, and the number of each one's contact.
-
-    A finger in the air is at its last point, and makes no contact.
-    """
-
-    points: Array
-    contacts: list[int | None]
 
 
 def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Rows]:
@@ -78,10 +52,13 @@ def checked(plan: Transition | RegraspPlan, rows: Rows) -> Verification:
 def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: float = 1000.0) -> None:
     """Write ``t`` [s] and the columns ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact [N].
 
-    Where the object turns, ``angle`` [rad] follows ``t``. Of a regrasp the columns are ``t``, ``angle``,
-    ``step`` (from 1) and ``F1_x``, ``F1_y``, ``F1_fx``, ``F1_fy`` per finger: its contact point and its force
-    in the object frame. A finger in the air stays at its last point, without force; it moves between the last
-    row of a step and the first row of the next, which have the same time.
+    With soft fingers ``<name>_mn`` follows, the torque about the normal [N m]. Where the object turns,
+    ``angle`` [rad] follows ``t``. Of a regrasp the columns are ``t``, ``angle``, ``step`` (from 1) and
+    ``F1_x``, ``F1_y``, ``F1_fx``, ``F1_fy`` per finger: its contact point and its force in the object frame.
+    A finger in the air stays at its last point, without force; it moves between the last row of a step and
+    the first row of the next, which have the same time. In space points and forces have a ``z``, and in
+    the place of ``angle`` stand ``qw``, ``qx``, ``qy``, ``qz``, the unit quaternion from the object's frame
+    to its frame at the start; its sign never jumps.
 
     rate: rows per second; both ends of the plan, and of every step, have a row. Every number reads back as
     the same double.
@@ -92,10 +69,9 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(_columns(plan))
         if isinstance(plan, RegraspPlan):
-            starts, fingers = _starts(plan), _fingers(plan)
+            table = RegraspTable(plan)
             for block in blocks:
-                table = _whole_rows(plan, block, starts[block.step], fingers[block.step])
-                rows.writerows([t, angle, block.step + 1, *rest] for t, angle, *rest in table.tolist())
+                rows.writerows(table.rows(block))
             return
         for _, t, angles, forces in blocks:
             turned = [] if plan.turn is None else [angles]
@@ -120,51 +96,15 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan) -> list[Row
     if table.ndim != 2 or table.shape[1] != len(columns) or not np.isfinite(table).all():
         raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
     if isinstance(plan, RegraspPlan):
-        return _read_regrasp(path, plan, table)
+        return RegraspTable(plan).read(path, table)
     times = table[:, 0]
-    _check_times(path, times, 0.0, plan.duration)
+    check_times(path, times, 0.0, plan.duration)
     turned = 0 if plan.turn is None else 1
     angles = plan.orientation(times)
     if turned:
-        _check_angles(path, table[:, 1], angles)
+        check_angles(path, table[:, 1], angles)
         angles = table[:, 1]
     return [Rows(0, times, angles, table[:, 1 + turned :].reshape(times.size, *plan.start.forces.shape))]
-
-
-def _read_regrasp(path: Path, plan: RegraspPlan, table: Array) -> list[Rows]:
-    steps, result = table[:, 2], []
-    if (np.diff(steps) < 0).any() or set(steps.tolist()) != set(range(1, len(plan.steps) + 1)):
-        raise InvalidInput(f"{path}: steps must rise from 1 to {len(plan.steps)}, and each have rows")
-    places = zip(_starts(plan), _fingers(plan), strict=True)
-    for k, (step, (start, (points, contacts))) in enumerate(zip(plan.steps, places, strict=True)):
-        here = table[steps == k + 1]
-        _check_times(path, here[:, 0], start, start + step.duration)
-        times = np.clip(here[:, 0] - start, 0.0, step.duration)
-        angles = here[:, 1] - plan.orientations[k]
-        _check_angles(path, angles, step.orientation(times))
-        fingers = here[:, 3:].reshape(len(here), len(contacts), 4)
-        forces = np.empty((len(here), len(step.grasp), 2))
-        for i, contact in enumerate(contacts):
-            if (fingers[:, i, :2] != points[i]).any():
-                x, y = points[i].tolist()
-                raise InvalidInput(f"{path}: F{i + 1} must be at ({x!r}, {y!r}) all through step {k + 1}")
-            if contact is not None:
-                forces[:, contact] = fingers[:, i, 2:]
-            elif fingers[:, i, 2:].any():
-                raise InvalidInput(f"{path}: F{i + 1} is in the air in step {k + 1} and carries no force")
-        result.append(Rows(k, times, angles, forces))
-    return result
-
-
-def _check_times(path: Path, times: Array, start: float, end: float) -> None:
-    if times[0] != start or times[-1] != end or not (np.diff(times) > 0).all():
-        raise InvalidInput(f"{path}: times must rise from {start:g} to {end!r} s")
-
-
-def _check_angles(path: Path, angles: Array, planned: Array) -> None:
-    off = float(abs(angles - planned).max())
-    if off > _SAME_ANGLE:
-        raise InvalidInput(f"{path}: angles must be the plan's at these times; one is off by {off:.3g} rad")
 
 
 def _steps(plan: Transition | RegraspPlan) -> tuple[Transition, ...]:
@@ -173,35 +113,5 @@ def _steps(plan: Transition | RegraspPlan) -> tuple[Transition, ...]:
 
 def _columns(plan: Transition | RegraspPlan) -> list[str]:
     if isinstance(plan, RegraspPlan):
-        fingers = range(1, len(plan.steps[0].grasp) + 1)
-        return ["t", "angle", "step", *(f"F{i}_{what}" for i in fingers for what in ("x", "y", "fx", "fy"))]
+        return RegraspTable(plan).columns
     return ["t", *([] if plan.turn is None else ["angle"]), *setpoint_columns(plan.grasp)]
-
-
-def _starts(plan: RegraspPlan) -> list[float]:
-    """The time at which each step starts [s]."""
-    ends = np.cumsum([step.duration for step in plan.steps])
-    return [0.0, *ends[:-1].tolist()]
-
-
-def _fingers(plan: RegraspPlan) -> list[_Fingers]:
-    points, result = plan.steps[0].grasp.positions.copy(), []
-    for step, names in zip(plan.steps, plan.fingers, strict=True):
-        contacts = [None if name is None else step.grasp.index(name) for name in names]
-        for i, contact in enumerate(contacts):
-            if contact is not None:
-                points[i] = step.grasp.positions[contact]
-        result.append(_Fingers(points.copy(), contacts))
-    return result
-
-
-def _whole_rows(plan: RegraspPlan, rows: Rows, start: float, fingers: _Fingers) -> Array:
-    """(m, 2 + 4 F) rows of a regrasp's table, without the column ``step``."""
-    count = rows.times.size
-    table = np.zeros((count, len(fingers.contacts), 4))
-    table[:, :, :2] = fingers.points
-    for i, contact in enumerate(fingers.contacts):
-        if contact is not None:
-            table[:, i, 2:] = rows.forces[:, contact]
-    angles = plan.orientations[rows.step] + rows.angles
-    return np.column_stack([start + rows.times, angles, table.reshape(count, -1)])

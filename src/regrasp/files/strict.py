@@ -28,6 +28,7 @@ _EXPECTED = {
     "literal_error": "{expected}",
     "model_attributes_type": "a table",
     "model_type": "a table",
+    "multiple_of": "a multiple of {multiple_of:g}",
     "string_too_short": "some text",
     "string_type": "text",
     "too_long": "at most {max_length} entries",
