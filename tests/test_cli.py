@@ -313,6 +313,7 @@ def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert [set(kind["required"]) for kind in kinds] == [
         {"load", "contacts", "task"},
         {"friction", "load", "outline", "start", "goal", "task"},
+        {"friction", "load", "object", "start", "goal", "task"},
     ]
 
 

@@ -651,10 +651,10 @@ TASK_KEYS = (
         ([("orientations = 24", "orientations = 0\nangles = 3"), ("max_turn_degrees = 90.0",
                                                                     "max_turn_degrees = 180"),
           ("min_distance = 0.02", "min_distance = -1"), ("candidates = 120", "candidates = 1.5")],
-         ["task.orientations: expected a number of at least 1, got 0",
+         ["task.min_distance: expected a number of at least 0, got -1",
+          "task.orientations: expected a number of at least 1, got 0",
           "task.candidates: Input should be a valid integer, got 1.5",
           "task.max_turn_degrees: expected a number less than 180, got 180",
-          "task.min_distance: expected a number of at least 0, got -1",
           f"task.angles: unknown key; known here: {TASK_KEYS}"]),
     ],
 )  # fmt: skip
