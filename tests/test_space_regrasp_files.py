@@ -552,3 +552,21 @@ def test_a_regrasp_that_is_not_finite_is_not_written(plan: SpaceRegraspPlan, tmp
     with pytest.raises(rg.InvalidInput, match="margin: expected a finite number, got nan"):
         write_plan(replace(plan, margin=float("nan")), tmp_path / "plan.json")
     assert not list(tmp_path.iterdir())
+
+
+def test_the_example_from_the_command_line(
+    plan: SpaceRegraspPlan, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    status, out, err = regrasp(capsys, "plan", EXAMPLE, "-o", tmp_path)
+    assert (status, err) == (0, "")
+    assert str(plan) in out
+    assert {file.name for file in tmp_path.iterdir()} == {
+        "overview.png",
+        "plan.json",
+        "setpoints.csv",
+        *(f"step_{k}.png" for k in range(1, len(plan.steps) + 1)),
+    }
+    status, out, err = regrasp(capsys, "verify", tmp_path)
+    assert (status, err) == (0, "")
+    assert "verified in exact arithmetic" in out
+    assert f"each of {101 * len(plan.steps)} set-points" in out

@@ -1,21 +1,27 @@
 """A plan as a film: GIF, HTML page or MP4."""
 
 from collections.abc import Sequence
-from math import ceil, floor, log10, pi
+from dataclasses import replace
+from math import ceil, floor, log10
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.figure import Figure
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number
 from regrasp.outline.outline import Outline
 from regrasp.planning.regrasp_plan import FingerMove, RegraspPlan
 from regrasp.planning.transition import Transition
-from regrasp.plots.style import SMALL, TEXT, label_axis, new_figure, refuse_space, short, tidy
+from regrasp.plots.solids import triangles_of
+from regrasp.plots.space import space_panel
+from regrasp.plots.space_world import SpaceStage, measures
+from regrasp.plots.style import SMALL, TEXT, label_axis, new_figure, short, tidy
 from regrasp.plots.units import SI, Units
+from regrasp.plots.view import shared_view
 from regrasp.plots.world import Moment, Stage, as_regrasp, joined, moment_of
 
 # A finger in the air keeps this far from where it touched, as a fraction of the object's size.
@@ -25,7 +31,7 @@ _DPI = 100
 
 def animate(
     plan: RegraspPlan | Transition,
-    outline: Outline | None = None,
+    outline: Outline | Any = None,
     *,
     path: str | PathLike[str],
     frames_per_second: float = 20.0,
@@ -36,9 +42,11 @@ def animate(
 
     Forces are those of the fingers on the object, with their tails at the contacts. A dashed ring is a finger
     in the air; its way between two contact points is only suggested and takes ``move_time`` [s], which no
-    plan says. Without an outline the hull of all contacts stands for the object. Time runs as in the plan.
+    plan says. Time runs as in the plan.
+    outline: in space the solid, as for ``plot_regrasp``. Without an outline the hull of all contacts stands
+    for the object, without a solid nothing does.
     path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
-    Raises ``InvalidInput`` for another ending, for MP4 without ffmpeg and for a grasp in space.
+    Raises ``InvalidInput`` for another ending and for MP4 without ffmpeg.
     """
     target = Path(path)
     ending = target.suffix.lower()
@@ -48,10 +56,9 @@ def animate(
         raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif or .html instead")
     rate = number(frames_per_second, "frames_per_second", above=0)
     whole = as_regrasp(plan)
-    refuse_space(whole.steps[0].grasp.dimension)
-    stage = Stage(whole.steps, outline)
-    frames = moments(whole, rate, number(move_time, "move_time", least=0), stage.radius, units)
-    film = _film(stage, frames, rate, units)
+    scene = (_SpaceScene if whole.steps[0].grasp.dimension == 3 else _Scene)(whole, outline, units)
+    frames = moments(whole, rate, number(move_time, "move_time", least=0), scene.stage.radius, units)
+    film = _film(scene, frames, rate)
     if ending == ".html":
         target.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
     else:
@@ -108,41 +115,81 @@ def _moving(plan: RegraspPlan, k: int, idle: dict[int, Array], move: FingerMove,
     moment = moment_of(plan, k, 0.0, {n: r for n, r in idle.items() if n != move.finger})
     others = tuple(f for f in moment.fingers if f.number != move.finger)
     here = next(f for f in moment.fingers if f.number == move.finger)
-    c, s = np.cos(moment.angle), np.sin(moment.angle)
-    flying = type(here)(here.number, here.name, np.array([[c, -s], [s, c]]) @ at, None, 0.0, np.zeros(2))
-    return Moment(moment.angle, moment.load, (*others, flying))
+    flying = type(here)(here.number, here.name, moment.turn @ at, None, 0.0, np.zeros(at.size))
+    return Moment(moment.turn, moment.load, (*others, flying))
 
 
 def _way(origin: Array, target: Array, far: float, u: float) -> Array:
     """Away from the centre of mass to a distance ``far`` [m], around it the shorter way, and back."""
-    a, b = np.arctan2(origin[1], origin[0]), np.arctan2(target[1], target[0])
-    turn = (b - a + pi) % (2 * pi) - pi
+    a, b = (r / (np.linalg.norm(r) or 1.0) for r in (origin, target))
+    across = b - (a @ b) * a
+    if np.linalg.norm(across) < 1e-6:  # to the same side, or to the opposite one by any way around
+        across = np.eye(a.size)[np.argmin(abs(a))]
+        across = across - (across @ a) * a
+    across /= np.linalg.norm(across)
+    turn = float(np.arctan2(across @ b, a @ b))
     rise, around, fall = (float(np.clip((u - start) / (1 / 3), 0, 1)) for start in (0, 1 / 3, 2 / 3))
-    radii = float(np.hypot(*origin)), float(np.hypot(*target))
+    radii = float(np.linalg.norm(origin)), float(np.linalg.norm(target))
     start_or_end, share = (radii[1], 1 - fall) if fall else (radii[0], rise)
     radius = start_or_end + share * max(0.0, far - start_or_end)
-    angle = a + around * turn
-    return np.asarray(radius * np.array([np.cos(angle), np.sin(angle)]))
+    return np.asarray(radius * (np.cos(around * turn) * a + np.sin(around * turn) * across))
 
 
-def _film(
-    stage: Stage,
-    frames: Sequence[tuple[str, Moment]],
-    rate: float,
-    units: Units,
-) -> FuncAnimation:
+class _Scene:
+    """A planar object in axes with numbers."""
+
+    def __init__(self, plan: RegraspPlan, outline: Any, units: Units) -> None:
+        if outline is not None and not isinstance(outline, Outline):
+            raise InvalidInput(f"a plan in the plane is drawn on an Outline, got {type(outline).__name__}")
+        self.stage, self.units = Stage(plan.steps, outline), units
+
+    def axes(self, figure: Figure) -> Any:
+        """New axes for all moments."""
+        return tidy(figure.add_axes((0.16, 0.12, 0.8, 0.8)))
+
+    def show(self, ax: Any, moment: Moment) -> None:
+        """Draw a moment on axes that were cleared."""
+        self.stage.draw(ax, moment)
+        ax.tick_params(labelsize=SMALL)
+        label_axis(ax.xaxis, "$x$ in the world", self.units.length, self.stage.size)
+        label_axis(ax.yaxis, "$y$", self.units.length, self.stage.size)
+
+
+class _SpaceScene:
+    """A solid object seen from one direction, with the world's axes and a bar of a round length."""
+
+    def __init__(self, plan: RegraspPlan, mesh: Any, units: Units) -> None:
+        self.stage, self.units = SpaceStage(plan.steps, triangles_of(mesh)), units
+        shown = [
+            moment_of(plan, k, t)
+            for k, step in enumerate(plan.steps)
+            for t in np.linspace(0, step.duration, 5).tolist()
+        ]
+        window = self.stage.window(shown, shared_view([moment.touching for moment in shown]))
+        # room for fingers in the air
+        self.window = replace(window, side=max(window.side, (1 + 2 * _LIFT) * self.stage.radius))
+
+    def axes(self, figure: Figure) -> Any:
+        """New axes for all moments."""
+        return space_panel(figure, (0.03, 0.0, 0.94, 0.94))
+
+    def show(self, ax: Any, moment: Moment) -> None:
+        """Draw a moment on axes that were cleared."""
+        self.window.show(ax)
+        self.stage.draw(ax, moment)
+        measures(ax, self.stage, self.window, self.units)
+
+
+def _film(scene: _Scene | _SpaceScene, frames: Sequence[tuple[str, Moment]], rate: float) -> FuncAnimation:
     figure = new_figure(height=3.6)
     figure.set_layout_engine("none")
-    ax = tidy(figure.add_axes((0.16, 0.12, 0.8, 0.8)))
+    ax = scene.axes(figure)
 
     def show(k: int) -> list[Any]:
         title, moment = frames[k]
         ax.clear()
-        stage.draw(ax, moment)
+        scene.show(ax, moment)
         ax.set_title(title, fontsize=TEXT, loc="left")
-        ax.tick_params(labelsize=SMALL)
-        label_axis(ax.xaxis, "$x$ in the world", units.length, stage.size)
-        label_axis(ax.yaxis, "$y$", units.length, stage.size)
         return []
 
     return FuncAnimation(figure, show, frames=len(frames), interval=1000 / rate, cache_frame_data=False)

@@ -1,6 +1,7 @@
 """A whole regrasp, step by step."""
 
 from math import ceil, degrees
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,9 +12,12 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.outline import Outline
 from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.planning.space_plan import SpaceRegraspPlan
 from regrasp.plots.arrows import arrow
 from regrasp.plots.labels import Labels
 from regrasp.plots.overview import png
+from regrasp.plots.solids import triangles_of
+from regrasp.plots.space_regrasp import draw_regrasp
 from regrasp.plots.style import (
     GREY,
     PALETTE,
@@ -23,7 +27,6 @@ from regrasp.plots.style import (
     label_axis,
     new_figure,
     note,
-    refuse_space,
     short,
     tidy,
 )
@@ -37,17 +40,23 @@ _INSIDE = 0.8  # of a panel: its axes
 _WORD = 6.5  # [pt]
 
 
-def plot_regrasp(plan: RegraspPlan, outline: Outline | None = None, *, units: Units = SI) -> Figure:
+def plot_regrasp(plan: RegraspPlan, outline: Outline | Any = None, *, units: Units = SI) -> Figure:
     """Every step of a regrasp side by side in the world frame, each as it begins, and the end.
 
     Beside the fingers stands who leaves and who arrives in the step; a grey arc is the turn of the object
     during it. A filled finger pushes: arrows are its force on the object, all at one scale; black is the
-    load. Without an outline the hull of all contacts stands for the object. Raises ``InvalidInput`` for a
-    grasp in space.
+    load. In space a dashed arrow is the move of a finger before the step, and a thin line the axis of a turn.
+
+    outline: in space the solid, anything with ``surface()`` or (vertices (v, 3), faces (f, 3)).
+    Without an outline the hull of all contacts stands for the object, without a solid nothing does.
+    Raises ``InvalidInput`` for anything else.
     """
     if not isinstance(plan, RegraspPlan):
         raise InvalidInput(f"plan must be a RegraspPlan, got {type(plan).__name__}; see plot_transition")
-    refuse_space(plan.steps[0].grasp.dimension)
+    if isinstance(plan, SpaceRegraspPlan):
+        return draw_regrasp(plan, triangles_of(outline), units)
+    if outline is not None and not isinstance(outline, Outline):
+        raise InvalidInput(f"a regrasp in the plane is drawn on an Outline, got {type(outline).__name__}")
     stage, count = Stage(plan.steps, outline, heads=6), len(plan.steps) + 1
     rows = ceil(count / _COLUMNS)
     columns = ceil(count / rows)

@@ -53,15 +53,18 @@ def draw_body_in_space(
     ax.plot(0, 0, 0, marker="+", color=INK, markersize=5, markeredgewidth=0.7, zorder=5)
 
 
-def draw_mesh(ax: Any, mesh: Triangles) -> None:
-    """The surface, translucent so that what happens behind and inside it is seen, and its sharp edges."""
+def draw_mesh(ax: Any, mesh: Triangles, edges: Array | None = None) -> None:
+    """The surface, translucent so that what happens behind and inside it is seen, and its sharp edges.
+
+    edges: (k, 2, 3), found if not given.
+    """
     vertices, faces = mesh
     light = 0.72 + 0.28 * abs(face_normals(mesh) @ _LIGHT)
     colours = np.column_stack([light[:, None] * to_rgb(_SURFACE), np.full(len(faces), 0.3)])
     surface = Poly3DCollection(vertices[faces], facecolors=colours, edgecolors="none", zorder=0)
     surface.set_gid("mesh")
     ax.add_collection3d(surface)
-    draw_edges(ax, creases(mesh), GREY, gid="edges")
+    draw_edges(ax, creases(mesh) if edges is None else edges, GREY, gid="edges")
     include(ax, vertices)
 
 

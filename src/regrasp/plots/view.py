@@ -64,13 +64,22 @@ def facing_view(positions: Array, normals: Array) -> tuple[float, float]:
 
     positions, normals: (n, 3); normals point into the object, away from the reader at a contact that is seen.
     """
-    size = float(np.ptp(positions, axis=0).max()) or 1.0
-    pairs = np.array([(i, j) for i in range(len(positions)) for j in range(i)], dtype=np.intp)
-    pairs = pairs.reshape(-1, 2)
+    return shared_view([(positions, normals)])
+
+
+def shared_view(grasps: Sequence[tuple[Array, Array]]) -> tuple[float, float]:
+    """``facing_view`` of several grasps, (positions, normals) of each, that are seen from one direction."""
+    size = max(float(np.ptp(positions, axis=0).max()) for positions, _ in grasps) or 1.0
 
     def clearness(view: tuple[float, float]) -> float:
-        shown = positions @ projection(*view).T / size
-        apart = np.linalg.norm(shown[pairs[:, 0]] - shown[pairs[:, 1]], axis=1)
-        return float(np.log(apart + 1e-2).sum() / max(1, len(pairs)) - 0.5 * (normals @ sight(*view)).mean())
+        return sum(_clearness(positions / size, normals, view) for positions, normals in grasps)
 
     return max(product(_ELEVATIONS, _AZIMUTHS), key=clearness)
+
+
+def _clearness(positions: Array, normals: Array, view: tuple[float, float]) -> float:
+    """How far apart contacts look, and how many of them look at the reader."""
+    pairs = np.array([(i, j) for i in range(len(positions)) for j in range(i)], dtype=np.intp).reshape(-1, 2)
+    shown = positions @ projection(*view).T
+    apart = np.linalg.norm(shown[pairs[:, 0]] - shown[pairs[:, 1]], axis=1)
+    return float(np.log(apart + 1e-2).sum() / max(1, len(pairs)) - 0.5 * (normals @ sight(*view)).mean())

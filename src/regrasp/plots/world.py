@@ -1,4 +1,4 @@
-"""A moment of a plan in the world frame: the object at its angle, who touches it, and with which forces."""
+"""A moment of a plan in the world frame: how the object is turned, who touches it, and with which forces."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,9 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.outline.outline import Outline
 from regrasp.planning.regrasp_plan import RegraspPlan
+from regrasp.planning.space_plan import SpaceRegraspPlan, accumulated
 from regrasp.planning.transition import Transition
+from regrasp.planning.turning import TurningTransition
 from regrasp.plots.arrows import arrow
 from regrasp.plots.style import INK, PALE, PALETTE, literal
 
@@ -23,9 +25,9 @@ _FINGER, _CONE, _LONGEST = 0.035, 0.2, 0.4
 
 @dataclass(frozen=True, eq=False)
 class Finger:
-    """One finger, in the world frame. at: (2,) its contact point, or where it is in the air [m].
+    """One finger, in the world frame. at: (d,) its contact point, or where it is in the air [m].
 
-    normal (2,) and half_angle [rad] of its contact; None in the air. force: (2,) [N].
+    normal (d,) and half_angle [rad] of its contact; None in the air. force: (d,) [N].
     """
 
     number: int
@@ -38,11 +40,22 @@ class Finger:
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """angle: of the object [rad]. load: (2,) force in the world [N]."""
+    """turn: (d, d) from the object frame to the world. load: (d,) force in the world [N]."""
 
-    angle: float
+    turn: Array
     load: Array
     fingers: tuple[Finger, ...]
+
+    @property
+    def angle(self) -> float:
+        """Of the object in the plane [rad], within half a turn of 0."""
+        return float(np.arctan2(self.turn[1, 0], self.turn[0, 0]))
+
+    @property
+    def touching(self) -> tuple[Array, Array]:
+        """(n, d) positions [m] and normals of the fingers in touch."""
+        pairs = [(finger.at, finger.normal) for finger in self.fingers if finger.normal is not None]
+        return np.array([at for at, _ in pairs]), np.array([normal for _, normal in pairs])
 
 
 class Stage:
@@ -94,7 +107,7 @@ class Stage:
             self._finger(ax, finger)
 
     def _object(self, ax: Axes, moment: Moment) -> None:
-        turn = rotation(moment.angle)
+        turn = moment.turn
         if self.rings:
             paths = [Path(np.vstack([ring, ring[:1]]) @ turn.T, closed=True) for ring in self.rings]
             look = {"facecolor": PALE, "edgecolor": INK, "linewidth": 0.8}
@@ -149,6 +162,9 @@ def as_regrasp(plan: RegraspPlan | Transition) -> RegraspPlan:
     """A transition as a regrasp of one step."""
     if isinstance(plan, RegraspPlan):
         return plan
+    if plan.grasp.dimension == 3:
+        turned, rotations = accumulated([plan])
+        return SpaceRegraspPlan((plan,), turned, 0.0, rotations=rotations)
     turn = float(plan.orientation(plan.duration)) + 0.0
     return RegraspPlan((plan,), (0.0, turn), 0.0)
 
@@ -156,16 +172,15 @@ def as_regrasp(plan: RegraspPlan | Transition) -> RegraspPlan:
 def moment_of(plan: RegraspPlan, step: int, t: float, idle: dict[int, Array] | None = None) -> Moment:
     """The moment at time ``t`` of a step, from its start [s].
 
-    idle: (2,) places, in the object frame, of fingers in the air, by number.
+    idle: (d,) places, in the object frame, of fingers in the air, by number.
     """
     now = plan.steps[step]
-    angle = plan.orientations[step] + float(now.orientation(t))
-    turn = rotation(angle)
-    forces, fingers = now.forces(t), []
+    turn, d = turn_of(plan, step, t), now.grasp.dimension
+    forces, fingers = now.forces(t)[:, :d], []
     for number, name in enumerate(plan.fingers[step]):
         if name is None:
             if idle and number in idle:
-                fingers.append(Finger(number, "", turn @ idle[number], None, 0.0, np.zeros(2)))
+                fingers.append(Finger(number, "", turn @ idle[number], None, 0.0, np.zeros(d)))
             continue
         contact = now.grasp[name]
         fingers.append(
@@ -178,7 +193,16 @@ def moment_of(plan: RegraspPlan, step: int, t: float, idle: dict[int, Array] | N
                 turn @ forces[now.grasp.index(name)],
             )
         )
-    return Moment(angle, turn @ now.load(t)[:2], tuple(fingers))
+    return Moment(turn, turn @ now.load(t)[:d], tuple(fingers))
+
+
+def turn_of(plan: RegraspPlan, step: int, t: float) -> Array:
+    """(d, d) from the object frame to the world at time ``t`` of a step, from its start [s]."""
+    now = plan.steps[step]
+    if not isinstance(plan, SpaceRegraspPlan):
+        return rotation(plan.orientations[step] + float(now.orientation(t)))
+    before: Array = plan.rotations[step]
+    return before @ now.rotations(t) if isinstance(now, TurningTransition) else before
 
 
 def rotation(angle: float) -> Array:
@@ -188,7 +212,7 @@ def rotation(angle: float) -> Array:
 
 
 def joined(grasps: Sequence[Grasp]) -> dict[str, Array]:
-    """Normals (2,) of all contacts by name, object frame."""
+    """Normals (d,) of all contacts by name, object frame."""
     return {name: grasp[name].normal for grasp in grasps for name in grasp.names}
 
 
