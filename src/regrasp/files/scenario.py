@@ -82,13 +82,13 @@ class ContactEntry(Strict):
                 torsion=self.torsion,
                 name=self.name,
             )
-        contact = mesh.contact_at(
+        return mesh.contact_at(
             np.array(self.position) + mesh.centre_of_mass,
             friction=self.friction,
             max_force=self.max_force,
+            torsion=self.torsion,
             name=self.name,
         )
-        return contact if self.torsion is None else contact.changed(torsion=self.torsion)
 
     @model_validator(mode="after")
     def _is_a_contact(self) -> "ContactEntry":
