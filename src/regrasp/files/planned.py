@@ -4,8 +4,9 @@ from math import radians
 from typing import Any, Literal
 
 from regrasp.files.regrasp_scenario import RegraspScenario
-from regrasp.files.scenario import AnyScenario, Change, Removal, Rotation, Scenario
+from regrasp.files.scenario import AnyScenario, Scenario
 from regrasp.files.space_regrasp_scenario import SpaceRegraspScenario
+from regrasp.files.tasks import Change, Removal, Rotation
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
