@@ -86,7 +86,7 @@ def cheapen(stance, known, move, worth, rows, near, turning, step, bound, result
 
 
 class Moves(NamedTuple):
-    """One finger move, compiled for one way to number holds.
+    """One finger move over all stances of fresh holds; every thread has a table of its own.
 
     others: (holds, hold, point) -> the other holds of the stance of both; -1 where not allowed.
     widest: widens ``known`` by one move from the ``fresh`` holds, the ``frontier``; returns which are wider.
@@ -98,80 +98,87 @@ class Moves(NamedTuple):
     cheapest: Any
 
 
-def moves_by(others: Any) -> Moves:
-    """The loops over all stances of fresh holds; every thread has a table of its own."""
+def others_of(holds, hold, point):  # type: ignore[no-untyped-def]
+    """The other holds of a stance. Numba takes the function for this kind of ``holds``.
 
-    @njit(error_model="numpy")
-    def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
-        """Whether a stance is allowed, and no other fresh hold stands for it."""
-        for other in rest:  # noqa: SIM110 - Numba unrolls a loop over a tuple, and no generator
-            if other < 0 or (fresh[other] and other < hold):
-                return False
-        return True
+    Were it an argument or in a closure, the loops would be compiled anew in every process.
+    """
+    raise NotImplementedError("compiled code only: see compiled_stances")
 
-    @njit(error_model="numpy", parallel=True, cache=True)
-    def widest(  # type: ignore[no-untyped-def]
-        frontier, fresh, known, margins, rows, holds, points, near, floor, threads
-    ):
-        count = known.shape[1]
-        tables = np.empty((threads, *known.shape), dtype=known.dtype)
-        touched = np.zeros((threads, known.shape[0]), dtype=np.bool_)
-        for thread in prange(threads):
-            reached = np.empty((4, count))
-            for n in range(thread, frontier.size, threads):
-                for point in range(points):
-                    rest = others(holds, frontier[n], point)
-                    if is_mine(fresh, frontier[n], rest):
-                        stance = (frontier[n], *rest)
-                        widen(stance, known, margins, rows, near, floor, reached)
-                        for q in range(len(stance)):
-                            h = stance[q]
-                            if not touched[thread, h]:
-                                touched[thread, h] = True
-                                tables[thread, h] = known[h]
-                            for o in range(count):
-                                tables[thread, h, o] = max(tables[thread, h, o], reached[q, o])
-        wider = np.zeros(known.shape[0], dtype=np.bool_)
-        for h in prange(known.shape[0]):
-            for thread in range(threads):
-                for o in range(count if touched[thread, h] else 0):
-                    if tables[thread, h, o] > known[h, o]:
-                        known[h, o] = tables[thread, h, o]
-                        wider[h] = True
-        return wider
 
-    @njit(error_model="numpy", parallel=True, cache=True)
-    def cheapest(  # type: ignore[no-untyped-def]
-        frontier, fresh, known, move, worth, rows, holds, points, near, turning, step, bound, threads
-    ):
-        count = known.shape[1]
-        tables = np.empty((threads, *known.shape))
-        touched = np.zeros((threads, known.shape[0]), dtype=np.bool_)
-        for thread in prange(threads):
-            reached = np.empty((4, count))
-            for n in range(thread, frontier.size, threads):
-                for point in range(points):
-                    rest = others(holds, frontier[n], point)
-                    if is_mine(fresh, frontier[n], rest):
-                        stance = (frontier[n], *rest)
-                        cheapen(stance, known, move, worth, rows, near, turning, step, bound, reached)
-                        for q in range(len(stance)):
-                            h = stance[q]
-                            if not touched[thread, h]:
-                                touched[thread, h] = True
-                                tables[thread, h] = known[h]
-                            for o in range(count):
-                                tables[thread, h, o] = min(tables[thread, h, o], reached[q, o])
-        result, cheaper = known.copy(), np.zeros(known.shape[0], dtype=np.bool_)
-        for h in prange(known.shape[0]):
-            for thread in range(threads):
-                for o in range(count if touched[thread, h] else 0):
-                    if tables[thread, h, o] < result[h, o]:
-                        result[h, o] = tables[thread, h, o]
-                        cheaper[h] = True
-        return result, cheaper
+@njit(error_model="numpy")
+def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
+    """Whether a stance is allowed, and no other fresh hold stands for it."""
+    for other in rest:  # noqa: SIM110 - Numba unrolls a loop over a tuple, and no generator
+        if other < 0 or (fresh[other] and other < hold):
+            return False
+    return True
 
-    return Moves(others, widest, cheapest)
+
+@njit(error_model="numpy", parallel=True, cache=True)
+def widest(  # type: ignore[no-untyped-def]
+    frontier, fresh, known, margins, rows, holds, points, near, floor, threads
+):
+    """Widen ``known`` by one move from the frontier; which holds are wider."""
+    count = known.shape[1]
+    tables = np.empty((threads, *known.shape), dtype=known.dtype)
+    touched = np.zeros((threads, known.shape[0]), dtype=np.bool_)
+    for thread in prange(threads):
+        reached = np.empty((4, count))
+        for n in range(thread, frontier.size, threads):
+            for point in range(points):
+                rest = others_of(holds, frontier[n], point)  # type: ignore[no-untyped-call]
+                if is_mine(fresh, frontier[n], rest):
+                    stance = (frontier[n], *rest)
+                    widen(stance, known, margins, rows, near, floor, reached)
+                    for q in range(len(stance)):
+                        h = stance[q]
+                        if not touched[thread, h]:
+                            touched[thread, h] = True
+                            tables[thread, h] = known[h]
+                        for o in range(count):
+                            tables[thread, h, o] = max(tables[thread, h, o], reached[q, o])
+    wider = np.zeros(known.shape[0], dtype=np.bool_)
+    for h in prange(known.shape[0]):
+        for thread in range(threads):
+            for o in range(count if touched[thread, h] else 0):
+                if tables[thread, h, o] > known[h, o]:
+                    known[h, o] = tables[thread, h, o]
+                    wider[h] = True
+    return wider
+
+
+@njit(error_model="numpy", parallel=True, cache=True)
+def cheapest(  # type: ignore[no-untyped-def]
+    frontier, fresh, known, move, worth, rows, holds, points, near, turning, step, bound, threads
+):
+    """``known`` after one move from the frontier, and which holds became cheaper."""
+    count = known.shape[1]
+    tables = np.empty((threads, *known.shape))
+    touched = np.zeros((threads, known.shape[0]), dtype=np.bool_)
+    for thread in prange(threads):
+        reached = np.empty((4, count))
+        for n in range(thread, frontier.size, threads):
+            for point in range(points):
+                rest = others_of(holds, frontier[n], point)  # type: ignore[no-untyped-call]
+                if is_mine(fresh, frontier[n], rest):
+                    stance = (frontier[n], *rest)
+                    cheapen(stance, known, move, worth, rows, near, turning, step, bound, reached)
+                    for q in range(len(stance)):
+                        h = stance[q]
+                        if not touched[thread, h]:
+                            touched[thread, h] = True
+                            tables[thread, h] = known[h]
+                        for o in range(count):
+                            tables[thread, h, o] = min(tables[thread, h, o], reached[q, o])
+    result, cheaper = known.copy(), np.zeros(known.shape[0], dtype=np.bool_)
+    for h in prange(known.shape[0]):
+        for thread in range(threads):
+            for o in range(count if touched[thread, h] else 0):
+                if tables[thread, h, o] < result[h, o]:
+                    result[h, o] = tables[thread, h, o]
+                    cheaper[h] = True
+    return result, cheaper
 
 
 def threads() -> int:

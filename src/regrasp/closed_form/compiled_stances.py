@@ -1,8 +1,9 @@
 """How holds are numbered: pairs of contacts in the plane, triples in space; see ``compiled_paths``."""
 
 from numba import njit
+from numba.extending import overload
 
-from regrasp.closed_form.compiled_paths import moves_by
+from regrasp.closed_form.compiled_paths import Moves, cheapest, others_of, widest
 
 
 @njit(error_model="numpy")
@@ -64,5 +65,12 @@ def _place(n, i, j, k):  # type: ignore[no-untyped-def]
     return before + ((m - 1) * (m - 2) - rest * (rest - 1)) // 2 + k - j - 1
 
 
-PAIRS = moves_by(pair_others)
-TRIPLES = moves_by(triple_others)
+@overload(others_of)
+def _others_of(holds, hold, point):  # type: ignore[no-untyped-def]
+    if len(holds) == 4:
+        return lambda holds, hold, point: pair_others(holds, hold, point)
+    return lambda holds, hold, point: triple_others(holds, hold, point)
+
+
+PAIRS = Moves(pair_others, widest, cheapest)
+TRIPLES = Moves(triple_others, widest, cheapest)
