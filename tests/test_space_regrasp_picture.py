@@ -1,11 +1,13 @@
 """Pictures and films of a regrasp in space: the world frame, who holds and moves, how the object turns."""
 
 from dataclasses import replace
+from itertools import combinations
 from math import pi
 
 import numpy as np
 import pytest
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 from PIL import Image
 
 import regrasp as rg
@@ -130,20 +132,32 @@ def test_a_bar_measures_and_arrows_have_their_scale(plan):
     assert spans == pytest.approx([spans[0]] * 3)
 
 
-def test_words_stay_on_the_page(plan):
-    figure = plots.plot_regrasp(plan, BOX)
+def seen(ax, text):
+    """Where a text in space is drawn, which it forgets afterwards."""
+    x, y, _ = proj_transform(*text.get_position_3d(), ax.M)
+    moved = ax.transData.transform((x, y)) - ax.transData.transform(text.get_position())
+    return text.get_window_extent().translated(*moved)
+
+
+@pytest.mark.parametrize("mesh", [BOX, None])
+def test_words_stay_in_their_panels_and_keep_clear_of_one_another(plan, mesh):
+    figure = plots.plot_regrasp(plan, mesh)
     figure.canvas.draw()
-    page = figure.bbox
     for ax in figure.axes:
-        for text in ax.texts:
-            box = text.get_window_extent()
-            assert page.x0 <= box.x0 < box.x1 <= page.x1
-            assert page.y0 <= box.y0 < box.y1 <= page.y1
+        words = [seen(ax, text) for text in ax.texts if str(text.get_gid()).startswith(("word", "turned"))]
+        for box in words:
+            assert ax.bbox.x0 - 3 <= box.x0 < box.x1 <= ax.bbox.x1 + 3
+        for a, b in combinations(words, 2):
+            assert not a.overlaps(b)
 
 
 def test_without_a_mesh_and_in_notebooks(plan):
-    figure = plots.plot_regrasp(plan)
-    assert not by_gid(figure.axes[0], "mesh")
+    figure = plots.plot_regrasp(plan)  # the hull of all contacts, without edges
+    (hull,) = by_gid(figure.axes[0], "mesh")
+    contacts = np.concatenate([step.grasp.positions for step in plan.steps])
+    corners = np.unique(np.vstack(hull._faces), axis=0)
+    assert all(np.linalg.norm(contacts - corner, axis=1).min() < 1e-12 for corner in corners)
+    assert not by_gid(figure.axes[0], "edges")
     assert by_gid(figure.axes[0], "load")
     assert plan._repr_png_().startswith(b"\x89PNG")
     with pytest.raises(rg.InvalidInput, match=r"mesh must have a surface\(\) or be \(vertices, faces\)"):

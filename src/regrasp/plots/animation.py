@@ -43,8 +43,8 @@ def animate(
     Forces are those of the fingers on the object, with their tails at the contacts. A dashed ring is a finger
     in the air; its way between two contact points is only suggested and takes ``move_time`` [s], which no
     plan says. Time runs as in the plan.
-    outline: in space the solid, as for ``plot_regrasp``. Without an outline the hull of all contacts stands
-    for the object, without a solid nothing does.
+    outline: in space the solid, as for ``plot_regrasp``. Without it the hull of all contacts stands for the
+    object.
     path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
     Raises ``InvalidInput`` for another ending and for MP4 without ffmpeg.
     """

@@ -48,7 +48,7 @@ def plot_regrasp(plan: RegraspPlan, outline: Outline | Any = None, *, units: Uni
     load. In space a dashed arrow is the move of a finger before the step, and a thin line the axis of a turn.
 
     outline: in space the solid, anything with ``surface()`` or (vertices (v, 3), faces (f, 3)).
-    Without an outline the hull of all contacts stands for the object, without a solid nothing does.
+    Without it the hull of all contacts stands for the object.
     Raises ``InvalidInput`` for anything else.
     """
     if not isinstance(plan, RegraspPlan):

@@ -93,6 +93,8 @@ class _Words:
     def __init__(self, ax: Any, window: Window) -> None:
         self.ax, self.window = ax, window
         self.labels = Labels(72 * _PANEL / (2 * window.side), gap=_GAP)
+        for way in ((1, 0), (-1, 0), (0, 1), (0, -1)):  # the panels beside this one
+            self.labels.occupy(11 * window.side * np.array(way), 10 * window.side)
 
     def keep_off(self, points: Array) -> None:
         """Keep words away from points (m, 3)."""

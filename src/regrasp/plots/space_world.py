@@ -20,8 +20,8 @@ from regrasp.plots.world import Finger, Moment
 
 # As fractions of the object's size.
 _FINGER, _CONE, _LONGEST = 0.08, 0.13, 0.45
-# With it the box's sides fill the picture.
-_WHOLE = sqrt(3)
+# With it the box's sides fill the picture, to 3 %; matplotlib enlarges every box by 25 / 24.
+_WHOLE = sqrt(3) * 24 / 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +61,9 @@ class SpaceStage:
     """What every moment of a plan is drawn with: the solid, and scales that fit all of it."""
 
     def __init__(self, steps: Sequence[Transition], mesh: Triangles | None, heads: float = 9.0) -> None:
-        self.mesh, self.heads = mesh, heads
-        self.edges = None if mesh is None else creases(mesh)
         points = np.concatenate([step.grasp.positions for step in steps])
+        self.mesh, self.heads = _hull(points) if mesh is None else mesh, heads
+        self.edges = np.empty((0, 2, 3)) if mesh is None else creases(mesh)
         if mesh is not None:
             points = np.concatenate([points, mesh[0]])
         self.radius = float(np.linalg.norm(points, axis=1).max()) or 1.0
@@ -86,7 +86,7 @@ class SpaceStage:
 
     def draw(self, ax: Any, moment: Moment) -> None:
         """The object, its load, the fingers with their cones, and forces with their tails at the contacts."""
-        if self.mesh is not None and self.edges is not None:
+        if self.mesh is not None:
             vertices, faces = self.mesh
             draw_mesh(ax, (vertices @ moment.turn.T, faces), self.edges @ moment.turn.T)
         dot(ax, np.zeros(3), gid="centre of mass", color="white", markeredgecolor=INK, markersize=4)
@@ -123,6 +123,16 @@ class SpaceStage:
     def _arrow(self, ax: Any, tail: Array, force: Array, gid: str, colour: str) -> None:
         head = tail + self.scale * force
         arrow3d(ax, tail, head, gid=gid, color=colour, zorder=5, mutation_scale=self.heads)
+
+
+def _hull(points: Array) -> Triangles | None:
+    """Of all contacts, which suggests an object that is not known; None if they lie in a plane."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return points, ConvexHull(points).simplices.astype(np.intp)
+    except QhullError:
+        return None
 
 
 def measures(ax: Any, stage: SpaceStage, window: Window, units: Units) -> None:
