@@ -17,8 +17,8 @@ from regrasp.programs import Status
 
 # Forces miss the cones for sure by a distance to which the residual is at most this.
 _SURE = 1e-2
-# The best level must be known this well.
-_UNSURE = 10 * LEVEL_TOLERANCE
+# The best level must be known this well; how well it is known is in the gap.
+_UNSURE = 100 * LEVEL_TOLERANCE
 # A force below this fraction of the largest may be what a solver leaves at a finger that need not push.
 _NOISE = 1e-6
 
