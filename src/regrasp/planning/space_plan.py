@@ -51,7 +51,7 @@ class SpaceRegraspPlan(RegraspPlan):
     def _turn_in_words(self, step: Transition, before: float, after: float) -> str:
         if step.turn is None or step.turn.axis is None:
             return ""
-        x, y, z = step.turn.axis + 0.0
+        x, y, z = np.round(step.turn.axis, 9) + 0.0  # rounding reads as 0
         return f", turning by {np.degrees(after - before):.4g} deg about ({x:.3g}, {y:.3g}, {z:.3g})"
 
 
