@@ -58,5 +58,5 @@ def test_bad_input():
         plots.plot_directions(PAIR, 0.0)
     with pytest.raises(rg.InvalidInput, match="objective must be one of"):
         plots.plot_directions(PAIR, 1.0, objective="peak")
-    with pytest.raises(rg.InvalidInput, match="pictures are planar"):
+    with pytest.raises(rg.InvalidInput, match="this picture is of the plane"):
         plots.plot_directions(rg.Grasp([rg.Contact([0, 0, 1], [0, 0, -1], 0.5)]), 1.0)

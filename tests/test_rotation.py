@@ -15,7 +15,9 @@ from regrasp.verification.turns import cosine_sine
 
 GRASP = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.8, name="A"), rg.Contact([1, 0.1], [-1, 0], 0.8, name="B")])
 WEIGHT = rg.Wrench([0, -2])
-FORCES = st.lists(st.floats(-1, 1), min_size=2, max_size=2).map(np.array)
+FORCES = st.lists(st.floats(-1, 1).map(lambda x: x if abs(x) > 1e-100 else 0.0), min_size=2, max_size=2).map(
+    np.array
+)  # squares of smaller ones vanish
 
 
 @given(FORCES, FORCES, st.floats(0.01, 3.1) | st.floats(-3.1, -0.01))
@@ -25,7 +27,7 @@ def test_the_crest_of_a_turn(f, g, delta):
     path = turning_path(f[None], g[None], delta, theta)[:, 0]
     slope = turning_slope(f[None], g[None], delta, theta)[:, 0]
     size = abs(np.array([f, g])).max() / abs(np.sin(delta))
-    for values, crest in zip((path, slope), turning_peaks(f @ f, f @ g, g @ g, delta), strict=True):
+    for values, crest in zip((path, slope), turning_peaks(f, g, delta), strict=True):
         sampled = np.linalg.norm(values, axis=1).max()
         assert sampled - 1e-9 * size <= crest <= sampled + 1e-5 * size
     assert path[0] == pytest.approx(f, abs=1e-12 * size)

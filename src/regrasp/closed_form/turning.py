@@ -42,22 +42,31 @@ def turning_slope(start: Array, end: Array, delta: float, theta: Array) -> Array
     """The derivative of ``turning_path`` with respect to theta, (..., n, d)."""
     if delta == 0:
         return np.zeros((*theta.shape, *start.shape))
-    a, b = -np.cos(delta - theta) / sin(delta), np.cos(theta) / sin(delta)
-    slope: Array = a[..., None, None] * start + b[..., None, None] * end
+    half, x = (
+        delta / 2,
+        (theta - delta / 2)[..., None, None],
+    )  # as in ``turning_peaks``, so that nothing cancels
+    u, v = (start + end) / (2 * cos(half)), (end - start) / (2 * sin(half))
+    slope: Array = v * np.cos(x) - u * np.sin(x)
     return slope
 
 
-def turning_peaks(aa: float, ab: float, bb: float, delta: float) -> tuple[float, float]:
-    """The largest |f(theta)| and |f'(theta)| of a turn, from aa = f_0.f_0, ab = f_0.f_1 and bb = f_1.f_1.
+def turning_peaks(start: Array, end: Array, delta: float) -> tuple[float, float]:
+    """The largest |f(theta)| and |f'(theta)| of one force (d,) in a turn.
 
-    |f|^2 sin^2(delta) = c + p cos(2 theta) + q sin(2 theta), and |f'|^2 is the same with -p and -q.
+    With x = theta - delta / 2 it is f = u cos x + v sin x: |f|^2 is a constant plus a sine wave in 2 x, and
+    |f'|^2 the same constant less that wave.
     """
     if delta == 0:
-        return sqrt(max(aa, bb)), 0.0
-    s, t = sin(delta), cos(delta)
-    c = (aa - 2 * ab * t + bb) / 2
-    p, q = (aa * cos(2 * delta) - 2 * ab * t + bb) / -2, s * (ab - aa * t)
-    return sqrt(_highest(c, p, q, delta)) / abs(s), sqrt(_highest(c, -p, -q, delta)) / abs(s)
+        return sqrt(max(float(start @ start), float(end @ end))), 0.0
+    half = delta / 2
+    u, v = (start + end) / (2 * cos(half)), (end - start) / (2 * sin(half))
+    uu, vv, uv = float(u @ u), float(v @ v), float(u @ v)
+    c, p = (uu + vv) / 2, (uu - vv) / 2
+    highest, steepest = (
+        max(_highest(c, sign * p, sign * uv, side) for side in (half, -half)) for sign in (1, -1)
+    )
+    return sqrt(highest), sqrt(steepest)
 
 
 def arc_weights(delta: float, theta: Array) -> tuple[Array, Array, Array]:

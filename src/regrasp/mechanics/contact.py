@@ -23,7 +23,8 @@ class Contact(ArrayValue):
     position: (d,) [m], object frame, origin at the centre of mass; d is 2 or 3.
     normal: (d,), points **into** the object; any non-zero vector, stored with unit length.
     friction: Coulomb coefficient mu >= 0; the friction cone has half-angle atan(mu).
-    max_force: largest force magnitude the finger can make [N], or None for no limit.
+    max_force: largest force magnitude the finger can make [N], or None for no limit; of a soft finger the
+    largest |(f, mu m / torsion)|, its torque counted as the tangential force that uses as much friction.
     torsion: in space, of a soft finger: the most torque about the normal per normal force [m], greater than
     0, or None for a point contact. Together with the tangential force it stays inside the limit surface
     (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research 15, 1996).

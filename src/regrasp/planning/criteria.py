@@ -141,7 +141,8 @@ def objective_value(state: GraspState, objective: str) -> float:
     if objective == "angle":
         return state.margins.least_angle
     if objective == "force":
-        return float(state.margins.force.min())
+        rough = state.grasp.frictions > 0  # a ray has no inside
+        return float(state.margins.force[rough].min(initial=inf)) if rough.any() else 0.0
     if objective == "effort":
         return float((measured**2).sum())
     if objective == "peak":

@@ -81,7 +81,7 @@ def plan_rotation(
     given, load = grasp_and_load(start, load)
     about = _axis(axis, given)
     grasp = limited(given, max_force)
-    count = ceil(abs(turn) / STEP - 1e-9)
+    count = max(ceil(abs(turn) / STEP - 1e-9), 1)
     chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9), about)
     choices: list[Choice] = []
     change = 0.0

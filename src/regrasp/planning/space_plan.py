@@ -17,9 +17,9 @@ from regrasp.planning.turning import TurningTransition
 class SpaceRegraspPlan(RegraspPlan):
     """Transitions that carry a solid object from one four-finger grasp to another.
 
-    As ``RegraspPlan``, with at most four contacts in play. orientations: (len(steps) + 1,) how far the object
-    has turned in all [rad]. rotations: (len(steps) + 1, 3, 3) from the object's frame to its frame at the
-    start, before the first step and after each.
+    As ``RegraspPlan``, with at most four contacts in play. orientations: (len(steps) + 1,) the sum of its
+    turns so far, each about its own axis [rad]. rotations: (len(steps) + 1, 3, 3) from the object's frame to
+    its frame at the start, before the first step and after each.
     """
 
     rotations: Array = field(kw_only=True)
@@ -44,9 +44,8 @@ class SpaceRegraspPlan(RegraspPlan):
     def reversed(self) -> "SpaceRegraspPlan":
         """The same regrasp run backwards, from the orientation where it ended."""
         back = tuple(step.reversed() for step in reversed(self.steps))
-        turned = [self.orientations[-1] - angle for angle in self.orientations[::-1]]
         rotations = read_only(self.rotations[-1].T @ self.rotations[::-1])
-        return SpaceRegraspPlan(back, tuple(turned), self.margin, rotations=rotations)
+        return SpaceRegraspPlan(back, self.orientations[::-1], self.margin, rotations=rotations)
 
     def _turn_in_words(self, step: Transition, before: float, after: float) -> str:
         if step.turn is None or step.turn.axis is None:
@@ -64,6 +63,6 @@ def accumulated(steps: list[Transition]) -> tuple[tuple[float, ...], Array]:
             turned.append(turned[-1])
             rotations.append(rotations[-1])
         else:
-            turned.append(turned[-1] + abs(turn.angle))
+            turned.append(turned[-1] + turn.angle)
             rotations.append(rotations[-1] @ rotation_matrix(turn.axis, turn.angle))
     return tuple(turned), read_only(np.array(rotations))

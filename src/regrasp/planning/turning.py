@@ -94,7 +94,7 @@ class TurningTransition(Transition):
 
     @property
     def peak(self) -> float:
-        """The largest |f_i| on the way, exact [N].
+        """The largest |f_i| on the way, exact [N]; of soft fingers |(f, mu m / torsion)|.
 
         At most 1 / cos(step / 2) times that of ``turn.forces``; with middles at most the largest of all.
         """
@@ -115,20 +115,20 @@ class TurningTransition(Transition):
     @cached_property
     def _peaks(self) -> Array:
         """(K - 1, n, 2) the largest |f_i| [N] and |df_i/dtheta| [N/rad] of each piece."""
-        pushed = self.turn.forces[..., : self.grasp.dimension]
-        f, g, middles = pushed[:-1], pushed[1:], self.turn.middles
+        cones, middles = self.grasp.cones, self.turn.middles
+        measured = cones.measured(self.turn.forces)
+        f, g = measured[:-1], measured[1:]
         if middles is not None:
-            between = middles[..., : self.grasp.dimension]
+            between = cones.measured(middles)
             pieces = zip(f, between, g, np.diff(self.turn.angles).tolist(), strict=True)
             return np.array(
                 [[arc_peaks(*force, step) for force in zip(a, c, b, strict=True)] for a, c, b, step in pieces]
             )
-        products = np.stack([(f * f).sum(axis=-1), (f * g).sum(axis=-1), (g * g).sum(axis=-1)], axis=-1)
         steps = np.diff(self.turn.angles).tolist()
         return np.array(
             [
-                [turning_peaks(aa, ab, bb, step) for aa, ab, bb in piece]
-                for piece, step in zip(products.tolist(), steps, strict=True)
+                [turning_peaks(a, b, step) for a, b in zip(*piece, strict=True)]
+                for *piece, step in zip(f, g, steps, strict=True)
             ]
         )
 

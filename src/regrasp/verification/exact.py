@@ -5,7 +5,7 @@ rounding and, for cones and limits, with zero tolerance:
 
     cone         f.n >= 0   and   |f|^2 |n|^2 <= (1 + mu^2) (f.n)^2
     soft finger  f.n >= 0   and   e^2 (|f|^2 |n|^2 - (f.n)^2) + mu^2 m^2 |n|^2 <= mu^2 e^2 (f.n)^2
-    limit        |f|^2 <= max_force^2
+    limit        |f|^2 <= max_force^2, of a soft finger |f|^2 + (mu m / e)^2
     equilibrium  |sum f_i + F|^2 <= eps^2 s^2   and   |sum r_i x f_i + tau|^2 <= eps^2 s^2 l^2
 
 with s the largest of |F|, |tau| / l and |f_i|, l the largest |r_i|, and eps = 2^-40: forces in doubles cannot
@@ -42,7 +42,7 @@ def _check_force(state: GraspState, i: int, what: str) -> tuple[float, list[str]
     (*f, m), n = [*exact(state.forces[i, :d].tolist()), _torque(state, i)], exact(contact.normal.tolist())
     normal, ff, nn = dot(f, n), dot(f, f), dot(n, n)
     mu = max(Fraction(contact.friction), RESOLUTION)
-    limit, size = contact.max_force, ff
+    limit = contact.max_force
     if contact.torsion is not None:  # as much friction as the torque uses, in the place of a tangential force
         ff += (mu * m / Fraction(contact.torsion)) ** 2
     elif m:
@@ -53,8 +53,8 @@ def _check_force(state: GraspState, i: int, what: str) -> tuple[float, list[str]
     elif ff * nn > (1 + mu * mu) * normal * normal:
         use = sqrt(max(ff * nn - normal * normal, Fraction(0))) / float(mu * normal) if normal else inf
         broken.append(f"{what} is outside its friction cone: it uses {use:.12g} of the friction available")
-    if limit is not None and size > Fraction(limit) ** 2:
-        broken.append(f"{what} is {sqrt(size):.12g}, above its limit {limit:.12g}")
+    if limit is not None and ff > Fraction(limit) ** 2:
+        broken.append(f"{what} is {sqrt(ff):.12g}, above its limit {limit:.12g}")
     slack = float((1 + mu * mu) - ff * nn / (normal * normal)) if normal > 0 else (inf if ff == 0 else -inf)
     return slack, broken
 

@@ -31,6 +31,8 @@ def check_load(
     else:
         times, forces, loads = plan.course.times, plan.course.forces, plan.course.loads
     grasp, name = plan.start.grasp, plan.contact
+    if grasp.is_soft:
+        raise InvalidInput("a load function is checked for point contacts; a finger of these is soft")
     length = grasp.size or 1.0
     scale = max(_sizes(loads, length).max(), float(abs(forces).max()))
     off = _sizes(_at(load, times, loads.shape[1]) - loads, length)

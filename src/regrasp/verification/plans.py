@@ -71,6 +71,8 @@ def verify(
 
 
 def _verify_regrasp(plan: Regrasp) -> Verification:
+    if not plan.steps:
+        return Verification(tuple(check_joints(plan)), inf, 0.0, -inf)
     verdicts = [verify(step) for step in plan.steps]
     broken = [f"step {k}: {v}" for k, verdict in enumerate(verdicts, 1) for v in verdict.violations]
     return Verification(
@@ -110,12 +112,14 @@ def _check_course(plan: Plan, course: Course) -> Checked:
 def _check_record(plan: Plan) -> list[str]:
     """Whether the path keeps the rates and the least normal forces that it says it keeps."""
     record, names = plan.record, plan.start.grasp.names
-    course = plan.course
+    course, turn = plan.course, plan.turn
     forces = np.stack([plan.start.forces, plan.end.forces]) if course is None else course.forces
+    if turn is not None:  # between these, combinations whose weights sum to 1 or more
+        forces = turn.forces if turn.middles is None else np.concatenate([turn.forces, turn.middles])
     broken = []
     for i, least in enumerate(record.least_normals):
         normal = exact(plan.start.grasp.contacts[i].normal.tolist())
-        lowest = min(dot(exact(f[i].tolist()), normal) for f in forces)
+        lowest = min(dot(exact(f[i, : len(normal)].tolist()), normal) for f in forces)
         if lowest < Fraction(least) * (1 - RESOLUTION):
             broken.append(f"{names[i]} pushes with {float(lowest):.9g} along its normal, below {least:.9g}")
     for i, limit in enumerate(record.rate_limits):
@@ -132,7 +136,8 @@ def _check_rate(plan: Plan, i: int, limit: float) -> list[str]:
     times = exact(course.times.tolist())
     for k in range(len(times) - 1):
         step = Fraction(limit) * (times[k + 1] - times[k])
-        a, b = exact(course.forces[k, i].tolist()), exact(course.forces[k + 1, i].tolist())
+        d = plan.start.grasp.dimension
+        a, b = exact(course.forces[k, i, :d].tolist()), exact(course.forces[k + 1, i, :d].tolist())
         change = [x - y for x, y in zip(b, a, strict=True)]
         if dot(change, change) > (step * (1 + RESOLUTION)) ** 2:
             return [f"{name} changes faster than {limit:.9g} after t = {course.times[k]:.9g} s"]

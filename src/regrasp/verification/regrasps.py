@@ -3,6 +3,7 @@
 from fractions import Fraction
 from typing import Protocol
 
+from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, Vector, dot, exact
 from regrasp.verification.protocols import Plan
@@ -15,6 +16,10 @@ FINGERS = {2: 3, 3: 4}
 
 class Regrasp(Protocol):
     """What ``verify`` needs to know of a regrasp."""
+
+    @property
+    def margin(self) -> float:
+        """The least angle margin of the holds between its steps [rad]."""
 
     @property
     def steps(self) -> tuple[Plan, ...]:
@@ -30,6 +35,8 @@ class Regrasp(Protocol):
 
 def check_joints(plan: Regrasp) -> list[str]:
     """What is wrong between the steps: forces that jump, fingers that move under force, loads that differ."""
+    if not plan.steps:
+        return ["a regrasp has one step or more, this one has none"]
     broken = []
     if len(plan.orientations) != len(plan.steps) + 1:
         return [
@@ -45,6 +52,7 @@ def check_joints(plan: Regrasp) -> list[str]:
                 f"step {k + 1}: {len(step.start.grasp)} fingers touch the object, more than "
                 f"{FINGERS[dimension]}"
             )
+        broken += _check_steadiness(step, k)
         for label, state, at in (("start", step.start, k), ("end", step.end, k + 1)):
             seen, angle = loads[at], plan.orientations[at]
             given = exact(state.load.force.tolist())
@@ -53,6 +61,7 @@ def check_joints(plan: Regrasp) -> list[str]:
                 broken.append(
                     f"step {k + 1}: its load at the {label} is not the first one seen from {angle:.6g} rad"
                 )
+    broken += _check_claims(plan)
     for k, (before, after) in enumerate(zip(plan.steps[:-1], plan.steps[1:], strict=True)):
         if _held(before.end) != _held(after.start):
             broken.append(f"between steps {k + 1} and {k + 2} the forces jump or a finger moves under force")
@@ -61,6 +70,41 @@ def check_joints(plan: Regrasp) -> list[str]:
         }
         if len(shared) < min(len(before.end.grasp), len(after.start.grasp)) - 1:
             broken.append(f"between steps {k + 1} and {k + 2} more than one finger moves")
+    return broken
+
+
+def _check_steadiness(step: Plan, k: int) -> list[str]:
+    """Whether the load of a step that keeps its orientation is the same at every instant."""
+    course = step.course
+    if course is None:
+        return []
+    if step.turn is not None:
+        return [f"step {k + 1}: it has a course and a turn"]
+    load = exact(step.start.load.vector.tolist())
+    scale = dot(load, load)
+    for instant, row in zip(course.times.tolist(), course.loads.tolist(), strict=True):
+        off = [a - b for a, b in zip(exact(row), load, strict=True)]
+        if dot(off, off) > RESOLUTION**2 * scale:
+            return [f"step {k + 1}: its load at t = {instant:.6g} s is not the one in the world"]
+    return []
+
+
+def _check_claims(plan: Regrasp) -> list[str]:
+    """Whether orientations follow from the turns of the steps, and the margin from the holds between them."""
+    broken = []
+    angles = exact(list(plan.orientations))
+    for k, step in enumerate(plan.steps):
+        turn = Fraction(0) if step.turn is None else exact([float(step.turn.angles[-1])])[0]
+        if abs(angles[k + 1] - angles[k] - turn) > RESOLUTION * max(Fraction(1), abs(turn), abs(angles[k])):
+            broken.append(
+                f"step {k + 1}: its turn of {float(turn):.6g} rad does not lead from "
+                f"{float(angles[k]):.6g} to {float(angles[k + 1]):.6g} rad"
+            )
+    most = FINGERS[plan.steps[0].start.grasp.dimension] - 1  # fingers that hold while one moves
+    states = [step.end for step in plan.steps[:-1]]
+    between = [state.margins.least_angle for state in states if len(state.in_use) <= most]
+    if between and not plan.margin <= min(between) + float(RESOLUTION):
+        broken.append(f"it claims a margin of {plan.margin:.6g} rad, its holds have {min(between):.6g}")
     return broken
 
 
@@ -119,11 +163,13 @@ def _differ(a: Matrix, b: Matrix) -> bool:
     return any(abs(x - y) > RESOLUTION for one, other in pairs for x, y in zip(one, other, strict=True))
 
 
-def _where(contact: object) -> tuple[float, ...]:
-    return (*contact.position.tolist(), *contact.normal.tolist(), contact.friction)  # type: ignore[attr-defined]
+def _where(contact: Contact) -> tuple[object, ...]:
+    """Which contact it is, and all that it may do."""
+    limits = (contact.friction, contact.max_force, contact.torsion)
+    return (contact.name, *contact.position.tolist(), *contact.normal.tolist(), *limits)
 
 
-def _held(state: GraspState) -> dict[tuple[float, ...], tuple[float, ...]]:
+def _held(state: GraspState) -> dict[tuple[object, ...], tuple[float, ...]]:
     """The contacts that carry force and their forces, bit for bit."""
     return {
         _where(contact): tuple(force.tolist())

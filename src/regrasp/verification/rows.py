@@ -39,7 +39,7 @@ def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checke
         about = forces[..., 3]
         used = np.divide(grasp.frictions * about, grasp.torsions, out=0 * about, where=grasp.torsions > 0)
         used[..., grasp.torsions == 0] = np.where(about[..., grasp.torsions == 0] == 0, 0.0, inf)
-        tangential = np.hypot(tangential, used)
+        tangential, magnitude = np.hypot(tangential, used), np.hypot(magnitude, used)
         torques = torques + about[..., None] * grasp.normals
     inside = grasp.frictions * normal - tangential > doubt * magnitude
     inside |= (forces == 0).all(axis=-1)  # the apex

@@ -9,6 +9,16 @@ from regrasp.verification.exact import RESOLUTION, Vector, cross, dot, exact
 _TERMS = 40
 
 
+def _arctan(inverse: int) -> Fraction:
+    """Of 1 / inverse, to 2^-170, by its series."""
+    return sum(
+        (Fraction((-1) ** k, (2 * k + 1) * inverse ** (2 * k + 1)) for k in range(40)), start=Fraction(0)
+    )
+
+
+_PI = 16 * _arctan(5) - 4 * _arctan(239)  # Machin
+
+
 class TurningLoad:
     """The load at angles of the object: it turns the other way about ``axis``, (3,) or None in the plane.
 
@@ -70,7 +80,8 @@ def _spun(vector: Vector, axis: Vector) -> tuple[Vector, Vector, Vector]:
 
 
 def cosine_sine(angle: Fraction) -> tuple[Fraction, Fraction]:
-    """Cosine and sine by Taylor's series, to 2^-80 for angles up to some turns, as fractions of 2^-100."""
+    """Cosine and sine by Taylor's series, to 2^-80, as fractions of 2^-120; of angles up to 1e12 rad."""
+    angle -= 2 * _PI * round(angle / (2 * _PI))
     cosine, sine, term = Fraction(0), Fraction(0), Fraction(1)
     quarter = angle / 16  # then doubled four times
     for n in range(_TERMS):

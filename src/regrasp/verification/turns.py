@@ -20,6 +20,7 @@ from fractions import Fraction
 from itertools import pairwise
 from math import inf, sqrt
 
+from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, Vector, check_state, dot, exact
 from regrasp.verification.protocols import Plan, Turn
@@ -94,8 +95,7 @@ def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
         if contact.max_force is None:
             continue
         limit = Fraction(contact.max_force)
-        d = contact.dimension
-        f, g = exact(turn.forces[k, i, :d].tolist()), exact(turn.forces[k + 1, i, :d].tolist())
+        f, g = (_measured(contact, turn.forces[at, i].tolist()) for at in (k, k + 1))
         peak2 = _peak(f, g, c, s)
         if peak2 > (limit * (1 + RESOLUTION)) ** 2:
             broken.append(
@@ -103,6 +103,14 @@ def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
                 f"{contact.max_force:.12g}"
             )
     return broken
+
+
+def _measured(contact: Contact, force: list[float]) -> Vector:
+    """A force as its limit measures it: a soft finger's torque as the tangential force mu m / e."""
+    measured = exact(force)
+    if contact.torsion is not None:
+        measured[3] *= Fraction(contact.friction) / Fraction(contact.torsion)
+    return measured
 
 
 def _peak(f: Vector, g: Vector, c: Fraction, s: Fraction) -> Fraction:
