@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.planning.holds import HoldGraph
 from regrasp.planning.reach import MAX_TURN, Hold
@@ -59,9 +60,21 @@ def bottleneck(
 ) -> Bottleneck | None:
     """What limits the way from a hold of three contacts to a hold of three; None where there is no way.
 
-    start: held at the first angle of the graph; goal: at that of place ``goal_orientation``. Every finger may
-    touch everywhere.
+    start, goal: three contacts each, by their places in the graph. start is held at the first angle of the
+    graph, goal at that of place ``goal_orientation``. Every finger may touch everywhere.
+    Raises ``InvalidInput`` for what are no places.
     """
+    for what, places in (("start", start), ("goal", goal)):
+        try:
+            whole = [int(place) for place in places]
+            valid = len(set(whole)) == 3 and min(whole) >= 0 and max(whole) < len(graph.contacts)
+        except (TypeError, ValueError):
+            valid = False
+        if not valid:
+            raise InvalidInput(
+                f"{what} must be three contacts by their places in the graph, 0 to "
+                f"{len(graph.contacts) - 1}, got {places!r}"
+            )
     ends = _Ends(graph, start, goal, goal_orientation, max_turn)
     way = ends.widest(graph.margins)
     if way is None:

@@ -1,6 +1,6 @@
 """The hold graph: every pair of points that holds the load, at every orientation (docs/facts.md, 7)."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -64,8 +64,10 @@ class HoldGraph:
             raise InvalidInput(f"load must be a Wrench, got {self.load!r}; write Wrench(force=[...])")
         if self.load.dimension != 2 or self.load.torque.any() or not self.load.force.any():
             raise InvalidInput(
-                f"the load of a hold graph is a force through the centre of mass, got {self.load!r}"
+                f"the load of a hold graph is a force through the centre of mass, not zero, got {self.load!r}"
             )
+        if self.keep is not None and not callable(self.keep):
+            raise InvalidInput(f"keep must be a function of points and the angle, got {self.keep!r}")
 
     @cached_property
     def pairs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -173,6 +175,11 @@ class HoldGraph:
         assert self.keep is not None
         first, second = self.pairs
         kept = self.keep(self._points[first], self._points[second], float(self.angles[o]))
+        if np.shape(kept) != first.shape:
+            raise InvalidInput(
+                f"keep must return which of {first.size} pairs are allowed, shape {first.shape}; it returned "
+                f"shape {np.shape(kept)}"
+            )
         return np.asarray(kept, dtype=np.bool_)
 
     @property
@@ -214,6 +221,18 @@ class HoldGraph:
         used = np.zeros(count, dtype=bool)
         used[first[holds]] = used[second[holds]] = True
         return np.where(used, labels, -1).astype(np.int32)
+
+    def reachable(self, places: Iterable[int]) -> NDArray[np.bool_]:
+        """(V,) the contacts in holds that can be reached, with turns, from holds within ``places``."""
+        start = sorted(set(places))
+        labels = self.components()
+        own = {
+            int(labels[i])
+            for k, i in enumerate(start)
+            for j in start[k + 1 :]
+            if self.margins[:, self.pair(i, j)].max() >= 0
+        }
+        return np.isin(labels, sorted(own)) & (labels >= 0)
 
     def row(self, i: int, o: int) -> Array:
         """(V,) margins of contact i with every other at an orientation; negative where they do not hold."""

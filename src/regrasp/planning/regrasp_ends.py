@@ -6,13 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.value import numbers
 from regrasp.planning.arcs import Arcs
 from regrasp.planning.balancing import with_limit
 
 # Two contacts nearer than this fraction of the object are one.
 _SAME = 1e-9
+# A contact farther from its outline or mesh than this fraction of its size is not on it.
+_OFF = 1e-6
 
 
 class Ends:
@@ -44,6 +48,16 @@ class Ends:
             contact = with_limit(contact, min(self._limit, contact.max_force or self._limit))
         self.contacts.append(contact.named(name))
         return len(self.contacts) - 1
+
+    def refuse_off(self, contact: Contact, on: Array, size: float, shape: str) -> None:
+        """Raise ``InvalidInput`` unless a contact is ``on`` its shape; both relative to the centre."""
+        off = float(np.linalg.norm(contact.position - on))
+        if off > _OFF * size:
+            raise InvalidInput(
+                f"{contact.name} at {numbers(contact.position)} is {off:.3g} away from the {shape}, whose "
+                f"nearest point is {numbers(on)}, all relative to the centre of mass; make contacts with "
+                f"{shape}.contact_at"
+            )
 
     def joined(self, sampled: list[Contact]) -> tuple[Contact, ...]:
         """The contacts of both ends, then the sampled ones that are at other places, named by their order."""

@@ -107,7 +107,7 @@ class RegraspPlan(ArrayValue, Pictured):
     def __str__(self) -> str:
         lines = [
             f"regrasp in {len(self.steps)} steps and {len(self.moves)} finger moves, {self.duration:g} s, "
-            f"holds by {np.degrees(self.margin):.2f} deg or more"
+            f"holds by {round(float(np.degrees(self.margin)), 2) + 0.0:.2f} deg or more"
         ]
         for k, (step, (a, b)) in enumerate(zip(self.steps, pairwise(self.orientations), strict=True), 1):
             turn = self._turn_in_words(step, a, b)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import choice, number
+from regrasp.mechanics.checks import Array, choice, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
@@ -32,6 +32,9 @@ from regrasp.planning.remedies import allowed
 from regrasp.planning.stances import Places
 from regrasp.planning.timing import TimeScaling
 from regrasp.planning.triples import TripleFilter
+
+# A goal nearer than this to one of the orientations is that one [rad].
+_SAME_ANGLE = 1e-9
 
 
 class RegraspOptions(TypedDict, total=False):
@@ -71,7 +74,7 @@ class RegraspProblem:
     at the contacts of ``start`` and ``goal``, three each, relative to the centre of mass.
     load: a force through the centre of mass, seen from the object before it turns.
     orientations: angles of the object that are tried, over a full turn; 1 forbids turning.
-    goal_orientation: the object's angle in the end [rad]; rounded to the nearest of these.
+    goal_orientation: the object's angle in the end [rad]; tried besides if it is none of these.
     objective: what the state of every hold is chosen for, each by itself. states: ``each``, or ``joint``: all
     states in one program, for the widest worst force margin and then the least change of force.
     max_turn: largest turn during one step [rad].
@@ -131,8 +134,26 @@ class RegraspProblem:
 
     @cached_property
     def ends(self) -> Ends:
-        """The contacts of both grasps."""
-        return Ends(self.start, self.goal, self.max_force)
+        """The contacts of both grasps, which are on the outline."""
+        ends = Ends(self.start, self.goal, self.max_force)
+        for contact in ends.contacts:
+            where = contact.position + self.outline.centre_of_mass
+            on = self.outline.points(self.outline.nearest(where))
+            ends.refuse_off(contact, on, self.outline.length, "outline")
+        return ends
+
+    @cached_property
+    def angles(self) -> Array:
+        """(O,) angles of the object that are tried [rad], the goal's among them."""
+        spread = evenly(self.orientations)
+        off = abs((spread - self.goal_orientation + pi) % (2 * pi) - pi)
+        if off.min() <= _SAME_ANGLE:
+            return spread
+        if self.orientations == 1:
+            raise InvalidInput(
+                f"orientations=1 forbids turning, but goal_orientation is {self.goal_orientation:g} rad"
+            )
+        return np.append(spread, self.goal_orientation % (2 * pi))
 
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
@@ -162,7 +183,7 @@ class RegraspProblem:
             for c in contacts
         )
         return HoldGraph(
-            kept, self.load, evenly(self.orientations), self.peak_ratio, self.min_distance, self.keep,
+            kept, self.load, self.angles, self.peak_ratio, self.min_distance, self.keep,
             one_finger=self.one_finger,
         )  # fmt: skip
 
@@ -241,8 +262,16 @@ class RegraspProblem:
     def _plan(self, sequence: Sequence) -> RegraspPlan:
         start, goal, _ = self.places
         states = chosen_states(
-            sequence, self.contacts, start, goal, self.load, self.graph.angles, self.criteria, self.one_finger
+            sequence,
+            self.contacts,
+            start,
+            goal,
+            self.load,
+            self.graph.angles,
+            self.criteria,
+            self.one_finger,
+            self.least_margin,
         )
         if self.states == "joint":
-            states = spread_states(states, self.criteria)
+            states = spread_states(states, self.criteria, self.least_margin)
         return regrasp_of(states, self.contacts, TimeScaling.spline(self.step_duration), self.reserve)

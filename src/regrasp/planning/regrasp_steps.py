@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import cos, pi
+from math import atan, cos, pi, tan
 from typing import Any, Literal
 
 import numpy as np
@@ -47,6 +47,11 @@ class Chosen:
         return np.array([known.get(place, idle) for place in places])
 
     @property
+    def margin(self) -> float:
+        """The least angle margin of the fingers in use [rad]."""
+        return GraspState(self.grasp, self.load, self.forces).margins.least_angle
+
+    @property
     def all_work(self) -> bool:
         """Whether every finger carries force."""
         return all(_in_use(self.forces))
@@ -61,11 +66,13 @@ def chosen_states(
     angles: Array,
     criteria: Criteria,
     one_finger: bool,
+    least: float = 0.0,
 ) -> list[Chosen]:
     """The first grasp's state, that of every hold, and the last grasp's, each chosen by itself.
 
     Holds are chosen for the objective, whole grasps for the widest force margin: every finger works. So are
-    holds of which the objective would leave one finger idle, unless ``one_finger`` may hold.
+    holds of which the objective would leave one finger idle, unless ``one_finger`` may hold. least: angle
+    margin [rad] that every hold keeps, whatever it is chosen for.
     """
     turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
     whole = replace(criteria, objective="force")
@@ -77,22 +84,45 @@ def chosen_states(
         state = chosen_state((i, j), contacts, seen, criteria, ease)
         if not one_finger and not state.all_work:
             state = chosen_state((i, j), contacts, seen, whole, ease)
-        states.append(replace(state, angle=angle))
+        states.append(replace(kept(state, contacts, criteria, ease, least), angle=angle))
     last = chosen_state(goal, contacts, turned_load(load, turned[-1]), whole)
     return [*states, replace(last, angle=turned[-1])]
 
 
-def spread_states(states: list[Chosen], criteria: Criteria) -> list[Chosen]:
-    """The same sequence with the forces of all states chosen together, under the limits of each."""
+def kept(
+    state: Chosen, contacts: tuple[Contact, ...], criteria: Criteria, ease: float, least: float
+) -> Chosen:
+    """The state, or the one of the widest angle margin where it does not keep the ``least`` [rad]."""
+    if least == 0 or state.margin >= least:
+        return state
+    widest = chosen_state(state.places, contacts, state.load, replace(criteria, objective="angle"), ease)
+    return widest if widest.margin > state.margin else state
+
+
+def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) -> list[Chosen]:
+    """The same sequence with the forces of all states chosen together, under the limits of each.
+
+    Holds keep an angle margin of ``least`` [rad], or theirs if that is less by rounding, in narrowed cones.
+    """
     from regrasp.planning.sequence_program import SequenceState, spread_forces
+
+    def frictions(state: Chosen, is_hold: bool) -> list[float]:
+        whole = criteria.frictions(state.grasp)
+        narrowed = min(least, state.margin) * (1 - 1e-9) if is_hold else 0.0
+        return [tan(max(atan(mu) - narrowed, 0.0)) for mu in whole] if narrowed > 0 else whole
 
     unit = float(abs(states[0].load.force).max())
     together = spread_forces(
         [
             SequenceState(
-                s.grasp, s.load, s.places, criteria.frictions(s.grasp), list(s.limits), _in_use(s.forces)
+                s.grasp,
+                s.load,
+                s.places,
+                frictions(s, 0 < k < len(states) - 1),
+                list(s.limits),
+                _in_use(s.forces),
             )
-            for s in states
+            for k, s in enumerate(states)
         ],
         unit,
     )
@@ -107,8 +137,7 @@ def regrasp_of(
 ) -> RegraspPlan:
     """The steps between states that follow one another."""
     steps = [step_between(a, b, contacts, scaling, reserve, b.angle - a.angle) for a, b in pairwise(states)]
-    holds = [GraspState(s.grasp, s.load, s.forces) for s in states[1:-1]]
-    margin = min(hold.margins.least_angle for hold in holds)
+    margin = min(state.margin for state in states[1:-1])
     return RegraspPlan(tuple(steps), tuple(s.angle for s in states), margin)
 
 

@@ -19,7 +19,7 @@ from regrasp.planning.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.quads import Quads
 from regrasp.planning.reach import Sequence, preferred
 from regrasp.planning.regrasp_ends import Ends
-from regrasp.planning.regrasp_steps import Chosen, chosen_state, spread_states, step_between
+from regrasp.planning.regrasp_steps import chosen_state, kept, spread_states, step_between
 from regrasp.planning.space_plan import SpaceRegraspPlan, accumulated
 from regrasp.planning.stances import Places
 from regrasp.planning.timing import TimeScaling
@@ -106,8 +106,13 @@ class SpaceRegraspProblem:
 
     @cached_property
     def ends(self) -> Ends:
-        """The contacts of both grasps."""
-        return Ends(self.start, self.goal, self.max_force, fingers=4, dimension=3)
+        """The contacts of both grasps, which are on the mesh."""
+        ends = Ends(self.start, self.goal, self.max_force, fingers=4, dimension=3)
+        centre = self.mesh.centre_of_mass
+        for contact in ends.contacts:
+            on = self.mesh.nearest(contact.position + centre) - centre
+            ends.refuse_off(contact, on, float(self.mesh.size.max()), "mesh")
+        return ends
 
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
@@ -177,10 +182,10 @@ class SpaceRegraspProblem:
             state = chosen_state(tuple(places), self.contacts, self._seen(o), self.criteria, ease)
             if not state.all_work:
                 state = chosen_state(tuple(places), self.contacts, self._seen(o), whole, ease)
-            states.append(state)
+            states.append(kept(state, self.contacts, self.criteria, ease, self.least_margin))
         states.append(chosen_state(goal, self.contacts, self._seen(ways[-1]), whole))
         if self.states == "joint":
-            states = spread_states(states, self.criteria)
+            states = spread_states(states, self.criteria, self.least_margin)
         scaling, ways = TimeScaling.spline(self.step_duration), [0, *ways, ways[-1]]
         steps = [
             step_between(a, b, self.contacts, scaling, self.reserve, *self._turn(u, v))
@@ -188,7 +193,7 @@ class SpaceRegraspProblem:
         ]
         steps += self._last_turn(steps, scaling)
         turned, rotations = accumulated(steps)
-        margin = min(_margin(state) for state in states[1:-1])
+        margin = min(state.margin for state in states[1:-1])
         return SpaceRegraspPlan(tuple(steps), turned, margin, rotations=rotations)
 
     def _seen(self, o: int) -> Wrench:
@@ -242,9 +247,3 @@ class SpaceRegraspProblem:
 def _angle(a: Array, b: Array) -> float:
     """Between two unit vectors [rad], to rounding."""
     return atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
-
-
-def _margin(state: Chosen) -> float:
-    from regrasp.mechanics.state import GraspState
-
-    return GraspState(state.grasp, state.load, state.forces).margins.least_angle
