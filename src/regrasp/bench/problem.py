@@ -32,14 +32,22 @@ class Truth(Enum):
 class Known:
     """What is known of a problem's answer.
 
-    optimum: the least objective, or None. accuracy: to which the optimum is known, relative to
-    max(1, |optimum|): rounding for a closed form, the last printed digit of a published number.
+    optimum: the least objective, or None. accuracy: to which ``distance`` from it is known: rounding for a
+    closed form, the last printed digit of a published number. scale: of an objective that matters; one where
+    the program's data are of order one.
     """
 
     verdict: Verdict
     truth: Truth
     optimum: float | None = None
     accuracy: float = 1e-12
+    scale: float = 1.0
+
+    def distance(self, objective: float) -> float | None:
+        """How far an objective is from the optimum, relative to max(scale, |optimum|); None if unknown."""
+        if self.optimum is None:
+            return None
+        return abs(objective - self.optimum) / max(self.scale, abs(self.optimum))
 
 
 @dataclass(frozen=True, eq=False)

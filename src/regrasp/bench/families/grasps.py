@@ -32,7 +32,8 @@ def in_space(rng: np.random.Generator, count: int) -> tuple[Grasp, Wrench]:
 
 def _held(rng: np.random.Generator, points: Array, normals: Array) -> tuple[Grasp, Wrench]:
     grasp = Grasp(
-        Contact(p, n, mu) for p, n, mu in zip(points, normals, rng.uniform(0.3, 0.8, len(points)), strict=True)
+        Contact(p, n, mu)
+        for p, n, mu in zip(points, normals, rng.uniform(0.3, 0.8, len(points)), strict=True)
     )
     across = rng.normal(size=points.shape)
     across -= (across * grasp.normals).sum(axis=1)[:, None] * grasp.normals
