@@ -1,5 +1,7 @@
-"""Whether an answer is right, by our own arithmetic and what is known of the problem; a solver's word counts
-only as what it claims."""
+"""Whether an answer is right, by our own arithmetic and by what is known of the problem.
+
+A solver's word counts only as what it claims.
+"""
 
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -95,7 +97,9 @@ def _infeasible(problem: BenchProblem, answer: Answer) -> Judgement:
 
 def _unbounded(problem: BenchProblem, answer: Answer) -> Judgement:
     if problem.known.verdict is not Verdict.UNKNOWN:
-        return Judgement(False, f"claims that a program known to be {problem.known.verdict.value} is unbounded")
+        return Judgement(
+            False, f"claims that a program known to be {problem.known.verdict.value} is unbounded"
+        )
     if answer.x is None:
         return Judgement(None, "claims unboundedness without a direction")
     residual = _solution(problem, answer, Status.UNBOUNDED).unboundedness_residual

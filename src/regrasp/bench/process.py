@@ -29,7 +29,7 @@ main(channel, parent, memory)
 """
 
 
-class WorkerLost(Exception):  # noqa: N818
+class WorkerLost(Exception):
     """The worker did not come back and is gone. Carries the ``status`` and what to say of it."""
 
     def __init__(self, status: str, said: str) -> None:

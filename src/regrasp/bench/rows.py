@@ -35,8 +35,8 @@ class Row:
     problem to repeat: the key; mode is ``cold``, or ``warm`` for a solver that solved the problem ``follows``
     names and was given another right side. version: of the solver. verdict, truth, optimum: what is known.
     unknowns, rows, nonzeros, cones: the size. status: a word of ``Claim``, or ``error`` (the call raised),
-    ``timeout``, ``crashed``, ``out of memory``. said: the solver's own words. correct, why and the measures: as
-    in ``Judgement``; an answer that did not come is not correct. iterations: as the solver counts.
+    ``timeout``, ``crashed``, ``out of memory``. said: the solver's own words. correct, why and the measures:
+    as in ``Judgement``; an answer that did not come is not correct. iterations: as the solver counts.
     build_time, setup_time, solve_time: as in ``Answer``. total_time: around the whole call [s]; of a timeout
     the limit. memory: growth of the worker's resident set during its first such solve over what it held just
     before, after it gave free memory back [bytes]; below a page it says nothing, and memory that the

@@ -14,7 +14,7 @@ from regrasp.bench import machine
 from regrasp.bench.answer import Answer
 from regrasp.bench.problem import BenchProblem, Family
 from regrasp.bench.process import Worker, WorkerLost
-from regrasp.bench.rows import COLD, ERROR, LOST, MEMORY, WARM, Key, Row, written
+from regrasp.bench.rows import COLD, ERROR, MEMORY, WARM, Key, Row, written
 from regrasp.bench.settings import check, options
 from regrasp.bench.solvers import Solver
 from regrasp.bench.store import Store
@@ -31,9 +31,12 @@ Told = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Limits:
-    """repeat: solves of each kind. time_limit: of each solve [s]. jobs: solved at once; more than one
-    disturbs timing. memory_limit: addresses of each worker [bytes], 0 for none, None for half of the
-    machine's memory shared by the jobs. Raises ``InvalidInput`` for numbers that make no sense."""
+    """What each solve may take, and how many there are.
+
+    repeat: solves of each kind. time_limit: of each solve [s]. jobs: solved at once; more than one disturbs
+    timing. memory_limit: addresses of each worker [bytes], 0 for none, None for half of the machine's memory
+    shared by the jobs. Raises ``InvalidInput`` for numbers that make no sense.
+    """
 
     repeat: int = 1
     time_limit: float = 60.0
@@ -131,7 +134,7 @@ def run(
     problems: Sequence[BenchProblem],
     solvers: Sequence[Solver],
     settings: Sequence[str] = ("default",),
-    limits: Limits = Limits(),  # noqa: B008
+    limits: Limits = Limits(),
     told: Told = lambda *_: None,
 ) -> list[Row]:
     """Make every solve that has no row in ``folder`` yet; returns all rows there.
@@ -179,7 +182,11 @@ class _Settled:
 
 
 def _work(
-    waiting: "SimpleQueue[tuple[Job, list[int]]]", store: Store, limits: Limits, settled: _Settled, stop: Event
+    waiting: "SimpleQueue[tuple[Job, list[int]]]",
+    store: Store,
+    limits: Limits,
+    settled: _Settled,
+    stop: Event,
 ) -> None:
     """Take jobs until there is none left, with a worker of one's own."""
     with closing(_Closing(Worker(limits.worker_memory))) as own:
@@ -234,7 +241,6 @@ def _rows(worker: Worker, job: Job, missing: list[int], limits: Limits) -> Itera
             else:
                 yield row(repeats.pop(0), None, status=ERROR, said=reply[1], total_time=reply[2])
     except WorkerLost as lost:
-        assert lost.status in LOST
         yield row(repeats[0], None, status=lost.status, said=lost.said)
 
 

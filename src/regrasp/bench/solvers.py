@@ -8,8 +8,8 @@ A package announces a solver by an entry point, whose name is the solver's::
 ``solve(program, **settings)`` gets a ``regrasp.programs.Program`` and nothing else for default settings, else
 ``eps_abs`` and ``eps_rel``. It returns anything with the attributes ``status`` (``found``, ``infeasible``,
 ``unbounded`` or ``failed``), ``x`` (n,), and where it has them ``duals`` (m,), ``iterations``, ``said``,
-``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.answer.Answer`` is such a value. A solver
-of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones too in
+``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.answer.Answer`` is such a value. A
+solver of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones too in
 ``regrasp.solvers.conic``.
 """
 
@@ -37,8 +37,8 @@ _PACKAGES = {"highs": "highspy", "proxqp": "proxsuite", "hpipm": "hpipm_python",
 class Solver:
     """A solver that can be measured.
 
-    version: of its package. takes_cones: of second order. updates: whether it can be given another right side.
-    entry: the outside entry point ``module:function``, or empty.
+    version: of its package. takes_cones: of second order. updates: whether it can be given another right
+    side. entry: the outside entry point ``module:function``, or empty.
     """
 
     name: str
@@ -103,7 +103,10 @@ def installed_solvers() -> dict[str, Solver]:
 
 
 def chosen_solvers(names: Iterable[str]) -> list[Solver]:
-    """The solvers of these names in this order, or all of them. Raises ``InvalidInput`` for an unknown name."""
+    """The solvers of these names in this order, or all of them.
+
+    Raises ``InvalidInput`` for an unknown name.
+    """
     there = installed_solvers()
     names = list(dict.fromkeys(names))
     for name in names:

@@ -26,6 +26,9 @@ from regrasp.bench.answer import Answer, understood
 from regrasp.bench.solvers import Solver
 from regrasp.programs.program import Program
 
+Once = Callable[[], tuple[Answer, float]]
+"""One solve: the answer and the seconds it took."""
+
 _SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
 
 
@@ -46,7 +49,7 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
 def _serve(connection: Connection) -> None:
     solver: Solver | None = None
     call: Callable[..., Any] | None = None
-    once: Callable[[], tuple[Answer, float]] | None = None
+    once: Once | None = None
     is_first = True
     while True:
         try:
@@ -64,7 +67,11 @@ def _serve(connection: Connection) -> None:
                 program, before, options = given
                 assert solver is not None
                 assert call is not None
-                once = _cold(call, program, options) if before is None else _warm(solver, program, before, options)
+                once = (
+                    _cold(call, program, options)
+                    if before is None
+                    else _warm(solver, program, before, options)
+                )
                 is_first = True
                 reply = ("prepared",)
             else:
@@ -76,7 +83,7 @@ def _serve(connection: Connection) -> None:
         connection.send(reply)
 
 
-def _cold(call: Callable[..., Any], program: Program, options: dict[str, Any]) -> Callable[[], tuple[Answer, float]]:
+def _cold(call: Callable[..., Any], program: Program, options: dict[str, Any]) -> Once:
     def once() -> tuple[Answer, float]:
         started = perf_counter()
         given = call(program, **options)
@@ -86,9 +93,7 @@ def _cold(call: Callable[..., Any], program: Program, options: dict[str, Any]) -
     return once
 
 
-def _warm(
-    solver: Solver, program: Program, before: Program, options: dict[str, Any]
-) -> Callable[[], tuple[Answer, float]]:
+def _warm(solver: Solver, program: Program, before: Program, options: dict[str, Any]) -> Once:
     def once() -> tuple[Answer, float]:
         session = solver.session()(before, **options)
         session.solve()
@@ -101,7 +106,7 @@ def _warm(
     return once
 
 
-def _solved(once: Callable[[], tuple[Answer, float]], is_first: bool) -> tuple[Any, ...]:
+def _solved(once: Once, is_first: bool) -> tuple[Any, ...]:
     """One solve with the garbage collector off, and what memory the first of its kind took."""
     gc.collect()
     before = _forget_peak() if is_first else None

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from cvxpy.reductions.solvers.defines import INSTALLED_SOLVERS, SOLVER_MAP_CONIC, SOC
+from cvxpy.reductions.solvers.defines import INSTALLED_SOLVERS, SOC, SOLVER_MAP_CONIC
 
 from regrasp.bench.answer import Answer
 from regrasp.programs import cvxpy_backend

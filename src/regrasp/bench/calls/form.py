@@ -51,4 +51,3 @@ def split(program: Program, *, dense: bool = False) -> Split:
 def bounds(b: Array, equal: NDArray[np.bool_], infinity: float = np.inf) -> tuple[Array, Array]:
     """(m,) l and u of l <= C x <= u with C the program's A."""
     return np.where(equal, b, -infinity), b.copy()
-

@@ -12,6 +12,7 @@ from regrasp.bench.calls.form import bounds, equalities
 from regrasp.errors import InvalidInput
 from regrasp.programs.program import Program
 
+_HIGHS: Any = highspy.Highs  # ships no types of its own
 _CLAIMS = {"kOptimal": "found", "kInfeasible": "infeasible", "kUnbounded": "unbounded"}
 
 
@@ -36,7 +37,7 @@ def solve(program: Program, **options: Any) -> Answer:
         model.hessian_.start_, model.hessian_.index_ = triangle.indptr, triangle.indices
         model.hessian_.value_ = triangle.data
     built = perf_counter()
-    solver = highspy.Highs()
+    solver = _HIGHS()
     solver.silent()
     for key, value in {"threads": 1, **options}.items():
         if solver.setOptionValue(key, value) == highspy.HighsStatus.kError:

@@ -76,7 +76,7 @@ def _claim(answer: Any, name: str, warned: str) -> tuple[str, str]:
 
 
 def _values(answer: Any, data: Split, status: str, name: str) -> tuple[Any, Any]:
-    """x and duals, or the certificate of those that hand one out."""
+    """The primal and dual values, or the certificate of those that hand one out."""
     if status == "found":
         return answer.x, data.joined(answer.z, answer.y)
     if status == "infeasible" and name == "osqp":
