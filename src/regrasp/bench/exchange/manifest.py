@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable
 from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,6 @@ def export(families: Iterable[Family], folder: Path) -> Path:
 
     Files appear together or not at all. Raises ``InvalidInput`` where they cannot be written.
     """
-    from regrasp import __version__
-
     families = list(families)
     entries: list[dict[str, Any]] = []
     with whole_folder(folder) as staged:
@@ -37,7 +36,7 @@ def export(families: Iterable[Family], folder: Path) -> Path:
         if len(files) < len(entries):
             raise InvalidInput(f"expected one file name a problem, got {len(files)} for {len(entries)}")
         manifest = {
-            "made_by": f"regrasp {__version__}",
+            "made_by": f"regrasp {version('regrasp')}",
             "licence": _LICENCE,
             "formats": _FORMATS,
             "families": {
@@ -75,6 +74,7 @@ def _write(problem: BenchProblem, folder: Path) -> dict[str, Any]:
         "verdict": known.verdict.value,
         "optimum": known.optimum,
         "accuracy": known.accuracy if known.optimum is not None else None,
+        "scale": known.scale if known.optimum is not None else None,
         "truth": known.truth.value,
         "follows": problem.follows,
         "licence": _LICENCE,
