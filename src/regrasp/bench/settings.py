@@ -12,7 +12,10 @@ from regrasp.errors import InvalidInput
 
 SETTINGS = ("default", "low", "mid", "high")
 _ASKED = {"low": 1e-3, "mid": 1e-6, "high": 1e-9}
-# The default of several first-order solvers; what comes worse than that answers no question.
+# Solvers measure residuals each in its own norm and scaling, and an objective errs by more than they do; a
+# decade is allowed for that.
+_ALLOWED = 10.0
+# Where no accuracy was asked for, three digits.
 _DEFAULT_RIGHT = 1e-3
 
 _ABSOLUTE: dict[str, tuple[str, ...]] = {
@@ -73,9 +76,9 @@ def is_known(solver: str) -> bool:
 
 
 def right_within(settings: str) -> float:
-    """The relative error with which an answer to these settings is right: the one that was asked for."""
+    """The relative error with which an answer is right: ten times what was asked for, by default 1e-3."""
     check(settings)
-    return _ASKED.get(settings, _DEFAULT_RIGHT)
+    return _ALLOWED * _ASKED[settings] if settings in _ASKED else _DEFAULT_RIGHT
 
 
 def check(settings: str) -> None:
