@@ -28,10 +28,11 @@ class Points:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under a header; the first column is of words, the others of numbers."""
+    """Rows of cells under a header; the first ``words`` columns are of words, the others of numbers."""
 
     header: Sequence[str]
     rows: Sequence[Sequence[str]]
+    words: int = 1
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def _written(block: Block) -> str:
         return "\n".join(f"- {text}" for text in block.texts)
     if isinstance(block, Picture):
         return f"![{block.words}]({block.name})"
-    ruler = ["---", *["---:"] * (len(block.header) - 1)]
+    ruler = ["---"] * block.words + ["---:"] * (len(block.header) - block.words)
     lines = [block.header, ruler, *([_cell(text) for text in row] for row in block.rows)]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 

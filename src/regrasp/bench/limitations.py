@@ -6,9 +6,9 @@ LIMITATIONS = (
     "kind.",
     "Problems of a family are alike. A share of right answers over all problems weighs families by their "
     "number of problems; the tables by family do not.",
-    "An answer is right within the accuracy that was asked for, relative to the size of the problem, 1e-3 "
-    "for default settings: these differ between solvers, and so does what they mean by an accuracy. "
-    "Compare solvers at default settings with the accuracy they reach in view.",
+    "An answer is right within ten times the accuracy that was asked for, relative to the size of the "
+    "problem, and within 1e-3 for default settings: these differ between solvers, and so does what they "
+    "mean by an accuracy. Read default settings together with the accuracy that is reached.",
     "Where the truth is a reference solve, it comes from Clarabel at its tightest, with a duality gap that "
     "bounds the error; a solver that shares its method may share its blind spots. Distances from known "
     "answers are given over closed forms and publications only.",

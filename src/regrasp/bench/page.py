@@ -17,7 +17,7 @@ table { border-collapse: collapse; font-size: .85rem; }
 th { border-bottom: 2px solid #767676; vertical-align: bottom; }
 td { border-bottom: 1px solid #ececec; }
 th, td { text-align: right; padding: .25rem .7rem; font-variant-numeric: tabular-nums; }
-th:first-child, td:first-child { text-align: left; }
+.word { text-align: left; }
 img { max-width: 100%; }
 nav { columns: 2; font-size: .9rem; }
 """
@@ -59,11 +59,17 @@ def _element(block: Block, name: str) -> str:
         data = b64encode(block.svg.encode()).decode()
         return f'<p><img alt="{escape(block.words)}" src="data:image/svg+xml;base64,{data}"></p>'
     assert isinstance(block, Table)
-    head = "".join(f"<th>{_inline(text)}</th>" for text in block.header)
-    rows = "\n".join(f"<tr>{''.join(f'<td>{_inline(t)}</td>' for t in row)}</tr>" for row in block.rows)
-    return (
-        f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody></table></div>'
+    head = _row("th", block.header, block.words)
+    rows = "\n".join(_row("td", row, block.words) for row in block.rows)
+    return f'<div class="wide"><table>\n<thead>{head}</thead>\n<tbody>\n{rows}\n</tbody></table></div>'
+
+
+def _row(tag: str, cells: Sequence[str], words: int) -> str:
+    shown = (
+        f'<{tag} class="word">{_inline(text)}</{tag}>' if place < words else f"<{tag}>{_inline(text)}</{tag}>"
+        for place, text in enumerate(cells)
     )
+    return f"<tr>{''.join(shown)}</tr>"
 
 
 def _inline(text: str) -> str:

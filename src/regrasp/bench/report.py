@@ -25,6 +25,7 @@ from regrasp.bench.tables import (
     origin_table,
     parts_table,
     seconds,
+    summary_table,
     warmth_table,
 )
 from regrasp.bench.warmth import warmths
@@ -78,7 +79,9 @@ def _blocks(found: list[Outcome], run: dict[str, Any]) -> Iterator[Block]:
     looks = solver_looks({outcome.row.solver for outcome in found})
     yield Heading("Solvers on contact-force problems", 1)
     yield from _opening(found)
-    yield from _contest_blocks(contests(found), looks)
+    all_contests = contests(found)
+    yield from _summary_blocks(all_contests)
+    yield from _contest_blocks(all_contests, looks)
     settings = sorted({outcome.row.settings for outcome in found}, key=SETTINGS.index)
     yield from _truth_blocks(found, settings, looks)
     yield from _growth_blocks(found, settings, looks)
@@ -103,6 +106,16 @@ def _opening(found: list[Outcome]) -> Iterator[Block]:
     yield origin_table(first)
 
 
+def _summary_blocks(all_contests: list[Contest]) -> Iterator[Block]:
+    if all_contests:
+        yield Heading("In short")
+        yield Paragraph(
+            "The solver with the most right answers, and the one that is most often the fastest with a "
+            "right one."
+        )
+        yield summary_table(all_contests)
+
+
 def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
     from regrasp.plots.solvers import plot_profiles, svg
 
@@ -115,10 +128,10 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
     yield Heading("How to read the tables")
     yield Points(
         [
-            "right: correct within the accuracy asked for, in every repeat. right verdict: the solver says "
-            "rightly that there is a solution, or that there is none, however near it came. wrong: an "
-            "answer that is not right. no answer: it said so, raised an error, crashed or ran out of time "
-            "or memory. not judged: nothing is known to judge by.",
+            "right: correct within ten times the accuracy asked for, in every repeat. right verdict: the "
+            "solver says rightly that there is a solution, or that there is none, however near it came. "
+            "wrong: an answer that is not right. no answer: it said so, raised an error, crashed or ran "
+            "out of time or memory. not judged: nothing is known to judge by.",
             f"mean time: shifted geometric mean over all problems with a shift of {seconds(SHIFT)}; answers "
             f"that are not right count at the time limit, {seconds(limit)}. mean, shared: over the problems "
             "that every solver of the table answers rightly.",
@@ -133,7 +146,8 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
         left = f" Left out: {contest.left_out}, not given to all." if contest.left_out else ""
         yield Paragraph(f"{len(contest.problems)} problems; right means to {within:g}.{left}")
         yield contest_table(contest)
-        ax = plot_profiles(ratios(contest), looks)
+        rising = ratios(contest)
+        ax = plot_profiles({solver: rising[solver] for solver in contest.ranking}, looks)
         words = f"Performance profiles: {contest.title}"
         yield Picture(f"profile-{contest.slug}.svg", words, svg(ax))
         yield Paragraph("Right answers by family, of the number in brackets:")
@@ -206,7 +220,13 @@ def _machine_blocks(run: dict[str, Any]) -> Iterator[Block]:
     machine, solvers = run.get("machine", {}), run.get("solvers", {})
     others = {key: value for key, value in run.items() if key not in ("machine", "solvers")}
     facts = {**machine, **others}
-    yield Table(["", "value"], [[key.replace("_", " "), str(value)] for key, value in facts.items()])
+    yield Table(["", "value"], [[key.replace("_", " "), _fact(key, value)] for key, value in facts.items()])
     yield Table(["solver", "version"], [[name, str(version)] for name, version in solvers.items()])
     if run.get("jobs", 1) > 1:
         yield Paragraph("Several problems were solved at once, which disturbs times.")
+
+
+def _fact(key: str, value: Any) -> str:
+    if key.startswith("memory") and isinstance(value, int):
+        return f"{value / 2**30:.1f} GiB" if value else "none"
+    return f"{value:g} s" if key == "time_limit" else str(value)

@@ -41,6 +41,19 @@ def contest_table(contest: Contest) -> Table:
     return Table([*header, "mean, shared", "fastest", "within 2x", "within 10x"], rows)
 
 
+def summary_table(all_contests: Iterable[Contest]) -> Table:
+    """Who is first in each contest."""
+    rows = []
+    for contest in all_contests:
+        first, size = contest.ranking[0], len(contest.problems)
+        shares = {solver: share_within(rising, 1) for solver, rising in ratios(contest).items()}
+        fastest = max(contest.ranking, key=shares.__getitem__)
+        right = [percent(contest.count(solver, Kind.RIGHT), size) for solver in (first, fastest)]
+        rows.append([contest.title, first, right[0], fastest, f"{100 * shares[fastest]:.0f} %", right[1]])
+    header = ["", "most right", "its right answers", "most often fastest", "how often", "its right answers"]
+    return Table(header, rows)
+
+
 def family_table(contest: Contest) -> Table:
     """Right answers of each solver in each family, of how many."""
     first = next(iter(contest.outcomes.values()))
@@ -107,7 +120,7 @@ def warmth_table(found: dict[tuple[str, str], Warmth]) -> Table:
         [solver, settings, seconds(w.cold), seconds(w.warm), f"{w.ratio:.2f}", f"{w.right} of {w.given}"]
         for (settings, solver), w in found.items()
     ]
-    return Table(["solver", "settings", "cold", "updated", "updated / cold", "updated right"], rows)
+    return Table(["solver", "settings", "cold", "updated", "updated / cold", "updated right"], rows, words=2)
 
 
 def failure_table(failures: Iterable[Outcome]) -> Table:
@@ -118,10 +131,10 @@ def failure_table(failures: Iterable[Outcome]) -> Table:
         key = (row.solver, row.settings, row.why if outcome.kind is not Kind.NONE else row.status)
         groups.setdefault(key, Counter())[row.family] += 1
     rows = [
-        [solver, settings, why, str(families.total()), ", ".join(f"{f} {n}" for f, n in families.items())]
+        [solver, settings, why, ", ".join(f"{f} {n}" for f, n in families.items()), str(families.total())]
         for (solver, settings, why), families in sorted(groups.items())
     ]
-    return Table(["solver", "settings", "what happened", "times", "families"], rows)
+    return Table(["solver", "settings", "what happened", "families", "times"], rows, words=4)
 
 
 def origin_table(first: Sequence[Outcome]) -> Table:

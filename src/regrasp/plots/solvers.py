@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import PercentFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
 from numpy.typing import NDArray
 
 from regrasp.plots.style import PALE, PALETTE, SMALL, TEXT, literal, new_figure, tidy
@@ -74,6 +74,10 @@ def plot_growth(
     for power in range(-12, 6):  # t = 10^power times the entries
         ax.plot(ends, 10.0**power * ends, color=PALE, linewidth=0.8, zorder=0)
     ax.set_xlim(*ends)
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    if ends[1] < 100 * ends[0]:  # else decades are enough
+        ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:.0f}"))
     ax.set_xlabel("non-zero entries of A", fontsize=TEXT)
     ax.set_ylabel("time [s]", fontsize=TEXT)
     return _keyed(ax)
