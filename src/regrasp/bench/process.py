@@ -70,6 +70,11 @@ class Worker:
             self._connection.close()
         self._process = self.loaded = None
 
+    def interrupt(self) -> None:
+        """End the process from another thread; a reply that is awaited is lost."""
+        if self._process is not None:
+            self._process.kill()
+
     def _start(self) -> None:
         self._connection, theirs = Pipe()
         given = json.dumps([sys.path, theirs.fileno(), os.getpid(), self._memory_limit])

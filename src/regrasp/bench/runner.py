@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
-from contextlib import closing
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -157,13 +156,15 @@ def run(
             settled.add(limits.repeat - len(missing))
             if missing:
                 waiting.put((job, missing))
-        stop = Event()
+        stop, workers = Event(), [Worker(limits.worker_memory) for _ in range(limits.jobs)]
         with ThreadPoolExecutor(limits.jobs) as pool:
-            threads = [pool.submit(_work, waiting, store, limits, settled, stop) for _ in range(limits.jobs)]
+            threads = [pool.submit(_work, own, waiting, store, limits, settled, stop) for own in workers]
             try:
                 wait(threads, return_when=FIRST_EXCEPTION)
             finally:
                 stop.set()
+                for own in workers:
+                    own.interrupt()
             for thread in threads:
                 thread.result()
         return list(store.rows.values())
@@ -182,14 +183,15 @@ class _Settled:
 
 
 def _work(
+    worker: Worker,
     waiting: "SimpleQueue[tuple[Job, list[int]]]",
     store: Store,
     limits: Limits,
     settled: _Settled,
     stop: Event,
 ) -> None:
-    """Take jobs until there is none left, with a worker of one's own."""
-    with closing(_Closing(Worker(limits.worker_memory))) as own:
+    """Take jobs until there is none left."""
+    try:
         while not stop.is_set():
             try:
                 job, missing = waiting.get_nowait()
@@ -197,21 +199,15 @@ def _work(
                 return
             settled.add(0, f"{job.solver.name} {job.settings}: {job.problem.name}")
             made = 0
-            for row in _rows(own.worker, job, missing, limits):
+            for row in _rows(worker, job, missing, limits):
+                if stop.is_set():  # the solve may have ended because the run does
+                    return
                 store.append(row)
                 settled.add(1)
                 made += 1
-                if stop.is_set():
-                    return
             settled.add(len(missing) - made)
-
-
-@dataclass
-class _Closing:
-    worker: Worker
-
-    def close(self) -> None:
-        self.worker.kill()
+    finally:
+        worker.kill()
 
 
 def _rows(worker: Worker, job: Job, missing: list[int], limits: Limits) -> Iterator[Row]:
