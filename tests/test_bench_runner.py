@@ -220,6 +220,7 @@ def test_a_solver_that_does_not_come_back_is_a_row_and_the_run_goes_on(
     rows = run(tmp_path / "out", TOYS[:2], [fake(name), fake("right")], limits=limits)
     bad, good = ([row for row in rows if row.solver == solver] for solver in (name, "right"))
     assert {(row.status, row.correct) for row in bad} == {(status, False)}
+    assert {row.total_time for row in bad if row.status == "timeout"} <= {limits.time_limit}
     assert all(said in row.said for row in bad)
     # A solve that was lost is not repeated; one that raised is.
     assert [row.repeat for row in bad] == ([0, 1, 0, 1] if status == "error" else [0, 0])
@@ -475,7 +476,7 @@ def test_an_interrupt_ends_the_run_at_once_and_leaves_no_row_of_it(fakes: Path, 
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=20)  # the time limit of the solve that hangs is 60 s
-    assert (process.returncode, said) == (130, "Interrupted.\n")
+    assert (process.returncode, said.strip()) == (130, "Interrupted.")
     rows = read_rows(out)
     assert rows
     assert {row.solver for row in rows} == {"right"}
@@ -487,6 +488,7 @@ def test_an_interrupt_ends_the_run_at_once_and_leaves_no_row_of_it(fakes: Path, 
         (["-o", "out", "--family", "paper"], "no family 'paper'; there are states, loci"),
         (["-o", "out", "--family", "loci", "--solver", "simplex"], "no solver 'simplex' here; there are"),
         (["--family", "loci"], "the results need a folder: -o DIR"),
+        (["-o", "out", "--time-limit", "0"], "the time limit must be a positive number of seconds, got 0"),
     ],
 )
 def test_what_does_not_exist_is_named_and_what_does(

@@ -168,7 +168,9 @@ def bench(
         most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
     if jobs > 1:
         click.echo(f"Warning: {jobs} solves at once disturb one another's timing.", err=True)
-    limits = Limits(repeat, time_limit or (5.0 if quick else 60.0), jobs)
+    if time_limit is None:
+        time_limit = 5.0 if quick else 60.0
+    limits = Limits(repeat, time_limit, jobs)
     with _progress() as progress:
         task = progress.add_task("making problems", total=None)
         problems = chosen_problems(FAMILIES, families, most)

@@ -13,7 +13,7 @@ from regrasp.bench import machine
 from regrasp.bench.answer import Answer
 from regrasp.bench.problem import BenchProblem, Family
 from regrasp.bench.process import Worker, WorkerLost
-from regrasp.bench.rows import COLD, ERROR, MEMORY, WARM, Key, Row, written
+from regrasp.bench.rows import COLD, ERROR, MEMORY, TIMEOUT, WARM, Key, Row, written
 from regrasp.bench.settings import check, options
 from regrasp.bench.solvers import Solver
 from regrasp.bench.store import Store
@@ -237,7 +237,8 @@ def _rows(worker: Worker, job: Job, missing: list[int], limits: Limits) -> Itera
             else:
                 yield row(repeats.pop(0), None, status=ERROR, said=reply[1], total_time=reply[2])
     except WorkerLost as lost:
-        yield row(repeats[0], None, status=lost.status, said=lost.said)
+        took = limits.time_limit if lost.status == TIMEOUT else None
+        yield row(repeats[0], None, status=lost.status, said=lost.said, total_time=took)
 
 
 def _ready(worker: Worker, job: Job) -> str:
