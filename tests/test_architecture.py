@@ -36,7 +36,7 @@ FLOORS: dict[str, Set[str]] = {
         "files",
     },
     "plots": {"errors", "mechanics", "outline", "mesh", "closed_form", "planning", "plots"},
-    "bench": {"errors", "mechanics", "closed_form", "planning", "programs", "bench"},
+    "bench": {"errors", "mechanics", "closed_form", "planning", "programs", "files", "plots", "bench"},
     "cli": {
         "",
         "errors",

@@ -1,6 +1,6 @@
 """A problem of the benchmark: a program, where it comes from, and what is known of its answer.
 
-    minimise   1/2 x'Px + q'x   subject to   A x + s = b,   s in K
+minimise 1/2 x'Px + q'x subject to A x + s = b, s in K.
 """
 
 from collections.abc import Callable, Iterator
@@ -54,8 +54,8 @@ class Known:
 class BenchProblem:
     """One program of a family.
 
-    name: unique and stable, ``family/kind/number``. follows: the name of the problem that a warm-started solver
-    has solved just before, with the same P, q and A and another b; None elsewhere.
+    name: unique and stable, ``family/kind/number``. follows: the name of the problem that a warm-started
+    solver has solved just before, with the same P, q and A and another b; None elsewhere.
     """
 
     name: str
