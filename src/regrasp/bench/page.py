@@ -17,7 +17,8 @@ table { border-collapse: collapse; font-size: .85rem; }
 th { border-bottom: 2px solid #767676; vertical-align: bottom; }
 td { border-bottom: 1px solid #ececec; }
 th, td { text-align: right; padding: .25rem .7rem; font-variant-numeric: tabular-nums; }
-.word { text-align: left; }
+td { white-space: nowrap; }
+.word { text-align: left; white-space: normal; }
 img { max-width: 100%; }
 nav { columns: 2; font-size: .9rem; }
 """
