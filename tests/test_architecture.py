@@ -36,7 +36,19 @@ FLOORS: dict[str, Set[str]] = {
         "files",
     },
     "plots": {"errors", "mechanics", "outline", "mesh", "closed_form", "planning", "plots"},
-    "cli": {"", "errors", "mechanics", "outline", "mesh", "planning", "verification", "files", "plots"},
+    "bench": {"errors", "mechanics", "closed_form", "planning", "programs", "files", "plots", "bench"},
+    "cli": {
+        "",
+        "errors",
+        "mechanics",
+        "outline",
+        "mesh",
+        "planning",
+        "verification",
+        "files",
+        "plots",
+        "bench",
+    },
     # regrasp/__init__.py: the public names
     "": {"errors", "mechanics", "outline", "mesh", "planning", "verification"},
     "__main__": {"cli"},
@@ -132,7 +144,8 @@ def may_import(module: str, package: str) -> bool:
             "regrasp.programs.audit",
         )
     if package in SOLVERS:
-        return module == f"regrasp.programs.{package}_backend"
+        # The benchmark calls solvers with their own defaults, which the back ends do not.
+        return module in (f"regrasp.programs.{package}_backend", f"regrasp.bench.calls.{package}_call")
     if package in ("click", "rich"):
         return here == "cli"
     if package == "shapely":

@@ -25,6 +25,9 @@ UNVERIFIED, BAD_INPUT, INFEASIBLE, INTERRUPTED = 1, 2, 3, 130
 # A plan with a thousand bad set-points says the same thing a thousand times.
 _SHOWN = 10
 
+# Problems that all solvers here work through in a minute or so.
+_QUICK_UNKNOWNS = 60
+
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="regrasp")
@@ -116,6 +119,87 @@ def schema() -> None:
     from regrasp.files import scenario_schema
 
     click.echo(json.dumps(scenario_schema(), indent=2))
+
+
+@commands.group(invoke_without_command=True)
+@click.option("--family", "families", multiple=True, metavar="NAME", help="Only this family; repeatable.")
+@click.option("--solver", "solvers", multiple=True, metavar="NAME", help="Only this solver; repeatable.")
+@click.option(
+    "--settings",
+    multiple=True,
+    type=click.Choice(["default", "low", "mid", "high"]),
+    help="Accuracy asked for; repeatable.  [default: default]",
+)
+@click.option("--repeat", type=click.IntRange(1), default=1, show_default=True, help="Solves of each kind.")
+@click.option(
+    "--time-limit", type=float, default=None, metavar="SECONDS", help="Of each solve.  [default: 60, quick 5]"
+)
+@click.option(
+    "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Solves at once; disturbs timing."
+)
+@click.option("--most", type=click.IntRange(1), metavar="UNKNOWNS", help="Leave larger problems out.")
+@click.option("--quick", is_flag=True, help="Small problems only: two minutes at most.")
+@click.option("-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Folder of the results.")
+@click.pass_context
+def bench(
+    context: click.Context,
+    families: tuple[str, ...],
+    solvers: tuple[str, ...],
+    settings: tuple[str, ...],
+    repeat: int,
+    time_limit: float | None,
+    jobs: int,
+    most: int | None,
+    quick: bool,
+    output: Path | None,
+) -> None:
+    """Run solvers on contact-force problems whose answers are known.
+
+    A run that was ended goes on where it was when the same command is given again.
+    """
+    if context.invoked_subcommand:
+        return
+    if output is None:
+        raise click.UsageError("the results need a folder: -o DIR")
+    from regrasp.bench.families.catalogue import FAMILIES
+    from regrasp.bench.runner import Limits, chosen_problems, run
+    from regrasp.bench.solvers import chosen_solvers
+
+    if quick:
+        most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
+    if jobs > 1:
+        click.echo(f"Warning: {jobs} solves at once disturb one another's timing.", err=True)
+    if time_limit is None:
+        time_limit = 5.0 if quick else 60.0
+    limits = Limits(repeat, time_limit, jobs)
+    with _progress() as progress:
+        task = progress.add_task("making problems", total=None)
+        problems = chosen_problems(FAMILIES, families, most)
+        progress.update(task, description="looking for solvers")
+        there = chosen_solvers(solvers)
+
+        def told(what: str, done: int, total: int) -> None:
+            progress.update(task, description=what or None, completed=done, total=total)
+
+        rows = run(output, problems, there, settings or ("default",), limits, told)
+    right = sum(row.correct is True for row in rows)
+    unjudged = sum(row.correct is None for row in rows)
+    lost = sum(row.is_lost for row in rows)
+    click.echo(
+        f"{len(rows)} solves in {output}: {right} right, {len(rows) - right - unjudged} wrong or without an "
+        f"answer ({lost} of them timed out or crashed), {unjudged} not judged"
+    )
+    click.echo(f"Next: {_called()} bench report {output}")
+
+
+@bench.command("report")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+def bench_report(folder: Path) -> None:
+    """Write the report of the results in DIR."""
+    from regrasp.bench.report import write_report
+
+    for path in write_report(folder):
+        click.echo(f"wrote {path}")
 
 
 def main() -> None:

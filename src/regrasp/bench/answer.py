@@ -1,0 +1,73 @@
+"""What a solver answers to one program, in the words every solver shares."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from regrasp.errors import InvalidInput
+from regrasp.programs.program import Array, Program
+
+
+class Claim(Enum):
+    """What a solver says of a program; the value is the word for it in rows and for outside solvers."""
+
+    FOUND = "found"
+    INFEASIBLE = "infeasible"
+    UNBOUNDED = "unbounded"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A solver's answer, not yet believed.
+
+    status: a word of ``Claim``. x: (n,), or None. duals: (m,) z with P x + q + A'z = 0 and z in K*; for
+    ``infeasible`` the certificate, A'z = 0 and b'z < 0; None where the solver gives none. iterations: as it
+    counts. said: its own words. build_time, setup_time, solve_time: [s] bringing the data into the solver's
+    form, its set-up (scaling, factorisation) and its iterations; None where they cannot be told apart.
+    """
+
+    status: str
+    x: Array | None = None
+    duals: Array | None = None
+    iterations: int | None = None
+    said: str = ""
+    build_time: float | None = None
+    setup_time: float | None = None
+    solve_time: float | None = None
+
+
+def understood(given: Any, program: Program) -> Answer:
+    """An ``Answer`` of anything with its attributes; only ``status`` and ``x`` must be there.
+
+    Raises ``InvalidInput`` for a word that is none of ``Claim`` and for arrays of another shape.
+    """
+    words = [claim.value for claim in Claim]
+    status = getattr(given, "status", None)
+    if status not in words:
+        raise InvalidInput(f"a solver's answer needs a status among {', '.join(words)}, got {status!r}")
+    x = _array("x", getattr(given, "x", None), program.q.size)
+    if x is None and status == Claim.FOUND.value:
+        raise InvalidInput("a solver's answer that is found needs x")
+    iterations = getattr(given, "iterations", None)
+    times = (_seconds(given, name) for name in ("build_time", "setup_time", "solve_time"))
+    duals = _array("duals", getattr(given, "duals", None), program.b.size)
+    said = str(getattr(given, "said", "") or status)
+    return Answer(status, x, duals, None if iterations is None else int(iterations), said, *times)
+
+
+def _array(name: str, values: Any, size: int) -> Array | None:
+    """A finite array of the size wanted; a solver that fills with NaN has given nothing."""
+    if values is None:
+        return None
+    array = np.array(values, dtype=float).ravel()
+    if array.size != size:
+        raise InvalidInput(f"{name} of a solver's answer must have {size} entries, got {array.size}")
+    return array if np.isfinite(array).all() else None
+
+
+def _seconds(given: Any, name: str) -> float | None:
+    value = getattr(given, name, None)
+    return None if value is None else float(value)

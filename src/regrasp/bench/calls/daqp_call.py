@@ -1,0 +1,64 @@
+"""DAQP, called directly: qpsolvers drops its exit flag. An update starts from the last active set."""
+
+from time import perf_counter
+from typing import Any
+
+import daqp
+import numpy as np
+
+from regrasp.bench.answer import Answer
+from regrasp.bench.calls.form import bounds, equalities
+from regrasp.programs.program import Array, Program
+
+_SAID = {
+    2: "soft optimal",
+    1: "optimal",
+    -1: "infeasible",
+    -2: "cycling",
+    -3: "unbounded",
+    -4: "iteration limit",
+    -5: "non-convex",
+    -6: "initial set not independent",
+    -7: "time limit",
+}
+_CLAIMS = {1: "found", -1: "infeasible", -3: "unbounded"}
+_INFINITY = 1e30
+_EQUALITY = 5
+
+
+class Session:
+    """A program set up in DAQP, dense."""
+
+    def __init__(self, program: Program, **options: Any) -> None:
+        started = perf_counter()
+        self._equal = equalities(program)
+        lower, upper = bounds(program.b, self._equal, _INFINITY)
+        P, A = program.P.toarray(), program.A.toarray()
+        sense = np.where(self._equal, _EQUALITY, 0).astype(np.intc)
+        self._solver = daqp.Model()
+        self._solver.settings = options
+        built = perf_counter()
+        self._refused, _ = self._solver.setup(P, program.q.copy(), A, upper, lower, sense)
+        self._build, self._setup = built - started, perf_counter() - built
+
+    def update(self, b: Array) -> None:
+        """Another right side (m,)."""
+        started = perf_counter()
+        lower, upper = bounds(b, self._equal, _INFINITY)
+        self._refused = self._solver.update(bupper=upper, blower=lower)
+        self._build, self._setup = 0.0, perf_counter() - started
+
+    def solve(self) -> Answer:
+        """The answer for the right side set last."""
+        if self._refused < 0:
+            flag, x, duals, iterations, took = self._refused, None, None, None, 0.0
+        else:
+            started = perf_counter()
+            x, _, flag, info = self._solver.solve()
+            took = perf_counter() - started
+            duals, iterations = info["lam"], info["iterations"]
+        status = _CLAIMS.get(flag, "failed")
+        found = status == "found"
+        said = _SAID.get(flag, f"exit flag {flag}")
+        given = (x, duals) if found else (None, None)
+        return Answer(status, *given, iterations, said, self._build, self._setup, took)

@@ -1,0 +1,28 @@
+"""What a report of this benchmark does not say."""
+
+LIMITATIONS = (
+    "The problems are those of planning contact forces, made by the package that is measured beside the "
+    "solvers: small, sparse and well scaled for the most part. They say little of programs of another "
+    "kind.",
+    "Problems of a family are alike. A share of right answers over all problems weighs families by their "
+    "number of problems; the tables by family do not.",
+    "An answer is right within ten times the accuracy that was asked for, relative to the size of the "
+    "problem, and within 1e-3 for default settings: these differ between solvers, and so does what they "
+    "mean by an accuracy. Read default settings together with the accuracy that is reached.",
+    "Where the truth is a reference solve, it comes from Clarabel at its tightest, with a duality gap that "
+    "bounds the error; a solver that shares its method may share its blind spots. Distances from known "
+    "answers are given over closed forms and publications only.",
+    "Times are of calls from Python around the whole call. For the smallest problems that is the call and "
+    "the handing over of data rather than the algorithm, and a solver reached through qpsolvers or cvxpy "
+    "pays for it.",
+    "One thread on one machine. Solvers that gain from more threads, a GPU or another library of linear "
+    "algebra are not seen at their best.",
+    "Times of answers that are not right count at the time limit; mean times depend on that limit and on the "
+    "shift. Shares of problems do not.",
+    "A solver that finds a program infeasible is right if it is, and if its certificate, where it gives one, "
+    "passes our audit. QP solvers called through qpsolvers give none and are believed for the verdict.",
+    "Performance profiles compare with the best of the solvers shown; the order of two solvers in a "
+    "profile can change when a third is taken out.",
+    "Memory is the growth of a process's resident set; memory that a solver takes from what was already "
+    "there is not seen.",
+)

@@ -1,0 +1,99 @@
+"""A problem of the benchmark: a program, where it comes from, and what is known of its answer.
+
+minimise 1/2 x'Px + q'x subject to A x + s = b, s in K.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from regrasp.programs import Cone, Program
+
+
+class Verdict(Enum):
+    """What holds of a problem; the value is how reports call it."""
+
+    SOLVABLE = "solvable"
+    INFEASIBLE = "infeasible"
+    UNKNOWN = "unknown"
+
+
+class Truth(Enum):
+    """Where the known answer comes from; the value is how reports call it."""
+
+    CLOSED_FORM = "closed form"
+    PUBLISHED = "published"
+    PROOF = "exact proof"
+    REFERENCE = "reference solve, certified by its duality gap"
+    NONE = "nothing"
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of a problem's answer.
+
+    optimum: the least objective, or None. accuracy: to which ``distance`` from it is known: rounding for a
+    closed form, the last printed digit of a published number. scale: of an objective that matters; one where
+    the program's data are of order one.
+    """
+
+    verdict: Verdict
+    truth: Truth
+    optimum: float | None = None
+    accuracy: float = 1e-12
+    scale: float = 1.0
+
+    def distance(self, objective: float) -> float | None:
+        """How far an objective is from the optimum, relative to max(scale, |optimum|); None if unknown."""
+        if self.optimum is None:
+            return None
+        return abs(objective - self.optimum) / max(self.scale, abs(self.optimum))
+
+
+@dataclass(frozen=True, eq=False)
+class BenchProblem:
+    """One program of a family.
+
+    name: unique and stable, ``family/kind/number``. follows: the name of the problem that a warm-started
+    solver has solved just before, with the same P, q and A and another b; None elsewhere.
+    """
+
+    name: str
+    family: str
+    program: Program
+    known: Known
+    follows: str | None = None
+
+    @property
+    def is_qp(self) -> bool:
+        """Whether QP solvers can take it: no second-order cone."""
+        return not self.program.has_second_order
+
+    @property
+    def size(self) -> tuple[int, int, int]:
+        """Unknowns, rows, and non-zero entries of A."""
+        program = self.program
+        return program.q.size, program.b.size, int(program.A.nnz)
+
+    @property
+    def cones(self) -> str:
+        """The cones in words: ``zero 3, non-negative 8, second-order 4x3``."""
+        words = []
+        for block in self.program.blocks:
+            sized = f"{block.count}x{block.size}" if block.cone is Cone.SECOND_ORDER else str(block.rows)
+            words.append(f"{block.cone.value} {sized}")
+        return ", ".join(words)
+
+
+@dataclass(frozen=True)
+class Family:
+    """Problems of one kind.
+
+    origin: where they come from, in a sentence. formula: what is minimised subject to what. problems: yields
+    them, the same at every call, from the smallest to the largest.
+    """
+
+    name: str
+    origin: str
+    formula: str
+    problems: Callable[[], Iterator[BenchProblem]]

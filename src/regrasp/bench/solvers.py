@@ -1,0 +1,122 @@
+"""The solvers that can be measured here: those installed, and those that outside packages announce.
+
+A package announces a solver by an entry point, whose name is the solver's::
+
+    [project.entry-points."regrasp.solvers"]
+    mine = "my_module:solve"
+
+``solve(program, **settings)`` gets a ``regrasp.programs.Program`` and nothing else for default settings, else
+``eps_abs`` and ``eps_rel``. It returns anything with the attributes ``status`` (``found``, ``infeasible``,
+``unbounded`` or ``failed``), ``x`` (n,), and where it has them ``duals`` (m,), ``iterations``, ``said``,
+``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.answer.Answer`` is such a value. A
+solver of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones too in
+``regrasp.solvers.conic``.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+from importlib.util import find_spec
+from typing import Any
+
+from regrasp.bench.answer import Answer
+from regrasp.bench.settings import is_known
+from regrasp.errors import InvalidInput
+
+GROUPS = {"regrasp.solvers": False, "regrasp.solvers.conic": True}
+_CALLS = "regrasp.bench.calls"
+# Packages called directly, by the name of the solver; the others are called through qpsolvers.
+_DIRECT = {"clarabel": "clarabel", "daqp": "daqp", "highs": "highspy"}
+_SESSIONS = {"clarabel": "clarabel", "daqp": "daqp", "osqp": "osqp", "piqp": "piqp"}
+_PACKAGES = {"highs": "highspy", "proxqp": "proxsuite", "hpipm": "hpipm_python", "gurobi": "gurobipy"}
+
+
+@dataclass(frozen=True)
+class Solver:
+    """A solver that can be measured.
+
+    version: of its package. takes_cones: of second order. updates: whether it can be given another right
+    side. entry: the outside entry point ``module:function``, or empty.
+    """
+
+    name: str
+    version: str
+    takes_cones: bool
+    updates: bool = False
+    entry: str = ""
+
+    @property
+    def outside(self) -> bool:
+        """Whether another package announces it."""
+        return bool(self.entry)
+
+    def load(self) -> Callable[..., Any]:
+        """``solve(program, **options)``; imports the solver, which can take seconds."""
+        if self.entry:
+            called: Callable[..., Any] = EntryPoint(self.name, self.entry, "regrasp.solvers").load()
+            return called
+        through, _, inner = self.name.partition(":")
+        if inner:
+            return partial(import_module(f"{_CALLS}.cvxpy_call").solve, name=inner)
+        if through not in _DIRECT:
+            return partial(import_module(f"{_CALLS}.qpsolvers_call").solve, name=self.name)
+        module = import_module(f"{_CALLS}.{_DIRECT[through]}_call")
+        return module.solve if hasattr(module, "solve") else partial(_once, module.Session)
+
+    def session(self) -> Callable[..., Any]:
+        """The class of its sessions: ``Session(program, **options)`` with ``update(b)`` and ``solve()``."""
+        session: Callable[..., Any] = import_module(f"{_CALLS}.{_SESSIONS[self.name]}_call").Session
+        return session
+
+
+def _once(session: Callable[..., Any], program: Any, **options: Any) -> Answer:
+    answer: Answer = session(program, **options).solve()
+    return answer
+
+
+def installed_solvers() -> dict[str, Solver]:
+    """Every solver here by name. Imports qpsolvers and cvxpy, which takes a second or two.
+
+    Raises ``InvalidInput`` for an entry point with the name of another solver.
+    """
+    found: dict[str, Solver] = {}
+    names = [*import_module(f"{_CALLS}.qpsolvers_call").installed()]
+    names += [name for name, package in _DIRECT.items() if name not in names and find_spec(package)]
+    for name in sorted(filter(is_known, names)):
+        found[name] = Solver(name, _version(_PACKAGES.get(name, name)), name == "clarabel", name in _SESSIONS)
+    for inner in import_module(f"{_CALLS}.cvxpy_call").installed():
+        if is_known(f"cvxpy:{inner}"):
+            release = f"{_version(inner.lower())} by cvxpy {_version('cvxpy')}"
+            found[f"cvxpy:{inner}"] = Solver(f"cvxpy:{inner}", release, True)
+    for group, cones in GROUPS.items():
+        for point in entry_points(group=group):
+            if point.name in found:
+                raise InvalidInput(
+                    f"the entry point {point.value} announces a solver {point.name!r}, "
+                    "but another has that name already; give it another"
+                )
+            release = point.dist.version if point.dist else "unknown"
+            found[point.name] = Solver(point.name, release, cones, entry=point.value)
+    return found
+
+
+def chosen_solvers(names: Iterable[str]) -> list[Solver]:
+    """The solvers of these names in this order, or all of them.
+
+    Raises ``InvalidInput`` for an unknown name.
+    """
+    there = installed_solvers()
+    names = list(dict.fromkeys(names))
+    for name in names:
+        if name not in there:
+            raise InvalidInput(f"no solver {name!r} here; there are {', '.join(there)}")
+    return [there[name] for name in names or there]
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"
