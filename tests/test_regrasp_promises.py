@@ -57,9 +57,7 @@ def test_the_object_ends_at_the_very_angle(angle):
 
 def test_contacts_off_the_shape_are_refused():
     inside = rg.Grasp([rg.Contact([0, -0.5], normal=[0, 1], friction=0.5), *list(FIRST)[1:]])
-    with pytest.raises(
-        rg.InvalidInput, match="is 0.5 away from the outline, whose nearest point is"
-    ):
+    with pytest.raises(rg.InvalidInput, match="away from the outline, whose nearest point is"):
         rg.plan_regrasp(OUTLINE, inside, LAST, WEIGHT, friction=0.5)
     floating = rg.Grasp([rg.Contact([0, 0, 0.5], normal=[0, 0, -1], friction=0.5), *list(START)[1:]])
     with pytest.raises(rg.InvalidInput, match="away from the mesh"):
