@@ -21,6 +21,8 @@ bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/programs.py
 	$(BIN)/python benchmarks/regrasps.py
 	$(BIN)/python benchmarks/space.py
+	$(BIN)/regrasp bench --time-limit 10 --most 20000 -o benchmarks/solvers
+	$(BIN)/regrasp bench report benchmarks/solvers
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -244,3 +244,16 @@ def test_qpbenchmark_finds_the_class_by_its_file():
         for family in FAMILIES.values()
         for p in family.problems()
     )
+
+
+def test_problems_are_exported_from_the_command_line(tmp_path, capsys, monkeypatch):
+    from regrasp.cli import main
+
+    for arguments, status in ((["--family", "loci"], 0), (["--family", "none"], 2)):
+        monkeypatch.setattr("sys.argv", ["regrasp", "bench", "export", str(tmp_path / "set"), *arguments])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert ended.value.code == status
+    out, err = capsys.readouterr()
+    assert "manifest.json" in out
+    assert "no family 'none'; there are states" in err

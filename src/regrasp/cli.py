@@ -202,6 +202,20 @@ def bench_report(folder: Path) -> None:
         click.echo(f"wrote {path}")
 
 
+@bench.command("export")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("--family", "families", metavar="NAME", multiple=True, help="Only this family; repeatable.")
+def bench_export(folder: Path, families: tuple[str, ...]) -> None:
+    """Write the problems to files in DIR, CBF for conic ones and NPZ for QPs, with a manifest."""
+    from regrasp.bench.exchange import export
+    from regrasp.bench.families.catalogue import FAMILIES
+
+    unknown = [name for name in families if name not in FAMILIES]
+    if unknown:
+        raise InvalidInput(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
+    click.echo(f"wrote {export([FAMILIES[name] for name in families or FAMILIES], folder)}")
+
+
 def main() -> None:
     """Run the command line and exit with its status; an error is one message on stderr."""
     try:
