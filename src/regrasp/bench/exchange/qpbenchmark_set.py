@@ -8,21 +8,24 @@ problem without solution; both kinds are left out.
 from collections.abc import Iterable, Iterator
 
 import qpbenchmark
-from scipy import sparse
 
 from regrasp.bench.exchange.npz import split
 from regrasp.bench.families import FAMILIES
-from regrasp.bench.problem import Verdict
+from regrasp.bench.problem import BenchProblem, Verdict
+
+# As many unknowns as qpbenchmark's own dense subset of Maros and Meszaros has.
+_DENSE = 1000
 
 
 class QpbenchmarkSet(qpbenchmark.TestSet):  # type: ignore[misc]
     """The solvable quadratic programs of the benchmark, or of some families by name.
 
-    most: leaves out problems of more unknowns. Problems come sparse; qpbenchmark makes them dense for solvers
-    that take no others.
+    most: leaves out problems of more unknowns, or None for all of them. Problems of up to 1000 unknowns come
+    dense, and qpbenchmark makes them sparse outside its timing for solvers that need that; larger ones come
+    sparse, and solvers of dense problems refuse them.
     """
 
-    def __init__(self, families: Iterable[str] = tuple(FAMILIES), most: int | None = None) -> None:
+    def __init__(self, families: Iterable[str] = tuple(FAMILIES), most: int | None = _DENSE) -> None:
         self._families = [FAMILIES[name] for name in families]
         self._most = most
         super().__init__()
@@ -53,12 +56,17 @@ class QpbenchmarkSet(qpbenchmark.TestSet):  # type: ignore[misc]
                     continue
                 if self._most is not None and program.q.size > self._most:
                     continue
-                G, h, A, b = split(program)
-                # Copies: some solvers refuse read-only arrays, which programs share.
-                P, G, A = (sparse.csc_matrix(matrix, copy=True) for matrix in (program.P, G, A))
-                yield qpbenchmark.Problem(
-                    P=P, q=program.q.copy(),
-                    G=G if h.size else None, h=h.copy() if h.size else None,
-                    A=A if b.size else None, b=b.copy() if b.size else None,
-                    lb=None, ub=None, name=problem.name,
-                )  # fmt: skip
+                yield _named(problem)
+
+
+def _named(problem: BenchProblem) -> qpbenchmark.Problem:
+    """The problem in qpbenchmark's letters, its arrays copied: some solvers refuse those of programs."""
+    program = problem.program
+    G, h, A, b = split(program)
+    sparse_one = qpbenchmark.Problem(
+        P=program.P.copy(), q=program.q.copy(),
+        G=G if h.size else None, h=h if h.size else None,
+        A=A if b.size else None, b=b if b.size else None,
+        lb=None, ub=None, name=problem.name,
+    )  # fmt: skip
+    return sparse_one.to_dense() if program.q.size <= _DENSE else sparse_one
