@@ -261,5 +261,12 @@ def test_what_is_impossible_says_why():
     slippery = [rg.Grasp(c.changed(friction=0.01) for c in grasp) for grasp in (START, GOAL)]
     with pytest.raises(rg.Infeasible, match="more friction"):
         rg.plan_regrasp(BOX, *slippery, WEIGHT, friction=0.01, orientations=1)
+    for options, words in (
+        ({"keep": lambda a, b, c: np.zeros(len(a), dtype=bool)}, "with keep; without it they do"),
+        ({"min_distance": 1.0}, "with min_distance=1; without it they do"),
+        ({"max_force": 0.1}, "with these force limits; without it they do"),
+    ):
+        with pytest.raises(rg.Infeasible, match=words):
+            rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, **options)
     with pytest.raises(rg.Infeasible, match="with a margin of 1 rad"):
         rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, least_margin=1.0)

@@ -23,6 +23,7 @@ class ObjectEntry(Strict):
         None, description="a part that comes with regrasp"
     )
     scale: Positive | None = Field(None, description="metres per unit of the file; 1 if absent")
+    smooth: bool = Field(False, description="whether normals are interpolated, of a file of a curved surface")
 
     _value: "Mesh" = PrivateAttr()
 
@@ -36,8 +37,8 @@ class ObjectEntry(Strict):
         if (self.mesh is None) == (self.part is None):
             found = "neither" if self.mesh is None else "both"
             raise ValueError(f"expected either mesh or part, found {found}")
-        if self.scale is not None and self.mesh is None:
-            raise ValueError("scale goes with mesh, found part")
+        if self.mesh is None and (self.scale is not None or self.smooth):
+            raise ValueError(f"{'smooth' if self.scale is None else 'scale'} goes with mesh, found part")
         try:
             self._value = self._made((info.context or {}).get("folder", Path()))
         except (InvalidInput, ImportError) as error:
@@ -49,4 +50,5 @@ class ObjectEntry(Strict):
 
         if self.part is not None:
             return parts.PARTS[self.part]()
-        return Mesh.from_file(folder / str(self.mesh), scale=1.0 if self.scale is None else self.scale)
+        scale = 1.0 if self.scale is None else self.scale
+        return Mesh.from_file(folder / str(self.mesh), scale=scale, smooth=self.smooth)

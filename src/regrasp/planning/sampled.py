@@ -67,6 +67,9 @@ class SampledTransition(Transition):
         """Refused: the load is tied to the clock."""
         raise InvalidInput("a path planned through instants keeps its times; plan it with another duration")
 
+    def _deciding_forces(self) -> Array:
+        return self.course.forces
+
     def _load_in_words(self) -> str:
         if not self.load_varies:
             return repr(self.start.load)

@@ -224,12 +224,38 @@ class SpaceRegraspProblem:
         end = steps[-1].end
         return [plan_rotation(end, angle, axis=axis, end=end, scaling=scaling, reserve=self.reserve)]
 
+    def _held(self, graph: TripleGraph, places: Places, o: int) -> bool:
+        """Whether any three of four fingers hold the load in a direction, with the least margin."""
+        triples = [graph.triple(*three) for three in combinations(sorted(places), 3)]
+        return bool((graph.margins[o, triples] >= max(self.least_margin, 0.0)).any())
+
+    def _in_the_way(self, places: Places, o: int) -> str | None:
+        """In words, an option without which three fingers of an end would hold; None where there is none."""
+        four = tuple(self.contacts[place] for place in places)
+        load = self.graph.loads[[o]]
+        free = tuple(c.changed(max_force=None) for c in four)
+        variants = {
+            "keep": (four, self.min_distance, None),
+            f"min_distance={self.min_distance:g}": (four, 0.0, self.keep),
+            "these force limits": (free, self.min_distance, self.keep),
+        }
+        for option, (contacts, apart, keep) in variants.items():
+            graph = TripleGraph(contacts, load, self.facets, self.peak_ratio, self.reserve, apart, keep)
+            if self._held(graph, tuple(range(4)), 0):
+                return option
+        return None
+
     def _why_not(self) -> Infeasible:
         """Which end has no hold, or how far the fingers come from both."""
         start, goal, last = self.places
         for what, places, o in (("start", start, 0), ("goal", goal, last)):
-            triples = [self.graph.triple(*three) for three in combinations(sorted(places), 3)]
-            if (self.graph.margins[o, triples] < max(self.least_margin, 0.0)).all():
+            if not self._held(self.graph, places, o):
+                option = self._in_the_way(places, o)
+                if option is not None:
+                    return Infeasible(
+                        f"no three fingers of the {what} hold the load there with {option}; without it "
+                        f"they do"
+                    )
                 wanted = f" with a margin of {self.least_margin:.4g} rad" if self.least_margin else ""
                 return Infeasible(
                     f"no three fingers of the {what} hold the load there{wanted} (in inner pyramids of "

@@ -241,14 +241,15 @@ class Transition(ArrayValue, Pictured):
             f"{self._kind_in_words()} in {self.duration:g} s under {self._load_in_words()}",
             f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
         ]
-        ends = np.array([self.start.margins.angle, self.end.margins.angle])
+        cones, forces = self.grasp.cones, self._deciding_forces()
+        angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
         largest = max(self.start.magnitudes.max(), self.end.magnitudes.max())
         form = "10.4f" if 0.1 <= largest < 1e5 or largest == 0 else "11.3e"  # any units, readable in newtons
         for i, name in enumerate(self.grasp.names):
             start, end = (
                 " ".join(format(x + 0.0, form) for x in s.forces[i]) for s in (self.start, self.end)
             )
-            margin = np.fmin.reduce(ends[:, i])
+            margin = np.fmin.reduce(angles[:, i])
             shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
             lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
         for c in self.record.choices:
@@ -265,6 +266,10 @@ class Transition(ArrayValue, Pictured):
         return "\n".join(lines)
 
     __repr__ = __str__
+
+    def _deciding_forces(self) -> Array:
+        """(m, n, d) forces whose least margins are those of the whole path: of a straight one both ends'."""
+        return np.stack([self.start.forces, self.end.forces])
 
     def _kind_in_words(self) -> str:
         if self.kind == "rotation":

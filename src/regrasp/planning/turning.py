@@ -157,6 +157,10 @@ class TurningTransition(Transition):
                 result[here] = arc(ends[0], turn.middles[k], ends[1], step, at)
         return result.reshape(*theta.shape, *self.start.forces.shape)
 
+    def _deciding_forces(self) -> Array:
+        turn = self.turn
+        return turn.forces if turn.middles is None else np.concatenate([turn.forces, turn.middles])
+
     def _load_in_words(self) -> str:
         about = "" if self.turn.axis is None else f" about {numbers(self.turn.axis)}"
         return f"{self.start.load!r}, turning the object by {np.degrees(self.turn.angle):.6g} deg{about}"

@@ -31,7 +31,7 @@ class Backend(NamedTuple):
 _QP = "regrasp.programs.qpsolvers_backend"
 # Active-set and interior-point methods answer to 1e-7 or better; first-order methods (osqp, scs) do not.
 BACKENDS = {
-    "clarabel": Backend("clarabel", "regrasp.programs.clarabel_backend", True, 1e-7),
+    "clarabel": Backend("clarabel", "regrasp.programs.clarabel_backend", True, 5e-7),
     "daqp": Backend("daqp", _QP, False, 1e-7),
     "quadprog": Backend("quadprog", _QP, False, 1e-7),
     "highs": Backend("highspy", _QP, False, 1e-6),
