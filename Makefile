@@ -21,7 +21,7 @@ bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/programs.py
 	$(BIN)/python benchmarks/regrasps.py
 	$(BIN)/python benchmarks/space.py
-	$(BIN)/regrasp bench --time-limit 10 --most 20000 -o benchmarks/solvers
+	$(BIN)/regrasp bench --time-limit 2 --most 6000 -o benchmarks/solvers
 	$(BIN)/regrasp bench report benchmarks/solvers
 
 $(VENV)/installed: pyproject.toml
