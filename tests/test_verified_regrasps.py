@@ -138,13 +138,3 @@ def test_load_functions_are_for_point_contacts():
     grasp, load = soft_random(np.random.default_rng(0), 5), rg.Wrench([0, 0, -1.0], [0.01, 0.02, 0])
     with pytest.raises(rg.InvalidInput, match="a load function is checked for point contacts"):
         rg.verify(rg.plan_removal(grasp, 1, load=load), lambda t: load)
-
-
-def test_the_value_of_a_force_margin_leaves_rays_out():
-    grasp = rg.Grasp(
-        rg.Contact(p, [-x for x in p], mu)
-        for p, mu in (([1, 0, 0], 0.7), ([-0.5, 0.8, 0.1], 0.7), ([-0.5, -0.8, -0.1], 0.7), ([0, 0, 1], 0.0))
-    )
-    best = rg.choose_state(grasp, rg.Wrench([0, 0, -0.5]), "force")
-    assert best.value == pytest.approx(best.margins.force[:3].min())
-    assert best.value > 0

@@ -141,8 +141,7 @@ def objective_value(state: GraspState, objective: str) -> float:
     if objective == "angle":
         return state.margins.least_angle
     if objective == "force":
-        rough = state.grasp.frictions > 0  # a ray has no inside
-        return float(state.margins.force[rough].min(initial=inf)) if rough.any() else 0.0
+        return float(state.margins.force.min())
     if objective == "effort":
         return float((measured**2).sum())
     if objective == "peak":
