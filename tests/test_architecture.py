@@ -135,6 +135,7 @@ def may_import(module: str, package: str) -> bool:
     if package == "numba":
         return module in (
             "regrasp.closed_form.compiled",
+            "regrasp.closed_form.compiling",
             "regrasp.closed_form.compiled_holds",
             "regrasp.closed_form.compiled_pairs",
             "regrasp.closed_form.compiled_paths",

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import regrasp as rg
-from regrasp.planning.held_sphere import even_directions
+from regrasp.planning.spiral import even_directions
 from regrasp.plots import plot_load_sphere
 from space import best_by_cvxpy, nose_cone, random_grasp, random_rotation, rotated
 

@@ -11,7 +11,7 @@ import pytest
 import regrasp as rg
 from regrasp.mechanics.frames import tangent_pairs
 from regrasp.planning.faces import ball_faces, cone_faces
-from regrasp.planning.held_sphere import even_directions
+from regrasp.planning.spiral import even_directions
 from regrasp.planning.state_program import state_program
 from regrasp.programs import solve
 from space import best_by_cvxpy, nose_cone, random_grasp, random_load, random_rotation, rotated

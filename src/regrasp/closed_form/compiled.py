@@ -9,43 +9,18 @@ The numbers of a block are judged while they are in the cache: the loops return 
 and the caller looks at these numbers again only if there are any.
 """
 
-from hashlib import sha256
 from math import inf
-from pathlib import Path
-from types import FunctionType, ModuleType
 from typing import Any
 
 from numba import njit, prange
 
 from regrasp.closed_form import best, choice, locus
+from regrasp.closed_form.compiling import compiled, digest
 
 BLOCK = 1024
 """Grasps in a block."""
 
 MODULES = (locus, best, choice)
-
-
-INNER: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""Options of functions that only compiled code calls: with no way in from outside they compile faster."""
-
-
-def compiled(modules: tuple[ModuleType, ...], **options: Any) -> dict[str, Any]:
-    """All functions of the modules; they call one another through this dictionary of names."""
-    names: dict[str, Any] = {"__builtins__": __builtins__}
-    for module in modules:
-        names.update(vars(module))
-    for module in modules:
-        for name, function in vars(module).items():
-            if isinstance(function, FunctionType) and function.__module__ == module.__name__:
-                mine = FunctionType(function.__code__, names, name)
-                names[name] = njit(**INNER, forceinline=True, **options)(mine)
-    return names
-
-
-def digest(modules: tuple[ModuleType, ...]) -> str:
-    """Of the sources: in a loop's closure, it makes Numba's cache watch them as it does the loop's file."""
-    return sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in modules)).hexdigest()
-
 
 names = compiled(MODULES)
 _squeeze_interval = names["squeeze_interval"]

@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit, prange
 
 from regrasp.closed_form import compiled_pairs
-from regrasp.closed_form.compiled import digest
 from regrasp.closed_form.compiled_pairs import held_loads, workspace_for
+from regrasp.closed_form.compiling import digest
 from regrasp.closed_form.turning_margin import NO_HOLD as NO_HOLD
 
 _BLOCK = 16  # pairs whose margins share a cache line

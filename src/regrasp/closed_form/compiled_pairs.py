@@ -11,8 +11,9 @@ from numba import njit
 
 from regrasp.closed_form import load_cone, turning_margin
 from regrasp.closed_form.choice import ANGLE
-from regrasp.closed_form.compiled import INNER, MODULES, compiled
+from regrasp.closed_form.compiled import MODULES
 from regrasp.closed_form.compiled import names as one_grasp
+from regrasp.closed_form.compiling import INNER, compiled
 from regrasp.closed_form.turning_margin import NO_HOLD, UNSURE
 
 _TOGETHER = 8  # margins of one vector instruction: work is done for so many even where fewer are asked for

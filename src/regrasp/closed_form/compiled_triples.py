@@ -6,10 +6,7 @@ more than force limits allow against it, cannot be held either. Most loads are r
 known already, with one scalar product; the others start from the last basis.
 """
 
-from hashlib import sha256
 from math import comb, sqrt
-from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -23,6 +20,7 @@ from regrasp.closed_form import (
     triple_extremes,
     triple_program,
 )
+from regrasp.closed_form.compiling import compiled, digest
 from regrasp.closed_form.three_fingers import HOLDS, NO_STATE
 from regrasp.closed_form.triple_program import Fingers
 
@@ -36,20 +34,7 @@ NO_HOLD, NO_TRIANGLE, NOT_DECIDED = -1.0, -2.0, -3.0
 """In the place of a margin: proven not to hold; points on a line or not allowed; left open by rounding."""
 
 
-def _compiled() -> dict[str, Any]:
-    """All functions of the modules; they call one another through this dictionary of names."""
-    names: dict[str, Any] = {"__builtins__": __builtins__}
-    for module in _MODULES:
-        names.update(vars(module))
-    for module in _MODULES:
-        for name, function in vars(module).items():
-            if isinstance(function, FunctionType) and function.__module__ == module.__name__:
-                mine = FunctionType(function.__code__, names, name, function.__defaults__)
-                names[name] = njit(error_model="numpy")(mine)
-    return names
-
-
-_names = _compiled()
+_names = compiled(_MODULES, inline=False)
 _triple_frame, _centroid_moment = _names["triple_frame"], _names["centroid_moment"]
 _rigid_motion, _dot, _plus = _names["rigid_motion"], _names["dot"], _names["plus"]
 _workspace, _write_triple, _judged = _names["workspace"], _names["write_triple"], _names["judged"]
@@ -57,7 +42,7 @@ _LIMITS, _PUSHES, _FACETS = triple_program.LIMITS, triple_program.PUSHES, triple
 _COLLINEAR = triple.COLLINEAR
 
 # Numba's cache watches this file only; the digest in the loops' closures makes it watch the formulas too.
-_digest = sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in _MODULES)).hexdigest()
+_digest = digest(_MODULES)
 
 
 @njit(error_model="numpy")

@@ -23,6 +23,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.choice import choose_forces
 from regrasp.planning.criteria import PEAK_RATIO, ChosenState, Criteria, criteria_of
+from regrasp.planning.spiral import even_directions
 
 COUNT = 400
 """Default number of directions."""
@@ -196,17 +197,6 @@ def held_sphere(
         read_only(forces),
         tuple(twists),
     )
-
-
-def even_directions(count: int) -> Array:
-    """(count, 3) unit vectors spread evenly over the sphere: a Fibonacci lattice.
-
-    Equal steps of z, each turned by the golden angle pi (3 - sqrt 5) from the one before.
-    """
-    k = np.arange(count)
-    z = 1 - (2 * k + 1) / count
-    across, turn = np.sqrt(1 - z * z), pi * (3 - sqrt(5.0)) * k
-    return np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
 
 
 def _escapes(known: EscapeTwist, load: Wrench) -> EscapeTwist | None:

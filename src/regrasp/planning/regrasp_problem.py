@@ -172,16 +172,7 @@ class RegraspProblem:
 
     def graph_on(self, contacts: Iterable[Contact]) -> HoldGraph:
         """The holds of contacts, with the friction that the reserve leaves."""
-        kept = tuple(
-            Contact(
-                c.position,
-                c.normal,
-                kept_friction(c.friction, self.reserve),
-                max_force=c.max_force,
-                name=c.name,
-            )
-            for c in contacts
-        )
+        kept = tuple(c.changed(friction=kept_friction(c.friction, self.reserve)) for c in contacts)
         return HoldGraph(
             kept, self.load, self.angles, self.peak_ratio, self.min_distance, self.keep,
             one_finger=self.one_finger,

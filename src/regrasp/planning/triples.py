@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import comb, cos, inf, pi, sqrt
+from math import comb, cos, inf, pi
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserv
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.criteria import PEAK_RATIO
+from regrasp.planning.spiral import even_directions
 
 TripleFilter = Callable[[Array, Array, Array], NDArray[np.bool_]]
 """(m, 3) first, second and third points -> (m,) which triples are allowed."""
@@ -206,13 +207,6 @@ class TripleGraph:
 def directions(count: int, size: float = 1.0) -> Array:
     """(count, 6) loads without torque: forces of one size [N] in directions spread evenly over the sphere.
 
-    They lie on a spiral from pole to pole (the golden angle apart), the same for every call.
+    They are those of ``even_directions``.
     """
-    if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-        raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
-    place = np.arange(count) + 0.5
-    height, turn = 1 - 2 * place / count, pi * (1 + sqrt(5)) * place
-    around = np.sqrt(1 - height * height)
-    loads = np.zeros((count, 6))
-    loads[:, 0], loads[:, 1], loads[:, 2] = around * np.cos(turn), around * np.sin(turn), height
-    return loads * number(size, "size", above=0)
+    return np.pad(even_directions(count) * number(size, "size", above=0), ((0, 0), (0, 3)))

@@ -1,6 +1,7 @@
 """A load that stays in the world, seen from a turning object, in rational arithmetic."""
 
 from fractions import Fraction
+from functools import cache
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench import Wrench
@@ -16,7 +17,10 @@ def _arctan(inverse: int) -> Fraction:
     )
 
 
-_PI = 16 * _arctan(5) - 4 * _arctan(239)  # Machin
+@cache
+def _turn() -> Fraction:
+    """2 pi, by Machin's formula; worked out when it is first asked for, since it costs start-up time."""
+    return 2 * (16 * _arctan(5) - 4 * _arctan(239))
 
 
 class TurningLoad:
@@ -81,7 +85,7 @@ def _spun(vector: Vector, axis: Vector) -> tuple[Vector, Vector, Vector]:
 
 def cosine_sine(angle: Fraction) -> tuple[Fraction, Fraction]:
     """Cosine and sine by Taylor's series, to 2^-80, as fractions of 2^-120; of angles up to 1e12 rad."""
-    angle -= 2 * _PI * round(angle / (2 * _PI))
+    angle -= _turn() * round(angle / _turn())
     cosine, sine, term = Fraction(0), Fraction(0), Fraction(1)
     quarter = angle / 16  # then doubled four times
     for n in range(_TERMS):

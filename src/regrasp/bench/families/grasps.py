@@ -6,6 +6,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench, torque
+from regrasp.planning.spiral import even_directions
 
 # Forces stay inside their cones by this share of the friction, so that a held load is held with room.
 _INSIDE = 0.8
@@ -22,10 +23,7 @@ def planar(rng: np.random.Generator, count: int) -> tuple[Grasp, Wrench]:
 
 def in_space(rng: np.random.Generator, count: int) -> tuple[Grasp, Wrench]:
     """Fingers over a dented ball, spread by the golden angle, and a load that inner forces balance."""
-    place = np.arange(count) + 0.5
-    height, turn = 1 - 2 * place / count, np.pi * (1 + np.sqrt(5)) * place
-    around = np.sqrt(1 - height**2)
-    towards = np.column_stack([around * np.cos(turn), around * np.sin(turn), height])
+    towards = even_directions(count)
     normals = -towards + 0.2 * rng.normal(size=(count, 3))
     return _held(rng, rng.uniform(0.7, 1.3, count)[:, None] * towards, normals)
 

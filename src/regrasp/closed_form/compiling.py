@@ -1,0 +1,32 @@
+"""Compiling the functions of modules from their own code, so that every formula is written once."""
+
+from hashlib import sha256
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+from numba import njit
+
+INNER: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of functions that only compiled code calls: with no way in from outside they compile faster."""
+
+
+def compiled(modules: tuple[ModuleType, ...], *, inline: bool = True, **options: Any) -> dict[str, Any]:
+    """All functions of the modules; they call one another through this dictionary of names.
+
+    inline: into their callers, which makes short loops fast and the compilation of long functions slow.
+    """
+    names: dict[str, Any] = {"__builtins__": __builtins__}
+    for module in modules:
+        names.update(vars(module))
+    for module in modules:
+        for name, function in vars(module).items():
+            if isinstance(function, FunctionType) and function.__module__ == module.__name__:
+                mine = FunctionType(function.__code__, names, name, function.__defaults__)
+                names[name] = njit(**INNER, forceinline=inline, **options)(mine)
+    return names
+
+
+def digest(modules: tuple[ModuleType, ...]) -> str:
+    """Of the sources: in a loop's closure, it makes Numba's cache watch them as it does the loop's file."""
+    return sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in modules)).hexdigest()
