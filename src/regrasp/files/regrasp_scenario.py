@@ -1,18 +1,17 @@
 """The scenario of a whole regrasp: an outline, where the fingers start and where they are to be."""
 
-from functools import cached_property
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from regrasp.errors import InvalidInput
 from regrasp.files.keys import Positive, Vector
-from regrasp.files.regrasp_task import CommonTask
+from regrasp.files.regrasp_task import CommonTask, Ended
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
-from regrasp.mechanics.grasp import Grasp
 from regrasp.outline.outline import Outline
 from regrasp.outline.parts import PARTS
 from regrasp.planning.reach import MAX_TURN
@@ -162,7 +161,7 @@ class RegraspTask(CommonTask):
         return self
 
 
-class RegraspScenario(Strict):
+class RegraspScenario(Ended):
     """A planar object with its outline, three fingers on it, and where they are to be."""
 
     title: str | None = Field(None, description="shown above the plan")
@@ -173,42 +172,21 @@ class RegraspScenario(Strict):
     goal: Places
     task: RegraspTask
 
-    @cached_property
-    def start_grasp(self) -> Grasp:
-        """The three contacts before the regrasp."""
-        return Grasp(self._contacts("start"))
-
-    @cached_property
-    def goal_grasp(self) -> Grasp:
-        """The three contacts after it."""
-        return Grasp(self._contacts("goal"))
-
     @model_validator(mode="after")
     def _fits_together(self) -> "RegraspScenario":
-        problems = []
-        for end in ("start", "goal"):
-            try:
-                _ = self.start_grasp if end == "start" else self.goal_grasp
-            except InvalidInput as error:
-                lines = str(error).splitlines()
-                problems += [line if line.startswith(end) else f"{end}: {line}" for line in lines]
+        problems = self._end_problems()
         if problems:
             raise ValueError("\n".join(problems))
         return self
 
-    def _contacts(self, end: Literal["start", "goal"]) -> list[Contact]:
+    def _placed(self, end: Literal["start", "goal"]) -> tuple[str, list[Any], Callable[[Any], Contact]]:
         places: Places = getattr(self, end)
-        contacts, problems = [], []
-        key = "positions" if places.arc_lengths is None else "arc_lengths"
-        for i, place in enumerate(getattr(places, key)):
-            try:
-                s = place if key == "arc_lengths" else self._nearest(place)
-                contacts.append(self.outline.value.contact_at(s, friction=self.friction))
-            except InvalidInput as error:
-                problems.append(f"{end}.{key}[{i}]: {error}")
-        if problems:
-            raise InvalidInput("\n".join(problems))
-        return contacts
+        if places.arc_lengths is not None:
+            return "arc_lengths", places.arc_lengths, self._at
+        return "positions", places.positions or [], lambda position: self._at(self._nearest(position))
+
+    def _at(self, arc_length: float) -> Contact:
+        return self.outline.value.contact_at(arc_length, friction=self.friction)
 
     def _nearest(self, position: list[float]) -> float:
         outline = self.outline.value

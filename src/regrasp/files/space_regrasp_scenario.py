@@ -1,8 +1,9 @@
 """The scenario of a whole regrasp in space: a solid, where four fingers start and where they are to be."""
 
+from collections.abc import Callable
 from functools import cached_property
 from math import radians
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -10,11 +11,10 @@ from pydantic import Field, model_validator
 from regrasp.errors import InvalidInput
 from regrasp.files.keys import SpaceVector
 from regrasp.files.object_entry import ObjectEntry
-from regrasp.files.regrasp_task import CommonTask
+from regrasp.files.regrasp_task import CommonTask, Ended
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
-from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.space_problem import MAX_TURN
 from regrasp.planning.triples import FACETS
 from regrasp.planning.turn import rotation_matrix, unit_axis
@@ -82,7 +82,7 @@ class SpaceRegraspTask(CommonTask):
         return self
 
 
-class SpaceRegraspScenario(Strict):
+class SpaceRegraspScenario(Ended):
     """A solid object, four fingers on it, and where they are to be."""
 
     title: str | None = Field(None, description="shown above the plan")
@@ -93,25 +93,9 @@ class SpaceRegraspScenario(Strict):
     goal: SpacePlaces
     task: SpaceRegraspTask
 
-    @cached_property
-    def start_grasp(self) -> Grasp:
-        """The four contacts before the regrasp."""
-        return Grasp(self._contacts("start"))
-
-    @cached_property
-    def goal_grasp(self) -> Grasp:
-        """The four contacts after it."""
-        return Grasp(self._contacts("goal"))
-
     @model_validator(mode="after")
     def _fits_together(self) -> "SpaceRegraspScenario":
-        problems = []
-        for end in ("start", "goal"):
-            try:
-                _ = self.start_grasp if end == "start" else self.goal_grasp
-            except InvalidInput as error:
-                lines = str(error).splitlines()
-                problems += [line if line.startswith(end) else f"{end}.positions: {line}" for line in lines]
+        problems = self._end_problems(".positions")
         force = np.array(self.load.force)
         if not force.any():
             problems.append("load.force: expected a force other than zero, which says what the fingers hold")
@@ -124,15 +108,14 @@ class SpaceRegraspScenario(Strict):
             raise ValueError("\n".join(problems))
         return self
 
-    def _contacts(self, end: Literal["start", "goal"]) -> list[Contact]:
+    def _placed(self, end: Literal["start", "goal"]) -> tuple[str, list[Any], Callable[[Any], Contact]]:
         places: SpacePlaces = getattr(self, end)
-        mesh, contacts, problems = self.object.value, [], []
-        for i, position in enumerate(places.positions):
-            try:
-                point = np.array(position) + mesh.centre_of_mass
-                contacts.append(mesh.contact_at(point, friction=self.friction))
-            except InvalidInput as error:
-                problems.append(f"{end}.positions[{i}], from the centre of mass: {error}")
-        if problems:
-            raise InvalidInput("\n".join(problems))
-        return contacts
+        return "positions", places.positions, self._near
+
+    @property
+    def _from(self) -> str:
+        return ", from the centre of mass"
+
+    def _near(self, position: list[float]) -> Contact:
+        mesh = self.object.value
+        return mesh.contact_at(np.array(position) + mesh.centre_of_mass, friction=self.friction)

@@ -59,6 +59,14 @@ def number(value: Any, what: str, *, least: float | None = None, above: float | 
     return result
 
 
+def rotation(value: ArrayLike, what: str) -> Array:
+    """A (3, 3) rotation matrix: orthonormal, determinant 1."""
+    matrix = array(value, what, (3, 3))
+    if abs(matrix @ matrix.T - np.eye(3)).max() > 1e-9 or np.linalg.det(matrix) < 0:
+        raise InvalidInput(f"{what} must be a rotation matrix (orthonormal, determinant 1), got {value!r}")
+    return matrix
+
+
 def choice(value: Any, what: str, allowed: Sequence[str]) -> str:
     """One of the ``allowed`` words."""
     if not isinstance(value, str) or value not in allowed:

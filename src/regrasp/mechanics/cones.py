@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from regrasp.mechanics.checks import Array, read_only
-from regrasp.mechanics.frames import tangent_pairs
+from regrasp.mechanics.frames import tangents_of
 
 
 class Cones:
@@ -37,14 +37,11 @@ class Cones:
     @cached_property
     def tangents(self) -> Array:
         """(n, w - 1, w) orthonormal directions across each normal."""
-        n = self.normals[:, : self._d]
-        if self._d == 2:
-            return read_only(np.column_stack([-n[:, 1], n[:, 0]])[:, None])
-        pairs = tangent_pairs(n)
+        across = tangents_of(self.normals[:, : self._d])
         if self._arms is None:
-            return read_only(pairs)
-        result = np.zeros((len(n), 3, 4))
-        result[:, :2, :3], result[:, 2, 3] = pairs, 1.0
+            return read_only(across)
+        result = np.zeros((len(across), 3, 4))
+        result[:, :2, :3], result[:, 2, 3] = across, 1.0
         return read_only(result)
 
     def measured(self, forces: Array) -> Array:

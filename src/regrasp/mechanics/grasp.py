@@ -11,7 +11,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
-from regrasp.mechanics.frames import tangent_pairs
+from regrasp.mechanics.frames import tangents_of
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import torque
 
@@ -149,9 +149,8 @@ class Grasp(ArrayValue):
     @cached_property
     def tangents(self) -> Array:
         """(n, 2), the normals turned left by a right angle; in space two of each, (n, 2, 3) (``frames``)."""
-        if self.dimension == 3:
-            return read_only(tangent_pairs(self.normals))
-        return read_only(np.column_stack([-self.normals[:, 1], self.normals[:, 0]]))
+        across = tangents_of(self.normals)
+        return read_only(across if self.dimension == 3 else across[:, 0])
 
     @cached_property
     def frictions(self) -> Array:
@@ -216,8 +215,7 @@ class Grasp(ArrayValue):
 
         k = 2n - 3 in the plane, 3n - 6 in space (one more where all contacts lie on one line).
         """
-        scaled = self.matrix.copy()
-        scaled[self.dimension :] /= self.size or 1.0  # so that the rank does not depend on the length unit
+        scaled = self.matrix / self.lengths[:, None]  # so that the rank does not depend on the length unit
         _, values, rows = np.linalg.svd(scaled)
         rank = int((values > 1e-12 * values[0]).sum())
         return read_only(rows[rank:].reshape(-1, len(self), self.width))
@@ -229,13 +227,9 @@ class Grasp(ArrayValue):
         No such motion for two contacts in the plane or three in space that do not lie on one line. Two point
         contacts in space leave the turn about their line free: no force of theirs resists a torque about it.
         """
-        d, scaled = self.dimension, self.matrix.copy()
-        scaled[d:] /= self.size or 1.0
-        left, values, _ = np.linalg.svd(scaled)
+        left, values, _ = np.linalg.svd(self.matrix / self.lengths[:, None])
         rank = int((values > 1e-12 * values[0]).sum())
-        free = left[:, rank:].T.copy()
-        free[:, d:] /= self.size or 1.0
-        return read_only(free)
+        return read_only(left[:, rank:].T / self.lengths)
 
     @property
     def freedom(self) -> str | None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics import checks
 from regrasp.mechanics.checks import Array, array, number, point
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -87,11 +88,7 @@ class Wrench(ArrayValue):
             c, s = cos(angle), sin(angle)
             fx, fy = self.force
             return Wrench([c * fx - s * fy, s * fx + c * fy], float(self.torque[0]))
-        matrix = array(rotation, "rotation", (3, 3))
-        if abs(matrix @ matrix.T - np.eye(3)).max() > 1e-9 or np.linalg.det(matrix) < 0:
-            raise InvalidInput(
-                f"rotation must be a rotation matrix (orthonormal, determinant 1), got {rotation!r}"
-            )
+        matrix = checks.rotation(rotation, "rotation")
         return Wrench(matrix @ self.force, matrix @ self.torque)
 
     def _with(self, other: object, combine: Callable[[Array, Array], Array]) -> "Wrench":

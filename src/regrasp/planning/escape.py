@@ -72,8 +72,7 @@ def loose_twist(grasp: Grasp, load: Wrench) -> EscapeTwist | None:
     if not len(grasp.free_twists):
         return None
     power = grasp.free_twists @ load.vector
-    weight = np.ones(load.vector.size)
-    weight[grasp.dimension :] = 1 / (grasp.size or 1.0)
+    weight = 1 / grasp.lengths
     if abs(power).max() * (grasp.size or 1.0) <= _WORK * float(abs(load.vector * weight).max()):
         return None
     infinite = [inf] * len(grasp)
@@ -88,8 +87,7 @@ def escape_twist(
 ) -> EscapeTwist | None:
     """The proven escape twist of a grasp, or None where none is found."""
     d = grasp.dimension
-    weight = np.ones(load.vector.size)
-    weight[d:] = 1 / (grasp.size or 1.0)  # torques as forces
+    weight = 1 / grasp.lengths  # torques as forces
     target = -load.vector * weight
     unit = float(abs(target).max())
     if unit == 0:
@@ -111,8 +109,7 @@ def escape_twist(
 
 def _only_in_the_limit(grasp: Grasp, load: Wrench, frictions: list[float]) -> tuple[float, float] | None:
     """How far forces of ``_REACHES`` times the load miss it, relative to it, if larger ones come nearer."""
-    weight = np.ones(load.vector.size)
-    weight[grasp.dimension :] = 1 / (grasp.size or 1.0)
+    weight = 1 / grasp.lengths
     target = -load.vector * weight
     target = target / float(abs(target).max())
     near, far = (

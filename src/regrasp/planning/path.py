@@ -176,8 +176,7 @@ def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp
     """Forces (m, k, d) of some fingers at m instants, shifted into equilibrium; by Newton if that fails."""
     grasp = task.grasp.subset(used.tolist())
     mu, limits = task.frictions[used], task.limits[used]
-    weight = np.ones(loads.shape[1])
-    weight[grasp.dimension :] = 1 / (task.grasp.size or 1.0)
+    weight = 1 / task.grasp.lengths
     g, w = grasp.matrix * weight[:, None], loads * weight
     flat = forces.reshape(len(forces), -1)
     inverse = np.linalg.pinv(g)

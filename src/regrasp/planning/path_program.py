@@ -110,9 +110,8 @@ class _Builder:
     def program(self, least_margin: float) -> Program:
         """All rows, and the objective."""
         task, unit = self.task, self.task.unit
-        grasp, length = task.grasp, task.grasp.size or 1.0
-        weight = np.ones(task.loads.shape[1])
-        weight[self.d :] = 1 / length
+        grasp = task.grasp
+        weight = 1 / grasp.lengths
         balance = sparse.kron(sparse.identity(self.count), grasp.matrix * weight[:, None], format="csr")
         self.rows.equal(self._wide(balance @ self.columns), (task.loads[1:-1] * weight / unit).ravel())
         self._cones(least_margin / unit)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array, choice, number
+from regrasp.mechanics.checks import Array, choice, number, rotation
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -97,12 +97,7 @@ class SpaceRegraspProblem:
     @cached_property
     def rotation(self) -> Array:
         """(3, 3) from the object's frame in the end to its frame at the start."""
-        if self.goal_rotation is None:
-            return np.eye(3)
-        matrix = array(self.goal_rotation, "goal_rotation", (3, 3))
-        if abs(matrix @ matrix.T - np.eye(3)).max() > 1e-9 or np.linalg.det(matrix) < 0:
-            raise InvalidInput(f"goal_rotation must be a rotation matrix, got {self.goal_rotation!r}")
-        return matrix
+        return np.eye(3) if self.goal_rotation is None else rotation(self.goal_rotation, "goal_rotation")
 
     @cached_property
     def ends(self) -> Ends:
