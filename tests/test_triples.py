@@ -128,7 +128,8 @@ def test_the_margin_is_that_of_narrowed_pyramids(seed: int, facets: int, limited
         assert margin == pytest.approx(widest_angle(case, facets, ratio), abs=1e-6)
         if not limited:
             bounds = (forces * case.normals).sum(axis=1) * np.sqrt(1 + case.mu**2)
-            assert bounds.max() <= ratio * least_peak(case, facets) * (1 + 1e-7)
+            # The friction that forces are chosen within is less by 1e-9; near a singular triple that matters.
+            assert bounds.max() <= ratio * least_peak(case.with_friction(1 - 1e-9), facets) * (1 + 1e-8)
 
 
 @given(seeds, motions(), st.sampled_from([1e-6, 1.0, 1e6]), st.permutations(range(3)), facet_counts)
