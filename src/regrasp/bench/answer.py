@@ -25,8 +25,9 @@ class Answer:
 
     status: a word of ``Claim``. x: (n,), or None. duals: (m,) z with P x + q + A'z = 0 and z in K*; for
     ``infeasible`` the certificate, A'z = 0 and b'z < 0; None where the solver gives none. iterations: as it
-    counts. said: its own words. build_time, setup_time, solve_time: [s] bringing the data into the solver's
-    form, its set-up (scaling, factorisation) and its iterations; None where they cannot be told apart.
+    counts. said: its own words. build_time, setup_time, solve_time: [s] what the call spends on bringing the
+    data into another form, on set-up (scaling, factorisation) and on iterations; None where there is no such
+    part or it cannot be told apart.
     """
 
     status: str

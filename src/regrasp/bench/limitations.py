@@ -12,15 +12,19 @@ LIMITATIONS = (
     "Where the truth is a reference solve, it comes from Clarabel at its tightest, with a duality gap that "
     "bounds the error; a solver that shares its method may share its blind spots. Distances from known "
     "answers are given over closed forms and publications only.",
-    "Times are of calls from Python around the whole call. For the smallest problems that is the call and "
-    "the handing over of data rather than the algorithm, and a solver reached through qpsolvers or cvxpy "
-    "pays for it.",
+    "Times are of calls from Python around set-up and solve. Data are brought into the form a solver likes "
+    "before the clock starts; solvers reached through qpsolvers or cvxpy pay for what these do with them, as "
+    "their users do. For the smallest problems even a direct call is the handing over of data rather than "
+    "the algorithm.",
+    "Objectives are compared on the scale of the data, where the load is of order one. The forces of many "
+    "fingers are smaller than that, and so is the part of their digits that counts.",
     "One thread on one machine. Solvers that gain from more threads, a GPU or another library of linear "
     "algebra are not seen at their best.",
     "Times of answers that are not right count at the time limit; mean times depend on that limit and on the "
     "shift. Shares of problems do not.",
     "A solver that finds a program infeasible is right if it is, and if its certificate, where it gives one, "
-    "passes our audit. QP solvers called through qpsolvers give none and are believed for the verdict.",
+    "passes our audit. Clarabel, OSQP, QPALM and SCS hand certificates out; the others, and all that are "
+    "called through qpsolvers or cvxpy, are believed for the verdict.",
     "Performance profiles compare with the best of the solvers shown; the order of two solvers in a "
     "profile can change when a third is taken out.",
     "Memory is the growth of a process's resident set; memory that a solver takes from what was already "

@@ -28,11 +28,18 @@ _ABSOLUTE: dict[str, tuple[str, ...]] = {
     "proxqp": ("eps_abs", "eps_duality_gap_abs"),
     "qpalm": ("eps_abs",),
     "scs": ("eps_abs",),
+    "qoco": ("abstol",),
     "cvxopt": ("feastol",),
+    "kvxopt": ("feastol",),
     "ecos": ("feastol",),
     "gurobi": ("FeasibilityTol", "OptimalityTol"),
     "hpipm": ("tol_stat", "tol_eq", "tol_ineq", "tol_dual_gap"),
+    "jaxopt_osqp": ("tol",),
+    "qpax": ("solver_tol",),
+    "qtqp": ("atol",),
+    "sip": ("eps_abs",),
     "cvxpy:ECOS": ("feastol", "abstol"),
+    "cvxpy:QOCO": ("abstol",),
 }
 _RELATIVE: dict[str, tuple[str, ...]] = {
     "clarabel": ("tol_gap_rel",),
@@ -42,6 +49,10 @@ _RELATIVE: dict[str, tuple[str, ...]] = {
     "proxqp": ("eps_rel", "eps_duality_gap_rel"),
     "qpalm": ("eps_rel",),
     "scs": ("eps_rel",),
+    "qoco": ("reltol",),
+    "qtqp": ("rtol",),
+    "sip": ("eps_rel",),
+    "cvxpy:QOCO": ("reltol",),
 }
 _SWITCHED = {"piqp": {"check_duality_gap": True}, "proxqp": {"check_duality_gap": True}}
 # Through cvxpy, SCS takes the smaller of the two tolerances for both, so a zero would never be met.

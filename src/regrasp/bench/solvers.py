@@ -6,7 +6,8 @@ A package announces a solver by an entry point, whose name is the solver's::
     mine = "my_module:solve"
 
 ``solve(program, **settings)`` gets a ``regrasp.programs.Program`` and nothing else for default settings, else
-``eps_abs`` and ``eps_rel``. It returns anything with the attributes ``status`` (``found``, ``infeasible``,
+``eps_abs`` and ``eps_rel``. If it has an attribute ``layout``, it gets ``layout(program)`` instead, made
+before the clock starts. It returns anything with the attributes ``status`` (``found``, ``infeasible``,
 ``unbounded`` or ``failed``), ``x`` (n,), and where it has them ``duals`` (m,), ``iterations``, ``said``,
 ``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.answer.Answer`` is such a value. A
 solver of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones too in
@@ -22,15 +23,32 @@ from importlib.util import find_spec
 from typing import Any
 
 from regrasp.bench.answer import Answer
+from regrasp.bench.calls.form import Call
 from regrasp.bench.settings import is_known
 from regrasp.errors import InvalidInput
+from regrasp.programs.program import Program
 
 GROUPS = {"regrasp.solvers": False, "regrasp.solvers.conic": True}
 _CALLS = "regrasp.bench.calls"
 # Packages called directly, by the name of the solver; the others are called through qpsolvers.
-_DIRECT = {"clarabel": "clarabel", "daqp": "daqp", "highs": "highspy"}
-_SESSIONS = {"clarabel": "clarabel", "daqp": "daqp", "osqp": "osqp", "piqp": "piqp"}
-_PACKAGES = {"highs": "highspy", "proxqp": "proxsuite", "hpipm": "hpipm_python", "gurobi": "gurobipy"}
+_DIRECT = {
+    "clarabel": "clarabel",
+    "daqp": "daqp",
+    "highs": "highspy",
+    "osqp": "osqp",
+    "piqp": "piqp",
+    "proxqp": "proxsuite",
+    "qoco": "qoco",
+    "qpalm": "qpalm",
+    "scs": "scs",
+}
+_TAKE_CONES = ("clarabel", "qoco", "scs")
+_PACKAGES = _DIRECT | {
+    "hpipm": "hpipm_python",
+    "gurobi": "gurobipy",
+    "jaxopt_osqp": "jaxopt",
+    "sip": "sip_python",
+}
 
 
 @dataclass(frozen=True)
@@ -52,28 +70,36 @@ class Solver:
         """Whether another package announces it."""
         return bool(self.entry)
 
-    def load(self) -> Callable[..., Any]:
-        """``solve(program, **options)``; imports the solver, which can take seconds."""
+    def load(self) -> Call:
+        """How to call it; imports the solver, which can take seconds."""
         if self.entry:
-            called: Callable[..., Any] = EntryPoint(self.name, self.entry, "regrasp.solvers").load()
-            return called
-        through, _, inner = self.name.partition(":")
+            called = EntryPoint(self.name, self.entry, "regrasp.solvers").load()
+            return Call(getattr(called, "layout", _as_it_is), called)
+        if self.name in _DIRECT:
+            return Call(_module(_DIRECT[self.name]).layout, partial(_once, self.session()))
+        _, _, inner = self.name.partition(":")
         if inner:
-            return partial(import_module(f"{_CALLS}.cvxpy_call").solve, name=inner)
-        if through not in _DIRECT:
-            return partial(import_module(f"{_CALLS}.qpsolvers_call").solve, name=self.name)
-        module = import_module(f"{_CALLS}.{_DIRECT[through]}_call")
-        return module.solve if hasattr(module, "solve") else partial(_once, module.Session)
+            return Call(_as_it_is, partial(_module("cvxpy").solve, name=inner))
+        through = _module("qpsolvers")
+        return Call(partial(through.layout, name=self.name), partial(through.solve, name=self.name))
 
     def session(self) -> Callable[..., Any]:
-        """The class of its sessions: ``Session(program, **options)`` with ``update(b)`` and ``solve()``."""
-        session: Callable[..., Any] = import_module(f"{_CALLS}.{_SESSIONS[self.name]}_call").Session
+        """The class of its sessions: set up with a layout, updated with another, and solved."""
+        session: Callable[..., Any] = _module(_DIRECT[self.name]).Session
         return session
 
 
-def _once(session: Callable[..., Any], program: Any, **options: Any) -> Answer:
-    answer: Answer = session(program, **options).solve()
+def _once(session: Callable[..., Any], data: Any, **options: Any) -> Answer:
+    answer: Answer = session(data, **options).solve()
     return answer
+
+
+def _module(package: str) -> Any:
+    return import_module(f"{_CALLS}.{package}_call")
+
+
+def _as_it_is(program: Program) -> Program:
+    return program
 
 
 def installed_solvers() -> dict[str, Solver]:
@@ -82,11 +108,13 @@ def installed_solvers() -> dict[str, Solver]:
     Raises ``InvalidInput`` for an entry point with the name of another solver.
     """
     found: dict[str, Solver] = {}
-    names = [*import_module(f"{_CALLS}.qpsolvers_call").installed()]
+    names = [*_module("qpsolvers").installed()]
     names += [name for name, package in _DIRECT.items() if name not in names and find_spec(package)]
     for name in sorted(filter(is_known, names)):
-        found[name] = Solver(name, _version(_PACKAGES.get(name, name)), name == "clarabel", name in _SESSIONS)
-    for inner in import_module(f"{_CALLS}.cvxpy_call").installed():
+        found[name] = Solver(
+            name, _version(_PACKAGES.get(name, name)), name in _TAKE_CONES, updates=name in _DIRECT
+        )  # fmt: skip
+    for inner in _module("cvxpy").installed():
         if is_known(f"cvxpy:{inner}"):
             release = f"{_version(inner.lower())} by cvxpy {_version('cvxpy')}"
             found[f"cvxpy:{inner}"] = Solver(f"cvxpy:{inner}", release, True)

@@ -5,8 +5,9 @@
     ("solve",)                             -> ("answer", Answer, seconds, bytes) or ("error", words, seconds)
                                               or ("memory", words)
 
-With ``before``, a solve is a warm one: a session solves ``before`` untimed, is given the right side of
-``program``, and only that and the solve after it are timed.
+The program is brought into the solver's own form before the clock starts. With ``before``, a solve is a warm
+one: a session solves ``before`` untimed, is given the right side of ``program``, and only that and the solve
+after it are timed.
 """
 
 import contextlib
@@ -23,6 +24,7 @@ from time import perf_counter
 from typing import Any
 
 from regrasp.bench.answer import Answer, understood
+from regrasp.bench.calls.form import Call
 from regrasp.bench.solvers import Solver
 from regrasp.programs.program import Program
 
@@ -48,7 +50,7 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
 
 def _serve(connection: Connection) -> None:
     solver: Solver | None = None
-    call: Callable[..., Any] | None = None
+    call: Call | None = None
     once: Once | None = None
     is_first = True
     while True:
@@ -70,7 +72,7 @@ def _serve(connection: Connection) -> None:
                 once = (
                     _cold(call, program, options)
                     if before is None
-                    else _warm(solver, program, before, options)
+                    else _warm(solver.session(), call.layout, program, before, options)
                 )
                 is_first = True
                 reply = ("prepared",)
@@ -83,23 +85,28 @@ def _serve(connection: Connection) -> None:
         connection.send(reply)
 
 
-def _cold(call: Callable[..., Any], program: Program, options: dict[str, Any]) -> Once:
+def _cold(call: Call, program: Program, options: dict[str, Any]) -> Once:
     def once() -> tuple[Answer, float]:
+        data = call.layout(program)  # anew each time: a solver may write into it
         started = perf_counter()
-        given = call(program, **options)
+        given = call.solve(data, **options)
         took = perf_counter() - started
         return understood(given, program), took
 
     return once
 
 
-def _warm(solver: Solver, program: Program, before: Program, options: dict[str, Any]) -> Once:
+def _warm(
+    session: Callable[..., Any], layout: Callable[[Program], Any], program: Program, before: Program,
+    options: dict[str, Any],
+) -> Once:  # fmt: skip
     def once() -> tuple[Answer, float]:
-        session = solver.session()(before, **options)
-        session.solve()
+        opened = session(layout(before), **options)
+        opened.solve()
+        data = layout(program)
         started = perf_counter()
-        session.update(program.b.copy())
-        given = session.solve()
+        opened.update(data)
+        given = opened.solve()
         took = perf_counter() - started
         return understood(given, program), took
 

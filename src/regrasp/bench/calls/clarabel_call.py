@@ -1,39 +1,49 @@
-"""Clarabel, called directly."""
+"""Clarabel, called directly. An update keeps the scaling and the symbolic factorisation."""
 
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import clarabel
 import numpy as np
 
 from regrasp.bench.answer import Answer
-from regrasp.programs.program import Array, Block, Cone, Program
+from regrasp.programs.program import Block, Cone, Program
 
 # "Almost" verdicts are not verdicts.
 _CLAIMS = {"Solved": "found", "PrimalInfeasible": "infeasible", "DualInfeasible": "unbounded"}
 
 
-class Session:
-    """A program set up in Clarabel; an update keeps the scaling and the symbolic factorisation."""
+class Data(NamedTuple):
+    """A program, whose form is Clarabel's own, and its cones. Of P Clarabel takes the upper triangle."""
 
-    def __init__(self, program: Program, **options: Any) -> None:
+    program: Program
+    cones: list[Any]
+
+
+def layout(program: Program) -> Data:
+    """The program with Clarabel's cones."""
+    return Data(program, [cone for block in program.blocks for cone in _cones(block)])
+
+
+class Session:
+    """A program set up in Clarabel."""
+
+    def __init__(self, data: Data, **options: Any) -> None:
         started = perf_counter()
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
         for key, value in options.items():
             setattr(settings, key, value)
-        cones = [cone for block in program.blocks for cone in _cones(block)]
-        built = perf_counter()
-        # Of P, both of whose triangles are given, it takes the upper one.
+        program, cones = data
         self._solver = clarabel.DefaultSolver(program.P, program.q, program.A, program.b, cones, settings)
-        self._build, self._setup = built - started, perf_counter() - built
+        self._setup = perf_counter() - started
 
-    def update(self, b: Array) -> None:
-        """Another right side (m,)."""
+    def update(self, data: Data) -> None:
+        """The same program with another right side."""
         started = perf_counter()
-        self._solver.update(b=b)
-        self._build, self._setup = 0.0, perf_counter() - started
+        self._solver.update(b=data.program.b)
+        self._setup = perf_counter() - started
 
     def solve(self) -> Answer:
         """The answer for the right side set last."""
@@ -41,16 +51,9 @@ class Session:
         answer = self._solver.solve()
         took = perf_counter() - started
         said = str(answer.status)
-        return Answer(
-            _CLAIMS.get(said, "failed"),
-            np.array(answer.x),
-            np.array(answer.z),
-            answer.iterations,
-            said,
-            self._build,
-            self._setup,
-            took,
-        )
+        x, duals = np.array(answer.x), np.array(answer.z)
+        claim = _CLAIMS.get(said, "failed")
+        return Answer(claim, x, duals, answer.iterations, said, None, self._setup, took)
 
 
 def _cones(block: Block) -> list[Any]:

@@ -7,8 +7,8 @@ import daqp
 import numpy as np
 
 from regrasp.bench.answer import Answer
-from regrasp.bench.calls.form import bounds, equalities
-from regrasp.programs.program import Array, Program
+from regrasp.bench.calls.form import Bounds, bounded
+from regrasp.programs.program import Program
 
 _SAID = {
     2: "soft optimal",
@@ -26,27 +26,27 @@ _INFINITY = 1e30
 _EQUALITY = 5
 
 
-class Session:
-    """A program set up in DAQP, dense."""
+def layout(program: Program) -> Bounds:
+    """Dense matrices and bounded rows."""
+    return bounded(program, _INFINITY, dense=True)
 
-    def __init__(self, program: Program, **options: Any) -> None:
+
+class Session:
+    """A program set up in DAQP."""
+
+    def __init__(self, data: Bounds, **options: Any) -> None:
         started = perf_counter()
-        self._equal = equalities(program)
-        lower, upper = bounds(program.b, self._equal, _INFINITY)
-        P, A = program.P.toarray(), program.A.toarray()
-        sense = np.where(self._equal, _EQUALITY, 0).astype(np.intc)
+        sense = np.where(data.equal, _EQUALITY, 0).astype(np.intc)
         self._solver = daqp.Model()
         self._solver.settings = options
-        built = perf_counter()
-        self._refused, _ = self._solver.setup(P, program.q.copy(), A, upper, lower, sense)
-        self._build, self._setup = built - started, perf_counter() - built
+        self._refused, _ = self._solver.setup(data.P, data.q, data.A, data.upper, data.lower, sense)
+        self._setup = perf_counter() - started
 
-    def update(self, b: Array) -> None:
-        """Another right side (m,)."""
+    def update(self, data: Bounds) -> None:
+        """The same program with another right side."""
         started = perf_counter()
-        lower, upper = bounds(b, self._equal, _INFINITY)
-        self._refused = self._solver.update(bupper=upper, blower=lower)
-        self._build, self._setup = 0.0, perf_counter() - started
+        self._refused = self._solver.update(bupper=data.upper, blower=data.lower)
+        self._setup = perf_counter() - started
 
     def solve(self) -> Answer:
         """The answer for the right side set last."""
@@ -61,4 +61,4 @@ class Session:
         found = status == "found"
         said = _SAID.get(flag, f"exit flag {flag}")
         given = (x, duals) if found else (None, None)
-        return Answer(status, *given, iterations, said, self._build, self._setup, took)
+        return Answer(status, *given, iterations, said, None, self._setup, took)

@@ -1,36 +1,39 @@
-"""OSQP with a right side that changes: it keeps its factorisation and starts from its last iterate."""
+"""OSQP, called directly. An update keeps the factorisation and starts from the last iterate."""
 
 from time import perf_counter
 from typing import Any
 
 import osqp
+from scipy import sparse
 
 from regrasp.bench.answer import Answer
-from regrasp.bench.calls.form import bounds, equalities
-from regrasp.programs.program import Array, Program
+from regrasp.bench.calls.form import Bounds, bounded
+from regrasp.programs.program import Program
 
 _CLAIMS = {"solved": "found", "primal infeasible": "infeasible", "dual infeasible": "unbounded"}
+
+
+def layout(program: Program) -> Bounds:
+    """Bounded rows, and of P the upper triangle."""
+    data = bounded(program)
+    return data._replace(P=sparse.triu(data.P, format="csc"))
 
 
 class Session:
     """A program set up in OSQP."""
 
-    def __init__(self, program: Program, **options: Any) -> None:
+    def __init__(self, data: Bounds, **options: Any) -> None:
         started = perf_counter()
-        self._equal = equalities(program)
-        lower, upper = bounds(program.b, self._equal)
-        P, A = program.P.copy(), program.A.copy()
         self._solver = osqp.OSQP()
-        built = perf_counter()
-        self._solver.setup(P=P, q=program.q.copy(), A=A, l=lower, u=upper, verbose=False, **options)
-        self._build, self._setup = built - started, perf_counter() - built
+        P, q, A, lower, upper, _ = data
+        self._solver.setup(P=P, q=q, A=A, l=lower, u=upper, verbose=False, **options)
+        self._setup = perf_counter() - started
 
-    def update(self, b: Array) -> None:
-        """Another right side (m,)."""
+    def update(self, data: Bounds) -> None:
+        """The same program with another right side."""
         started = perf_counter()
-        lower, upper = bounds(b, self._equal)
-        self._solver.update(l=lower, u=upper)
-        self._build, self._setup = 0.0, perf_counter() - started
+        self._solver.update(l=data.lower, u=data.upper)
+        self._setup = perf_counter() - started
 
     def solve(self) -> Answer:
         """The answer for the right side set last."""
@@ -41,4 +44,4 @@ class Session:
         status = _CLAIMS.get(said, "failed")
         duals = answer.prim_inf_cert if status == "infeasible" else answer.y
         x = answer.dual_inf_cert if status == "unbounded" else answer.x
-        return Answer(status, x, duals, answer.info.iter, said, self._build, self._setup, took)
+        return Answer(status, x, duals, answer.info.iter, said, None, self._setup, took)

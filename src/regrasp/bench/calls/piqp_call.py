@@ -1,4 +1,4 @@
-"""PIQP with a right side that changes: it keeps its scaling and the symbolic factorisation."""
+"""PIQP, called directly. An update keeps the scaling and the symbolic factorisation."""
 
 from time import perf_counter
 from typing import Any
@@ -6,8 +6,8 @@ from typing import Any
 import piqp
 
 from regrasp.bench.answer import Answer
-from regrasp.bench.calls.form import split
-from regrasp.programs.program import Array, Program
+from regrasp.bench.calls.form import FEW, Split, split
+from regrasp.programs.program import Program
 
 _CLAIMS = {
     "PIQP_SOLVED": "found",
@@ -16,25 +16,31 @@ _CLAIMS = {
 }
 
 
-class Session:
-    """A program set up in PIQP's sparse solver."""
+def layout(program: Program) -> Split:
+    """Equalities apart; dense for a few unknowns."""
+    return split(program, dense=program.q.size <= FEW)
 
-    def __init__(self, program: Program, **options: Any) -> None:
+
+class Session:
+    """A program set up in PIQP's dense or sparse solver."""
+
+    def __init__(self, data: Split, **options: Any) -> None:
         started = perf_counter()
-        self._split = s = split(program)
-        self._solver = piqp.SparseSolver()
+        self._data = data
+        is_dense = data.q.size <= FEW
+        self._solver = piqp.DenseSolver() if is_dense else piqp.SparseSolver()
         self._solver.settings.verbose = False
         for key, value in options.items():
             setattr(self._solver.settings, key, value)
-        built = perf_counter()
-        self._solver.setup(s.P, s.q, s.A, s.b, s.G, None, s.h, None, None)
-        self._build, self._setup = built - started, perf_counter() - built
+        P, q, G, h, A, b, _ = data
+        self._solver.setup(P, q, A, b, G, None, h, None, None)
+        self._setup = perf_counter() - started
 
-    def update(self, b: Array) -> None:
-        """Another right side (m,)."""
+    def update(self, data: Split) -> None:
+        """The same program with another right side."""
         started = perf_counter()
-        self._solver.update(b=b[self._split.equal], h_u=b[~self._split.equal])
-        self._build, self._setup = 0.0, perf_counter() - started
+        self._solver.update(b=data.b, h_u=data.h)
+        self._setup = perf_counter() - started
 
     def solve(self) -> Answer:
         """The answer for the right side set last."""
@@ -43,6 +49,6 @@ class Session:
         took = perf_counter() - started
         status, result = _CLAIMS.get(said, "failed"), self._solver.result
         # Of an infeasible program it hands out its last iterate, not a certificate.
-        duals = self._split.joined(result.z_u, result.y) if status == "found" else None
+        duals = self._data.joined(result.z_u, result.y) if status == "found" else None
         x = result.x if status == "found" else None
-        return Answer(status, x, duals, result.info.iter, said, self._build, self._setup, took)
+        return Answer(status, x, duals, result.info.iter, said, None, self._setup, took)

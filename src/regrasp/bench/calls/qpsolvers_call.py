@@ -1,7 +1,6 @@
-"""The other QP solvers, as qpsolvers calls them, with their own defaults."""
+"""QP solvers that have no module of their own here, as qpsolvers calls them, with their own defaults."""
 
 import warnings
-from time import perf_counter
 from typing import Any
 
 import qpsolvers
@@ -11,10 +10,13 @@ from regrasp.bench.calls.form import Split, split
 from regrasp.programs.program import Program
 
 _DENSE = set(qpsolvers.dense_solvers) - set(qpsolvers.sparse_solvers)
-# What qpsolvers calls building is the solver's own set-up for these; for the others it lays out data.
-_SETS_UP = ("osqp", "piqp", "qpalm")
-# Units in which these report a set-up that happens within the call.
-_OWN_SETUP = {"scs": 1e-3, "proxqp": 1e-6}
+_CLAIMS = {
+    "primal infeasible": "infeasible",
+    "infeasible": "infeasible",
+    "dual infeasible": "unbounded",
+    "unbounded": "unbounded",
+}
+_OF_ECOS = {0: "found", 1: "infeasible", 2: "unbounded"}
 
 
 def installed() -> tuple[str, ...]:
@@ -22,13 +24,18 @@ def installed() -> tuple[str, ...]:
     return tuple(qpsolvers.available_solvers)
 
 
-def solve(program: Program, name: str, **options: Any) -> Answer:
-    """The answer of one call."""
-    started = perf_counter()
+def layout(program: Program, name: str) -> tuple[qpsolvers.Problem, Split]:
+    """The program as qpsolvers' own, dense for solvers that take nothing else."""
     data = split(program, dense=name in _DENSE)
     some = (data.G, data.h) if data.h.size else (None, None)
-    problem = qpsolvers.Problem(data.P, data.q, *some, *((data.A, data.b) if data.b.size else (None, None)))
-    laid_out = perf_counter()
+    return qpsolvers.Problem(
+        data.P, data.q, *some, *((data.A, data.b) if data.b.size else (None, None))
+    ), data
+
+
+def solve(given: tuple[qpsolvers.Problem, Split], name: str, **options: Any) -> Answer:
+    """The answer of one call."""
+    problem, data = given
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
         try:
@@ -36,21 +43,10 @@ def solve(program: Program, name: str, **options: Any) -> Answer:
         except (qpsolvers.exceptions.QPError, ValueError) as error:  # quadprog refuses a singular P, for one
             return Answer("failed", said=f"refused: {error}")
     warned = "; ".join(str(warning.message) for warning in heard)
-    build, solve = laid_out - started, float(answer.solve_time or 0.0)
-    setup: float | None = None
-    if name in _SETS_UP:
-        setup = float(answer.build_time or 0.0)
-    else:
-        build += float(answer.build_time or 0.0)
-    if name in _OWN_SETUP and (told := _of(answer, "setup_time")):
-        setup = _OWN_SETUP[name] * told
-        solve -= setup
     status, said = _claim(answer, name, warned)
-    x, duals = _values(answer, data, status, name)
-    count = _of(answer, "iterations" if name == "quadprog" else "iter")
-    if hasattr(count, "__len__"):
-        count = count[0]  # quadprog counts additions and removals
-    return Answer(status, x, duals, None if count is None else int(count), said, build, setup, solve)
+    found = status == "found"
+    x, duals = (answer.x, data.joined(answer.z, answer.y)) if found else (None, None)
+    return Answer(status, x, duals, _iterations(answer), said, answer.build_time, None, answer.solve_time)
 
 
 def _of(answer: Any, key: str) -> Any:
@@ -59,8 +55,20 @@ def _of(answer: Any, key: str) -> Any:
     return told.get(key) if isinstance(told, dict) else getattr(told, key, None)
 
 
+def _iterations(answer: Any) -> int | None:
+    for key in ("iter", "iterations", "stats"):
+        count = _of(answer, key)
+        if count is not None:
+            # quadprog counts additions and removals, QTQP keeps what it saw at each.
+            return int(len(count) if key == "stats" else count[0] if hasattr(count, "__len__") else count)
+    return None
+
+
 def _claim(answer: Any, name: str, warned: str) -> tuple[str, str]:
     """The claim and the solver's own words. Words such as ``primal infeasible inaccurate`` claim nothing."""
+    if name == "ecos":
+        said = str(_of(answer, "infostring"))
+        return _OF_ECOS.get(_of(answer, "exitFlag"), "failed"), said
     told = _of(answer, "status")
     said = str(getattr(told, "name", told)) if told is not None else warned
     if answer.found:
@@ -68,20 +76,4 @@ def _claim(answer: Any, name: str, warned: str) -> tuple[str, str]:
     if name == "quadprog" and not warned:
         return "infeasible", "constraints are inconsistent, no solution"
     word = said.lower().replace("_", " ").removeprefix(name + " ")
-    if word in ("primal infeasible", "infeasible"):
-        return "infeasible", said
-    if word in ("dual infeasible", "unbounded"):
-        return "unbounded", said
-    return "failed", said or "not found"
-
-
-def _values(answer: Any, data: Split, status: str, name: str) -> tuple[Any, Any]:
-    """The primal and dual values, or the certificate of those that hand one out."""
-    if status == "found":
-        return answer.x, data.joined(answer.z, answer.y)
-    if status == "infeasible" and name == "osqp":
-        certificate = answer.extras["prim_inf_cert"]
-        return None, data.joined(certificate[: data.h.size], certificate[data.h.size :])
-    if status == "infeasible" and name == "scs":
-        return None, data.joined(answer.z, answer.y)
-    return None, None
+    return _CLAIMS.get(word, "failed"), said or "not found"

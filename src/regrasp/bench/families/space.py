@@ -16,7 +16,7 @@ from regrasp.planning.state_program import state_program
 
 _COUNTS = (4, 5, 6, 8, 16, 32, 64, 128, 256, 512)
 _FACETS = (4, 8, 16, 32)
-_PYRAMID_COUNTS = (4, 8, 32, 128)
+_PYRAMID_COUNTS = (4, 8, 32, 128, 512)
 # Lobo et al. 1998; Vanderbei's grasp_nonconvex: best known value.
 _NOSE_CONE = 0.49108896
 
@@ -66,7 +66,7 @@ SPACE_CONES = Family(
 )
 SPACE_PYRAMIDS = Family(
     "space-pyramids",
-    "grasps in space of 4 to 128 fingers with inner friction pyramids of 4 to 32 facets",
+    "grasps in space of 4 to 512 fingers with inner friction pyramids of 4 to 32 facets",
     "effort and peak normal force subject to G f = -w and the facets of every pyramid (QP)",
     _pyramids,
 )
