@@ -31,14 +31,22 @@ from regrasp.bench.profiles import ratios, share_within
 from regrasp.bench.report import write_report
 from regrasp.bench.rows import WARM, Row
 from regrasp.bench.store import read_rows
-from regrasp.bench.tables import closeness_table, contest_table, failure_table, growth_table, percent, seconds
+from regrasp.bench.tables import (
+    certificate_table,
+    closeness_table,
+    contest_table,
+    failure_table,
+    growth_table,
+    percent,
+    seconds,
+)
 from regrasp.bench.warmth import warmths
 from regrasp.errors import InvalidInput
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 LIMIT = 10.0
 RIGHT = Row(
-    problem="a/1", family="a", solver="quick", settings="mid", mode="cold", repeat=0, version="1",
+    problem="a/1", family="a", digest="0", solver="quick", settings="mid", mode="cold", repeat=0, version="1",
     verdict="solvable", truth="closed form", optimum=1.0, unknowns=4, rows=7, nonzeros=16,
     cones="zero 3, non-negative 4", status="found", said="solved", correct=True, why="near", objective=1.0,
     distance=1e-9, primal_residual=1e-10, dual_residual=None, gap=None, absolute_primal_residual=None,
@@ -85,6 +93,8 @@ def test_repeats_count_once_and_all_of_them_must_be_right():
     (found,) = outcomes([*rows, row(1, "s", 1e-5, repeat=3, **WRONG)])
     assert (found.kind, found.distance, found.charged) == (Kind.WRONG, 0.5, LIMIT)
     assert found.row.why == WRONG["why"]
+    (found,) = outcomes([*rows, row(1, "s", repeat=3, **TIMED_OUT), row(1, "s", 1e-5, repeat=4, **WRONG)])
+    assert found.kind is Kind.WRONG  # to be wrong once is worse than to give no answer
     (found,) = outcomes([*rows, row(1, "s", repeat=3, **TIMED_OUT)])
     assert (found.kind, found.time, found.charged) == (Kind.NONE, None, LIMIT)
     (found,) = outcomes([row(1, "s", correct=None)])
@@ -186,7 +196,19 @@ def test_distances_are_of_closed_forms_only():
     assert found.distances == (1e-5, 1e-4, 1e-3, inf)
     assert (found.answered, found.share(0.5), found.share(0.75), found.share(1)) == (3, 1e-4, 1e-3, inf)
     (line,) = closeness_table({"s": found}).rows
-    assert line == ["s", "3 of 4", "1.0e-04", "no answer", "no answer"]
+    assert line == ["s", "3 of 4", "1.0e-04", "no answer", "1.0e-03"]
+    broken = closeness(outcomes([row(1, "s", distance=0.0, primal_residual=0.5)]), "mid")["s"]
+    assert broken.distances == (inf,)
+
+
+def test_certificates_are_counted_apart_from_verdicts():
+    claims = ["infeasible", "infeasible", "infeasible", "failed", "found"]
+    rows = [
+        row(n, "s", verdict="infeasible", status=status, certificate_residual=residual)
+        for n, (status, residual) in enumerate(zip(claims, [1e-6, 0.3, None, None, None], strict=True))
+    ]
+    table = certificate_table(outcomes(rows))
+    assert table.rows == [["s", "mid", "5", "3", "2", "1", "3.0e-01"]]
 
 
 def test_warm_starts_are_compared_with_cold_ones_of_the_same_problem():

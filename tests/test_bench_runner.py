@@ -19,6 +19,8 @@ from scipy import sparse
 from regrasp.bench.answer import Answer, understood
 from regrasp.bench.judgement import judged
 from regrasp.bench.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.report import write_report
+from regrasp.bench.residual import row_residual
 from regrasp.bench.rows import TIMES, Key, Row
 from regrasp.bench.runner import Limits, chosen_problems, planned, run
 from regrasp.bench.settings import SETTINGS, options
@@ -63,6 +65,40 @@ def eats(program, **settings):
 def babbles(program, **settings):
     return SimpleNamespace(status="almost", x=None)
 
+def odd(program, **settings):
+    given = right(program)
+    times = {"solve_time": float("nan"), "setup_time": -5.0}
+    return SimpleNamespace(status="found", x=given.x, said="a\\ud800", **times)
+
+class Unspeakable(Exception):
+    def __str__(self):
+        raise RuntimeError
+
+def chokes(program, **settings):
+    raise Unspeakable
+
+SEEN = {}
+def remembers(program, **settings):
+    if id(program) not in SEEN:
+        SEEN[id(program)] = right(program)
+        SEEN.setdefault("kept", []).append(program)  # or its place in memory is taken again
+        return SEEN[id(program)]
+    return SimpleNamespace(status="failed", x=None, said="known")
+
+def scribbles(program, **settings):
+    given = right(program)
+    program.q[:] = 1e9
+    program.b[:] = 1e9
+    return given
+
+def breeds(program, **settings):
+    child = os.fork()
+    if child == 0:
+        time.sleep(60)
+        os._exit(0)
+    Path(os.environ["FAKE_PID"]).write_text(str(child))
+    os.abort()
+
 def asked(program, **settings):
     return SimpleNamespace(status="failed", x=None, said=repr(sorted(settings.items())))
 
@@ -81,7 +117,7 @@ def crashes_on_the_second(program, **settings):
     return right(program)
 """
 NAMES = MODULE.replace("(", " ").split()
-FAKES = [after for word, after in pairwise(NAMES) if word == "def"]
+FAKES = [after for word, after in pairwise(NAMES) if word == "def" and not after.startswith("_")]
 
 
 def qp(name: str, total: float, known: Known, follows: str | None = None) -> BenchProblem:
@@ -186,12 +222,12 @@ def test_every_solver_here_is_right_on_a_toy_and_at_high_accuracy_more_so(tmp_pa
     assert {row.solver for row in rows} == {solver.name for solver in there}
     wrong = [(row.solver, row.settings, row.mode, row.problem, row.why) for row in rows if not row.correct]
     # These have no word for a program without solution, or say no more than that it is close to one.
-    speechless = {"cvxopt", "ecos", "qoco", "cvxpy:ECOS", "cvxpy:QOCO"}
+    speechless = {"cvxopt", "ecos", "qoco", "cvxpy:CVXOPT", "cvxpy:ECOS", "cvxpy:QOCO"}
     assert [w for w in wrong if w[0] not in speechless or w[3:] != ("toy/negative", "no answer")] == []
     for row in rows:
         if row.verdict == "solvable":
             assert row.settings != "high" or row.distance < 1e-8
-            assert row.total_time >= row.solve_time > 0
+            assert row.total_time >= (row.solve_time or 0.0) >= 0
     assert {row.mode for row in rows if row.problem == "toy/sum/2" and row.solver == "daqp"} == {
         "cold",
         "warm",
@@ -212,7 +248,11 @@ def test_every_solver_here_is_right_on_a_toy_and_at_high_accuracy_more_so(tmp_pa
         ("leaves", "error", "SystemExit: 3"),
         ("raises", "error", "ValueError: will not"),
         ("eats", "out of memory", "MemoryError"),
-        ("babbles", "error", "needs a status among found, infeasible, unbounded, failed, got 'almost'"),
+        (
+            "babbles",
+            "error",
+            "needs a status among found, infeasible, unbounded, failed, refused, got 'almost'",
+        ),
     ],
 )
 def test_a_solver_that_does_not_come_back_is_a_row_and_the_run_goes_on(
@@ -242,11 +282,54 @@ def test_a_lie_is_found_out_by_our_own_arithmetic(fakes: Path, tmp_path: Path) -
     assert [row.correct for row in lies.values()] == [False] * 4
     assert "breaks the constraints" in lies["toy/sum/1"].why
     assert "a solution of an infeasible program" in lies["toy/negative"].why
-    assert [row.correct for row in denies.values()] == [False] * 4
+    # A verdict can be right though its certificate is not; of what nobody knows it says nothing.
+    assert [row.correct for row in denies.values()] == [False, False, True, None]
     assert "a solvable program is infeasible" in denies["toy/sum/1"].why
     assert "does not prove" in denies["toy/negative"].why
     assert [row.correct for row in right.values()] == [True] * 4
     assert right["toy/negative"].certificate_residual < 1e-6
+
+
+def test_odd_answers_end_no_run_and_no_report(fakes: Path, tmp_path: Path) -> None:
+    rows = run(tmp_path / "out", TOYS[:1], [fake("odd"), fake("chokes")])
+    odd, chokes = rows
+    assert (odd.correct, odd.solve_time, odd.setup_time, odd.said) == (True, None, None, "a?")
+    assert (chokes.status, chokes.said) == ("error", "Unspeakable: an unprintable Unspeakable")
+    write_report(tmp_path / "out")
+
+
+def test_every_call_gets_a_program_of_its_own(fakes: Path, tmp_path: Path) -> None:
+    limits = Limits(repeat=3)
+    rows = run(tmp_path / "out", TOYS[:1], [fake("remembers"), fake("scribbles")], limits=limits)
+    assert [row.said for row in rows if row.solver == "remembers"] == ["found"] * 3
+    assert [row.correct for row in rows if row.solver == "scribbles"] == [True] * 3
+
+
+def test_what_a_solver_started_ends_with_it(fakes: Path, tmp_path: Path) -> None:
+    (row,) = run(tmp_path / "out", TOYS[:1], [fake("breeds")])
+    assert row.status == "crashed"
+    child = int((tmp_path / "pid").read_text())
+    for _ in range(100):
+        if not is_running(child):
+            return
+        time.sleep(0.05)
+    pytest.fail("its child lives on")
+
+
+def test_every_row_counts_by_its_own_unit() -> None:
+    """Balance of a force of order one and of a torque of order 1e-6, which is not there at all."""
+    A = sparse.csc_matrix([[1.0, 1.0], [1e-6, -1e-6], [-1.0, 0.0]])
+    blocks = (Block(Cone.ZERO, 2), Block(Cone.NONNEGATIVE, 1))
+    program = Program(sparse.csc_matrix((2, 2)), np.array([1.0, 1.0]), A, np.array([2.0, 1e-6, 0.0]), blocks)
+    assert row_residual(program, np.array([1.5, 0.5])) < 1e-15
+    assert row_residual(program, np.array([1.0, 1.0])) == pytest.approx(0.5)
+    assert row_residual(program, np.array([-1.0, 3.0])) == pytest.approx(5 / 4)  # of the torque
+    assert np.isnan(row_residual(program, np.array([np.nan, 0.0])))
+    toy = BenchProblem("toy/units", "toy", program, Known(Verdict.SOLVABLE, Truth.CLOSED_FORM, 2.0))
+    assert judged(toy, Answer("found", np.array([1.0, 1.0])), 1e-2).correct is False
+    cone = CONE.program
+    assert row_residual(cone, np.array([2.0, 2.0])) == 0.0
+    assert row_residual(cone, np.array([1.0, 2.0])) == pytest.approx(1 / 2)
 
 
 def test_a_feasible_point_that_is_not_the_best_is_wrong() -> None:
@@ -398,13 +481,48 @@ def test_a_broken_line_in_the_midst_is_an_error(fakes: Path, tmp_path: Path) -> 
 
 def test_rows_of_another_version_or_limit_are_not_mixed(fakes: Path, tmp_path: Path) -> None:
     run(tmp_path, TOYS[:1], [fake("right")])
-    with pytest.raises(InvalidInput, match=r"another version of right; give another folder"):
+    with pytest.raises(InvalidInput, match=r"version of right: 1.2 .* there, 1.3 .* now\); give another"):
         run(tmp_path, TOYS[:1], [Solver("right", "1.3", False, entry="fake_solvers:right")])
-    with pytest.raises(InvalidInput, match=r"another time_limit; give another folder"):
+    with pytest.raises(InvalidInput, match=r"\(time_limit: 60.0 there, 1.0 now\); give another folder"):
         run(tmp_path, TOYS[:1], [fake("right")], limits=Limits(time_limit=1.0))
     more = run(tmp_path, TOYS[:1], [fake("lies")], limits=Limits(repeat=2))
     assert [(row.solver, row.repeat) for row in more] == [("right", 0), ("lies", 0), ("lies", 1)]
-    assert json.loads((tmp_path / "run.json").read_text())["solvers"] == {"right": "1.2", "lies": "1.2"}
+    assert json.loads((tmp_path / "run.json").read_text())["solvers"] == {
+        "right": "1.2 (fake_solvers:right)",
+        "lies": "1.2 (fake_solvers:lies)",
+    }
+    with pytest.raises(InvalidInput, match=r"version of right: 1.2 \(fake_solvers:right\) there"):
+        run(tmp_path, TOYS[:1], [Solver("right", "1.2", False, entry="fake_solvers:slow")])
+    other = qp(TOYS[0].name, 1.0, Known(Verdict.SOLVABLE, Truth.CLOSED_FORM, 0.3))
+    with pytest.raises(InvalidInput, match=r"rows of another problem that is called toy/sum/1 too"):
+        run(tmp_path, [other], [fake("right")])
+    (tmp_path / "run.json").write_text("[]")
+    with pytest.raises(InvalidInput, match=r"run.json does not say where the rows come from"):
+        run(tmp_path, TOYS[:1], [fake("right")])
+    (tmp_path / "run.json").unlink()
+    with pytest.raises(InvalidInput, match=r"has rows but no run.json"):
+        run(tmp_path, TOYS[:1], [fake("right")])
+
+
+def test_what_cannot_be_a_folder_of_results_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for folder in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(InvalidInput, match=r"must be a folder to write in"):
+            run(folder, TOYS[:1], [])
+
+
+def test_rows_that_say_nothing_or_stand_twice_are_named(fakes: Path, tmp_path: Path) -> None:
+    run(tmp_path, TOYS[:1], [fake("right")])
+    line = (tmp_path / ROWS).read_text()
+    (tmp_path / ROWS).write_text(line * 2)
+    with pytest.raises(InvalidInput, match=r"line 2: the same solve as line 1; take one of them out"):
+        read_rows(tmp_path)
+    for name, word in (("status", "weird"), ("settings", "ultra"), ("mode", "tepid")):
+        (tmp_path / ROWS).write_text(json.dumps(json.loads(line) | {name: word}) + "\n")
+        with pytest.raises(
+            InvalidInput, match=rf"line 1: not a row of results: {name} must be one of .*{word}"
+        ):
+            read_rows(tmp_path)
 
 
 def test_two_runs_cannot_fill_one_folder(fakes: Path, tmp_path: Path) -> None:
@@ -458,8 +576,12 @@ def test_the_command_runs_resumes_and_says_what_came_of_it(fakes: Path, tmp_path
     out = tmp_path / "out"
     asked = ["--family", "loci", "--most", "4", "--solver", "right", "--solver", "lies", "-o", out]
     done = command(fakes, *asked, "--jobs", "2")
-    assert (done.returncode, done.stderr) == (0, "Warning: 2 solves at once disturb one another's timing.\n")
     rows = read_rows(out)
+    assert done.returncode == 0
+    warning, *progress = done.stderr.splitlines()
+    assert warning == "Warning: 2 solves at once disturb one another's timing."
+    assert len(progress) == 10  # a tenth a line where there is no terminal
+    assert progress[-1] == f"{len(rows)} of {len(rows)} solves"
     right = [row for row in rows if row.solver == "right"]
     assert all(row.correct for row in right)
     assert f"{len(rows)} solves in {out}: {sum(row.correct is True for row in rows)} right" in done.stdout
@@ -478,7 +600,7 @@ def test_an_interrupt_ends_the_run_at_once_and_leaves_no_row_of_it(fakes: Path, 
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=20)  # the time limit of the solve that hangs is 60 s
-    assert (process.returncode, said.strip()) == (130, "Interrupted.")
+    assert (process.returncode, said.splitlines()[-1]) == (130, "Interrupted.")
     rows = read_rows(out)
     assert rows
     assert {row.solver for row in rows} == {"right"}

@@ -178,8 +178,14 @@ def bench(
         progress.update(task, description="looking for solvers")
         there = chosen_solvers(solvers)
 
+        tenths = 0
+
         def told(what: str, done: int, total: int) -> None:
+            nonlocal tenths
             progress.update(task, description=what or None, completed=done, total=total)
+            if progress.disable and 10 * done // total > tenths:  # no terminal: a log wants few lines
+                tenths = 10 * done // total
+                click.echo(f"{done} of {total} solves", err=True)
 
         rows = run(output, problems, there, settings or ("default",), limits, told)
     right = sum(row.correct is True for row in rows)

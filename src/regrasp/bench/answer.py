@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -17,17 +18,19 @@ class Claim(Enum):
     INFEASIBLE = "infeasible"
     UNBOUNDED = "unbounded"
     FAILED = "failed"
+    REFUSED = "refused"
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
     """A solver's answer, not yet believed.
 
-    status: a word of ``Claim``. x: (n,), or None. duals: (m,) z with P x + q + A'z = 0 and z in K*; for
-    ``infeasible`` the certificate, A'z = 0 and b'z < 0; None where the solver gives none. iterations: as it
-    counts. said: its own words. build_time, setup_time, solve_time: [s] what the call spends on bringing the
-    data into another form, on set-up (scaling, factorisation) and on iterations; None where there is no such
-    part or it cannot be told apart.
+    status: a word of ``Claim``; ``refused`` for a program of a kind that the solver does not take. x: (n,),
+    or None. duals: (m,) z with P x + q + A'z = 0 and z in K*; for ``infeasible`` the certificate, A'z = 0 and
+    b'z < 0; None where the solver gives none. iterations: as it counts. said: its own words.
+    build_time, setup_time, solve_time: [s] what the call spends on bringing the data into another form, on
+    set-up (scaling, factorisation) and on iterations; None where there is no such part or it cannot be told
+    apart.
     """
 
     status: str
@@ -55,8 +58,17 @@ def understood(given: Any, program: Program) -> Answer:
     iterations = getattr(given, "iterations", None)
     times = (_seconds(given, name) for name in ("build_time", "setup_time", "solve_time"))
     duals = _array("duals", getattr(given, "duals", None), program.b.size)
-    said = str(getattr(given, "said", "") or status)
+    said = printable(getattr(given, "said", "") or status)
     return Answer(status, x, duals, None if iterations is None else int(iterations), said, *times)
+
+
+def printable(words: Any) -> str:
+    """What somebody said, as text that can be written; nothing that is said ends a run."""
+    try:
+        text = str(words)
+    except Exception:
+        text = f"an unprintable {type(words).__name__}"
+    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _array(name: str, values: Any, size: int) -> Array | None:
@@ -71,4 +83,4 @@ def _array(name: str, values: Any, size: int) -> Array | None:
 
 def _seconds(given: Any, name: str) -> float | None:
     value = getattr(given, name, None)
-    return None if value is None else float(value)
+    return None if value is None or not 0 <= float(value) < inf else float(value)

@@ -7,13 +7,14 @@ from math import ceil, inf
 
 from regrasp.bench.answer import Claim
 from regrasp.bench.outcomes import Outcome, cold
+from regrasp.bench.settings import right_within
 
 
 @dataclass(frozen=True)
 class Closeness:
     """Distances of one solver's objectives from the known optima, relative and rising.
 
-    An answer that did not come is infinitely far.
+    An answer that did not come is infinitely far, and so is one that breaks the constraints.
     """
 
     distances: tuple[float, ...]
@@ -22,6 +23,11 @@ class Closeness:
     def answered(self) -> int:
         """How many came."""
         return sum(distance < inf for distance in self.distances)
+
+    @property
+    def worst(self) -> float:
+        """The largest of those that came; infinite if none did."""
+        return max((distance for distance in self.distances if distance < inf), default=inf)
 
     def share(self, part: float) -> float:
         """The distance that a part of all problems, between 0 and 1, does not exceed."""
@@ -34,6 +40,7 @@ def closeness(found: Iterable[Outcome], settings: str) -> dict[str, Closeness]:
     for outcome in cold(found):
         row = outcome.row
         if row.settings == settings and outcome.knows_exactly:
-            came = row.status == Claim.FOUND.value and outcome.distance is not None
-            distances[row.solver].append(outcome.distance if came and outcome.distance is not None else inf)
+            off, far = row.primal_residual, outcome.distance
+            came = row.status == Claim.FOUND.value and off is not None and off <= right_within(settings)
+            distances[row.solver].append(far if came and far is not None else inf)
     return {solver: Closeness(tuple(sorted(there))) for solver, there in sorted(distances.items())}

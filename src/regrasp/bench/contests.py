@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
+from statistics import fmean
 
 from regrasp.bench.means import shifted_geometric_mean
 from regrasp.bench.outcomes import Kind, Outcome, cold
@@ -40,6 +41,13 @@ class Contest:
     def count(self, solver: str, kind: Kind) -> int:
         """How many outcomes of a solver are of a kind."""
         return sum(outcome.kind is kind for outcome in self.outcomes[solver].values())
+
+    def by_family(self, solver: str) -> float:
+        """The mean over the families of the share of right answers in each."""
+        families: dict[str, list[bool]] = defaultdict(list)
+        for outcome in self.outcomes[solver].values():
+            families[outcome.row.family].append(outcome.is_right)
+        return fmean(fmean(right) for right in families.values())
 
     def mean(self, solver: str) -> float:
         """Shifted geometric mean of the times, an answer that is not right counted at the time limit [s]."""

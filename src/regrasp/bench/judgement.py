@@ -1,6 +1,7 @@
 """Whether an answer is right, by our own arithmetic and by what is known of the problem.
 
-A solver's word counts only as what it claims.
+A solver's word counts only as what it claims. Whether an answer is right depends on x alone; duals are
+measured where they are given, and a wrong certificate does not make a right verdict wrong.
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ import numpy as np
 
 from regrasp.bench.answer import Answer, Claim
 from regrasp.bench.problem import BenchProblem, Verdict
+from regrasp.bench.residual import row_residual
 from regrasp.programs.solution import Solution, Status
 
 CERTIFICATE = 1e-3
@@ -21,9 +23,10 @@ class Judgement:
     """Measures of an answer; None where there is nothing to measure.
 
     correct: whether the answer is right; None where nothing is known to judge it by. why: in words.
-    objective, and its distance from the known optimum as ``Known.distance`` has it. primal_residual,
-    dual_residual, gap: relative, as ``regrasp.programs.Solution`` defines them; the ``absolute_`` ones as
-    qpbenchmark does. certificate_residual: of a claim that the program is infeasible or unbounded.
+    objective, and its distance from the known optimum as ``Known.distance`` has it. primal_residual: as
+    ``row_residual`` has it. dual_residual, gap: relative, as ``regrasp.programs.Solution`` defines them; the
+    ``absolute_`` ones as qpbenchmark does. certificate_residual: of a claim that the program is infeasible
+    or unbounded.
     """
 
     correct: bool | None
@@ -44,6 +47,8 @@ def judged(problem: BenchProblem, answer: Answer, within: float) -> Judgement:
     claim = Claim(answer.status)
     if claim is Claim.FAILED:
         return Judgement(False, "no answer")
+    if claim is Claim.REFUSED:
+        return Judgement(False, "not taken")
     if claim is Claim.FOUND:
         return _found(problem, answer, within)
     if claim is Claim.INFEASIBLE:
@@ -57,11 +62,11 @@ def _found(problem: BenchProblem, answer: Answer, within: float) -> Judgement:
     has_duals = answer.duals is not None
     solution = _solution(problem, answer, Status.SOLVED)
     audit = solution._audit
-    distance = known.distance(solution.objective)
+    distance, off = known.distance(solution.objective), row_residual(program, answer.x)
     measures = {
         "objective": solution.objective,
         "distance": distance,
-        "primal_residual": solution.primal_residual,
+        "primal_residual": off,
         "absolute_primal_residual": audit.slack_violation,
         "dual_residual": solution.dual_residual if has_duals else None,
         "gap": solution.gap if has_duals else None,
@@ -71,7 +76,7 @@ def _found(problem: BenchProblem, answer: Answer, within: float) -> Judgement:
     measures = {name: _finite(value) for name, value in measures.items()}
     if known.verdict is Verdict.INFEASIBLE:
         return Judgement(False, "claims a solution of an infeasible program", **measures)
-    if not solution.primal_residual <= within:
+    if not off <= within:
         return Judgement(False, f"breaks the constraints by more than {within:g}", **measures)
     if distance is not None:
         right = distance <= within + known.accuracy
@@ -86,13 +91,13 @@ def _found(problem: BenchProblem, answer: Answer, within: float) -> Judgement:
 def _infeasible(problem: BenchProblem, answer: Answer) -> Judgement:
     if problem.known.verdict is Verdict.SOLVABLE:
         return Judgement(False, "claims that a solvable program is infeasible")
+    # A certificate that is a little off proves little where nothing else is known.
+    right = True if problem.known.verdict is Verdict.INFEASIBLE else None
     if answer.duals is None:
-        known = problem.known.verdict is Verdict.INFEASIBLE
-        return Judgement(True if known else None, "claims infeasibility without a certificate")
+        return Judgement(right, "claims infeasibility without a certificate")
     residual = _solution(problem, answer, Status.INFEASIBLE).infeasibility_residual
-    right = residual <= CERTIFICATE
-    why = "its certificate proves infeasibility" if right else "its certificate does not prove infeasibility"
-    return Judgement(right, why, certificate_residual=_finite(residual))
+    proves = "proves" if residual <= CERTIFICATE else "does not prove"
+    return Judgement(right, f"its certificate {proves} infeasibility", certificate_residual=_finite(residual))
 
 
 def _unbounded(problem: BenchProblem, answer: Answer) -> Judgement:

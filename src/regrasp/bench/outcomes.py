@@ -10,6 +10,7 @@ from regrasp.bench.answer import Claim
 from regrasp.bench.problem import Truth, Verdict
 from regrasp.bench.rows import COLD, Row
 
+PARTS = ("build_time", "setup_time", "solve_time")
 _EXACT = (Truth.CLOSED_FORM.value, Truth.PUBLISHED.value)
 
 
@@ -19,6 +20,7 @@ class Kind(Enum):
     RIGHT = "right"
     WRONG = "wrong"
     NONE = "no answer"
+    REFUSED = "not taken"
     UNJUDGED = "not judged"
 
 
@@ -26,15 +28,17 @@ class Kind(Enum):
 class Outcome:
     """All repeats of one solve.
 
-    row: of the repeat that counts, the first that is not right or else the first. kind: right if every
-    repeat is. time: median around the whole call [s], or None where some repeat never came back. distance:
-    the largest from the known optimum.
+    row: of the repeat that counts, the worst one. kind: right if every repeat is. time: median around the
+    whole call [s], or None where some repeat never came back. parts: medians of build, set-up and solve, None
+    where the solver does not tell them. distance: the largest from the known optimum. repeats: how many.
     """
 
     row: Row
     kind: Kind
     time: float | None
+    parts: tuple[float | None, ...]
     distance: float | None
+    repeats: int
 
     @property
     def is_right(self) -> bool:
@@ -79,18 +83,28 @@ def cold(found: Iterable[Outcome]) -> list[Outcome]:
 
 def _outcome(repeats: list[Row]) -> Outcome:
     kinds = [_kind(row) for row in repeats]
-    worst = next((kind for kind in (Kind.NONE, Kind.WRONG, Kind.UNJUDGED) if kind in kinds), Kind.RIGHT)
+    order = (Kind.WRONG, Kind.NONE, Kind.REFUSED, Kind.UNJUDGED, Kind.RIGHT)
+    worst = next(kind for kind in order if kind in kinds)
     times = [row.total_time for row in repeats if row.total_time is not None]
     distances = [row.distance for row in repeats if row.distance is not None]
     return Outcome(
         row=repeats[kinds.index(worst)],
         kind=worst,
         time=median(times) if len(times) == len(repeats) else None,
+        parts=tuple(_median([getattr(row, part) for row in repeats]) for part in PARTS),
         distance=max(distances, default=None),
+        repeats=len(repeats),
     )
 
 
+def _median(times: list[float | None]) -> float | None:
+    told = [time for time in times if time is not None]
+    return median(told) if told else None
+
+
 def _kind(row: Row) -> Kind:
+    if row.status == Claim.REFUSED.value:
+        return Kind.REFUSED
     if row.status not in (Claim.FOUND.value, Claim.INFEASIBLE.value, Claim.UNBOUNDED.value):
         return Kind.NONE
     return {True: Kind.RIGHT, False: Kind.WRONG, None: Kind.UNJUDGED}[row.correct]

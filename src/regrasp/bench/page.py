@@ -19,6 +19,8 @@ td { border-bottom: 1px solid #ececec; }
 th, td { text-align: right; padding: .25rem .7rem; font-variant-numeric: tabular-nums; }
 td { white-space: nowrap; }
 .word { text-align: left; white-space: normal; }
+figure { margin: 1.5rem 0; }
+figcaption { font-size: .9rem; color: #595959; }
 img { max-width: 100%; }
 nav { columns: 2; font-size: .9rem; }
 """
@@ -58,7 +60,9 @@ def _element(block: Block, name: str) -> str:
         return f"<ul>{''.join(f'<li>{_inline(text)}</li>' for text in block.texts)}</ul>"
     if isinstance(block, Picture):
         data = b64encode(block.svg.encode()).decode()
-        return f'<p><img alt="{escape(block.words)}" src="data:image/svg+xml;base64,{data}"></p>'
+        words = escape(block.words)
+        image = f'<img alt="{words}" src="data:image/svg+xml;base64,{data}">'
+        return f"<figure>{image}<figcaption>{words}</figcaption></figure>"
     assert isinstance(block, Table)
     head = _row("th", block.header, block.words)
     rows = "\n".join(_row("td", row, block.words) for row in block.rows)

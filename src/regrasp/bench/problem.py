@@ -6,6 +6,8 @@ minimise 1/2 x'Px + q'x subject to A x + s = b, s in K.
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
+from hashlib import sha256
 
 from regrasp.programs import Cone, Program
 
@@ -33,8 +35,8 @@ class Known:
     """What is known of a problem's answer.
 
     optimum: the least objective, or None. accuracy: to which ``distance`` from it is known: rounding for a
-    closed form, the last printed digit of a published number. scale: of an objective that matters; one where
-    the program's data are of order one.
+    closed form, the last printed digit of a published number. scale: of an objective that matters where the
+    optimum may be near zero: one where the program's data are of order one; zero where it cannot be.
     """
 
     verdict: Verdict
@@ -74,6 +76,17 @@ class BenchProblem:
         """Unknowns, rows, and non-zero entries of A."""
         program = self.program
         return program.q.size, program.b.size, int(program.A.nnz)
+
+    @cached_property
+    def digest(self) -> str:
+        """Of its numbers and of what is known; another problem under the same name has another one."""
+        program, known = self.program, self.known
+        digest = sha256(repr((program.blocks, known, program.size)).encode())
+        for matrix in (program.P, program.A):
+            for part in (matrix.indptr, matrix.indices, matrix.data):
+                digest.update(part.tobytes())
+        digest.update(program.q.tobytes() + program.b.tobytes())
+        return digest.hexdigest()[:16]
 
     @property
     def cones(self) -> str:

@@ -1,5 +1,6 @@
 """A worker seen from the runner: started, asked, and killed when it does not answer in time."""
 
+import contextlib
 import json
 import os
 import signal
@@ -65,7 +66,7 @@ class Worker:
     def kill(self) -> None:
         """End the process, whatever it is doing."""
         if self._process is not None:
-            self._process.kill()
+            self._end()
             self._process.wait()
             self._connection.close()
         self._process = self.loaded = None
@@ -73,7 +74,13 @@ class Worker:
     def interrupt(self) -> None:
         """End the process from another thread; a reply that is awaited is lost."""
         if self._process is not None:
-            self._process.kill()
+            self._end()
+
+    def _end(self) -> None:
+        """Kill the process and what it has started; they are a session of their own."""
+        assert self._process is not None
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
 
     def _start(self) -> None:
         self._connection, theirs = Pipe()

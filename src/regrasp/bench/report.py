@@ -9,14 +9,17 @@ from regrasp.bench.closeness import closeness
 from regrasp.bench.contests import Contest, contests
 from regrasp.bench.document import Block, Heading, Paragraph, Picture, Points, Table, markdown
 from regrasp.bench.growth import growths
+from regrasp.bench.judgement import CERTIFICATE
 from regrasp.bench.limitations import LIMITATIONS
 from regrasp.bench.means import SHIFT
 from regrasp.bench.outcomes import Outcome, cold, outcomes
 from regrasp.bench.page import page
+from regrasp.bench.problem import Verdict
 from regrasp.bench.profiles import ratios
 from regrasp.bench.settings import SETTINGS, right_within
 from regrasp.bench.store import read_rows, read_run
 from regrasp.bench.tables import (
+    certificate_table,
     closeness_table,
     contest_table,
     failure_table,
@@ -86,10 +89,11 @@ def _blocks(found: list[Outcome], run: dict[str, Any]) -> Iterator[Block]:
     yield from _truth_blocks(found, settings, looks)
     yield from _growth_blocks(found, settings, looks)
     yield from _warm_blocks(found)
+    yield from _certificate_blocks(found)
     yield Heading("Failures")
     yield from _failure_blocks(found)
     yield Heading("Machine and versions")
-    yield from _machine_blocks(run)
+    yield from _machine_blocks(found, run)
     yield Heading("Limitations")
     yield Points(LIMITATIONS)
 
@@ -98,7 +102,8 @@ def _opening(found: list[Outcome]) -> Iterator[Block]:
     first = list({outcome.row.problem: outcome for outcome in cold(found)}.values())
     solvers = {outcome.row.solver for outcome in found}
     yield Paragraph(
-        f"{len(first)} problems, {len(solvers)} solvers, {len(found)} solves with their repeats taken "
+        f"{_counted(len(first), 'problem')}, {_counted(len(solvers), 'solver')}, "
+        f"{_counted(len(found), 'solve')} with their repeats taken "
         "together. Solvers are ranked by their right answers, then by the fewest wrong ones, and only then "
         "by time: a wrong answer is never fast. Whether an answer is right is judged by residuals computed "
         "here and by what is known of the problem; where that is known from says this table."
@@ -106,11 +111,15 @@ def _opening(found: list[Outcome]) -> Iterator[Block]:
     yield origin_table(first)
 
 
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def _summary_blocks(all_contests: list[Contest]) -> Iterator[Block]:
     if all_contests:
         yield Heading("In short")
         yield Paragraph(
-            "The solver with the most right answers, and the one that is most often the fastest with a "
+            "The solvers with the most right answers, and the one that is most often the fastest with a "
             "right one."
         )
         yield summary_table(all_contests)
@@ -128,10 +137,13 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
     yield Heading("How to read the tables")
     yield Points(
         [
-            "right: correct within ten times the accuracy asked for, in every repeat. right verdict: the "
-            "solver says rightly that there is a solution, or that there is none, however near it came. "
-            "wrong: an answer that is not right. no answer: it said so, raised an error, crashed or ran "
-            "out of time or memory. not judged: nothing is known to judge by.",
+            "right: correct within ten times the accuracy asked for, in every repeat; at default settings, "
+            "where none is asked for, within 1e-2, which is ten times the loosest that a solver asks of "
+            "itself. by family: the mean of the shares of right answers in each family, which does not "
+            "weigh families by their size. verdict only: the solver says rightly that there is a solution, "
+            "or that there is none, whatever its numbers are. wrong: an answer that is not right. no answer: "
+            "it said so, raised an error, crashed or ran out of time or memory. not taken: a kind of problem "
+            "that the solver does not claim to solve.",
             f"mean time: shifted geometric mean over all problems with a shift of {seconds(SHIFT)}; answers "
             f"that are not right count at the time limit, {seconds(limit)}. mean, shared: over the problems "
             "that every solver of the table answers rightly.",
@@ -165,8 +177,8 @@ def _truth_blocks(found: list[Outcome], settings: list[str], looks: Any) -> Iter
     yield Heading("Accuracy against the truth")
     yield Paragraph(
         "Distance of the objective from the optimum where a closed form or a publication tells it, no "
-        "other solver: relative, infinite where no answer came. Objectives below the optimum break "
-        "constraints. Each solver over the problems it takes."
+        "other solver: relative, infinite where no answer came or one that breaks the constraints. Each "
+        "solver over the problems it was given."
     )
     for name in settings:
         near = closeness(found, name)
@@ -208,6 +220,18 @@ def _warm_blocks(found: list[Outcome]) -> Iterator[Block]:
         yield warmth_table(warm)
 
 
+def _certificate_blocks(found: list[Outcome]) -> Iterator[Block]:
+    claims = [o for o in cold(found) if o.row.verdict == Verdict.INFEASIBLE.value]
+    if claims:
+        yield Heading("Certificates")
+        yield Paragraph(
+            "Problems without solution: how often a solver says so, how often it hands out a certificate, "
+            f"and how often that proves it by our arithmetic, to {CERTIFICATE:g}. A right verdict counts as "
+            "right above, with a certificate or without."
+        )
+        yield certificate_table(claims)
+
+
 def _failure_blocks(found: list[Outcome]) -> Iterator[Block]:
     failures = _failures(found)
     if not failures:
@@ -217,10 +241,18 @@ def _failure_blocks(found: list[Outcome]) -> Iterator[Block]:
     yield failure_table(failures)
 
 
-def _machine_blocks(run: dict[str, Any]) -> Iterator[Block]:
+def _asked(found: list[Outcome]) -> dict[str, Any]:
+    return {
+        "settings": ", ".join(sorted({outcome.row.settings for outcome in found}, key=SETTINGS.index)),
+        "repeats": max(outcome.repeats for outcome in found),
+        "unknowns of the largest problem": max(outcome.row.unknowns for outcome in found),
+    }
+
+
+def _machine_blocks(found: list[Outcome], run: dict[str, Any]) -> Iterator[Block]:
     machine, solvers = run.get("machine", {}), run.get("solvers", {})
     others = {key: value for key, value in run.items() if key not in ("machine", "solvers")}
-    facts = {**machine, **others}
+    facts = {**machine, **others, **_asked(found)}
     yield Table(["", "value"], [[key.replace("_", " "), _fact(key, value)] for key, value in facts.items()])
     yield Table(["solver", "version"], [[name, str(version)] for name, version in solvers.items()])
     if run.get("jobs", 1) > 1:

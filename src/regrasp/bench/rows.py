@@ -4,10 +4,10 @@ import json
 from dataclasses import asdict, dataclass, fields
 from typing import Any, NamedTuple
 
-from regrasp.bench.answer import Answer
+from regrasp.bench.answer import Answer, Claim
 from regrasp.bench.judgement import Judgement, judged
 from regrasp.bench.problem import BenchProblem
-from regrasp.bench.settings import right_within
+from regrasp.bench.settings import SETTINGS, right_within
 from regrasp.bench.solvers import Solver
 
 # How a solve can end besides the words of ``Claim``.
@@ -16,6 +16,11 @@ LOST = (TIMEOUT, CRASHED, MEMORY)
 COLD, WARM = "cold", "warm"
 TIMES = ("build_time", "setup_time", "solve_time", "total_time", "memory")
 """Fields that differ from run to run."""
+_WORDS: dict[str, tuple[str, ...]] = {
+    "settings": SETTINGS,
+    "mode": (COLD, WARM),
+    "status": (*(claim.value for claim in Claim), ERROR, *LOST),
+}
 
 
 class Key(NamedTuple):
@@ -33,18 +38,19 @@ class Row:
     """One solve, flat for tables; None where there is nothing to say.
 
     problem to repeat: the key; mode is ``cold``, or ``warm`` for a solver that solved the problem ``follows``
-    names and was given another right side. version: of the solver. verdict, truth, optimum: what is known.
-    unknowns, rows, nonzeros, cones: the size. status: a word of ``Claim``, or ``error`` (the call raised),
-    ``timeout``, ``crashed``, ``out of memory``. said: the solver's own words. correct, why and the measures:
-    as in ``Judgement``; an answer that did not come is not correct. iterations: as the solver counts.
-    build_time, setup_time, solve_time: as in ``Answer``. total_time: around the whole call [s]; of a timeout
-    the limit. memory: growth of the worker's resident set during its first such solve over what it held just
-    before, after it gave free memory back [bytes]; below a page it says nothing, and memory that the
-    allocator kept is not in it. time_limit: [s]. machine: its name for the rows.
+    names and was given another right side. digest: of the problem. version: of the solver. verdict, truth,
+    optimum: what is known. unknowns, rows, nonzeros, cones: the size. status: a word of ``Claim``, or
+    ``error`` (the call raised), ``timeout``, ``crashed``, ``out of memory``. said: the solver's own words.
+    correct, why and the measures: as in ``Judgement``; an answer that did not come is not correct.
+    iterations: as the solver counts. build_time, setup_time, solve_time: as in ``Answer``. total_time: around
+    the whole call [s]; of a timeout the limit. memory: growth of the worker's resident set during its first
+    such solve over what it held just before, after it gave free memory back [bytes]; below a page it says
+    nothing, and memory that the allocator kept is not in it. time_limit: [s]. machine: its name for the rows.
     """
 
     problem: str
     family: str
+    digest: str
     solver: str
     settings: str
     mode: str
@@ -98,6 +104,9 @@ def row_of(values: Any) -> Row:
     """The row of a line's values. Raises ``TypeError`` for values that are no row."""
     if not isinstance(values, dict) or values.keys() != {field.name for field in fields(Row)}:
         raise TypeError("not the fields of a row")
+    for name, known in _WORDS.items():
+        if values[name] not in known:
+            raise TypeError(f"{name} must be one of {', '.join(known)}, got {values[name]!r}")
     return Row(**values)
 
 
@@ -123,6 +132,7 @@ def written(
     return Row(
         **key._asdict(),
         family=problem.family,
+        digest=problem.digest,
         version=solver.version,
         verdict=problem.known.verdict.value,
         truth=problem.known.truth.value,

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from datetime import date
 from math import isfinite
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -21,6 +22,8 @@ from regrasp.errors import InvalidInput
 
 # A first call shorter than this warms up only; what a first call adds is lost in a longer one, which counts.
 WARM_UP = 1.0
+# Raised with every change to what is timed or how answers are judged, so that rows of two kinds never mix.
+MEASURING = 2
 # Importing a solver and handing over a program take time that is no solver's fault.
 _PATIENCE = 120.0
 
@@ -71,8 +74,16 @@ class Job:
         return Key(self.problem.name, self.solver.name, self.settings, mode, repeat)
 
     def missing(self, rows: dict[Key, Row], repeat: int) -> list[int]:
-        """Repeats without a row; none after one that was lost."""
+        """Repeats without a row; none after one that was lost.
+
+        Raises ``InvalidInput`` for a row of another problem of the same name.
+        """
         there = [rows.get(self.key(k)) for k in range(repeat)]
+        if any(row is not None and row.digest != self.problem.digest for row in there):
+            raise InvalidInput(
+                f"there are rows of another problem that is called {self.problem.name} too; "
+                "give another folder"
+            )
         if any(row is not None and row.is_lost for row in there):
             return []
         return [k for k, row in enumerate(there) if row is None]
@@ -142,11 +153,13 @@ def run(
     """
     jobs = planned(problems, solvers, settings)
     header: dict[str, Any] = {
+        "started": date.today().isoformat(),
+        "measuring": MEASURING,
         "machine": machine.machine(),
         "time_limit": limits.time_limit,
         "memory_limit": limits.worker_memory,
         "jobs": limits.jobs,
-        "solvers": {solver.name: solver.version for solver in solvers},
+        "solvers": {solver.name: solver.release for solver in solvers},
     }
     with Store(folder, header) as store:
         waiting: SimpleQueue[tuple[Job, list[int]]] = SimpleQueue()

@@ -8,9 +8,9 @@ A package announces a solver by an entry point, whose name is the solver's::
 ``solve(program, **settings)`` gets a ``regrasp.programs.Program`` and nothing else for default settings, else
 ``eps_abs`` and ``eps_rel``. If it has an attribute ``layout``, it gets ``layout(program)`` instead, made
 before the clock starts. It returns anything with the attributes ``status`` (``found``, ``infeasible``,
-``unbounded`` or ``failed``), ``x`` (n,), and where it has them ``duals`` (m,), ``iterations``, ``said``,
-``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.answer.Answer`` is such a value. A
-solver of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones too in
+``unbounded``, ``failed`` or ``refused``), ``x`` (n,), and where it has them ``duals`` (m,), ``iterations``,
+``said``, ``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.answer.Answer`` is such a
+value. A solver of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones too in
 ``regrasp.solvers.conic``.
 """
 
@@ -64,6 +64,11 @@ class Solver:
     takes_cones: bool
     updates: bool = False
     entry: str = ""
+
+    @property
+    def release(self) -> str:
+        """Its version, and of an outside solver what is called."""
+        return f"{self.version} ({self.entry})" if self.entry else self.version
 
     @property
     def outside(self) -> bool:

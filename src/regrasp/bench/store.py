@@ -13,6 +13,8 @@ from regrasp.bench.rows import Key, Row, row_of
 from regrasp.errors import InvalidInput
 
 ROWS, RUN = "rows.jsonl", "run.json"
+# Of a run that goes on: more solvers change nothing for the rows of the others.
+_FREE = ("solvers", "started")
 
 
 def read_rows(folder: Path) -> list[Row]:
@@ -31,7 +33,12 @@ def read_run(folder: Path) -> dict[str, Any]:
     path = folder / RUN
     if not path.exists():
         raise InvalidInput(f"{folder} has no {RUN}; fill it with  regrasp bench -o {folder}")
-    run: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    try:
+        run = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        run = None
+    if not isinstance(run, dict) or not isinstance(run.get("solvers"), dict):
+        raise InvalidInput(f"{path} does not say where the rows come from; give another folder")
     return run
 
 
@@ -39,7 +46,8 @@ class Store:
     """The rows of one run, open for more; a context manager that no second run can enter meanwhile.
 
     run: what must be alike for rows to be laid side by side (machine, versions, time limit). Raises
-    ``InvalidInput`` on entering a folder whose rows come from another such run, or that a run is filling.
+    ``InvalidInput`` on entering a folder whose rows come from another such run, or from nobody knows which,
+    or that a run is filling.
     """
 
     def __init__(self, folder: Path, run: dict[str, Any]) -> None:
@@ -47,9 +55,12 @@ class Store:
         self.rows: dict[Key, Row] = {}
 
     def __enter__(self) -> "Store":
-        self._folder.mkdir(parents=True, exist_ok=True)
         path = self._folder / ROWS
-        self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+        except OSError as error:
+            raise InvalidInput(f"{self._folder} must be a folder to write in: {error}") from error
         try:
             try:
                 fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -84,18 +95,25 @@ class Store:
     def _agree(self) -> None:
         """Write down what the run is, or compare it with what the rows here come from."""
         path = self._folder / RUN
-        if self.rows and path.exists():
+        if self.rows and not path.exists():
+            raise InvalidInput(
+                f"{self._folder} has rows but no {RUN} that says where they come from; give another folder"
+            )
+        if self.rows:
             before = read_run(self._folder)
-            # A solver more or less changes nothing for the rows of the others.
             both = before.get("solvers", {}).keys() & self._run["solvers"].keys()
-            differs = [f"version of {s}" for s in both if before["solvers"][s] != self._run["solvers"][s]]
-            differs += [k for k in self._run if k != "solvers" and before.get(k) != self._run[k]]
+            now = {f"version of {name}": self._run["solvers"][name] for name in both}
+            then = {f"version of {name}": before["solvers"][name] for name in both}
+            now |= {key: value for key, value in self._run.items() if key not in _FREE}
+            then |= {key: before.get(key) for key in now if key not in then}
+            differs = [f"{key}: {then[key]} there, {now[key]} now" for key in now if then[key] != now[key]]
             if differs:
                 raise InvalidInput(
-                    f"the rows in {self._folder} come from a run with another {', '.join(sorted(differs))}; "
-                    "give another folder"
+                    f"the rows in {self._folder} come from another run ({'; '.join(sorted(differs))}); "
+                    "give another folder, or the same options"
                 )
-            self._run = self._run | {"solvers": before["solvers"] | self._run["solvers"]}
+            started = {"started": before["started"]} if "started" in before else {}
+            self._run = self._run | started | {"solvers": before["solvers"] | self._run["solvers"]}
         draft = path.with_suffix(".part")
         with draft.open("w", encoding="utf-8") as file:
             json.dump(self._run, file, indent=2)
@@ -110,11 +128,20 @@ def _whole(content: bytes) -> int:
 
 
 def _parsed(content: bytes, path: Path) -> Iterator[Row]:
+    lines: dict[Key, int] = {}
     for number, line in enumerate(content[: _whole(content)].splitlines(), 1):
         try:
-            yield row_of(json.loads(line))
+            row = row_of(json.loads(line))
         except (ValueError, TypeError) as error:
-            raise InvalidInput(f"{path}, line {number}: not a row of results: {error}") from error
+            raise InvalidInput(
+                f"{path}, line {number}: not a row of results: {error}; take the line out to solve it again"
+            ) from error
+        if row.key in lines:
+            raise InvalidInput(
+                f"{path}, line {number}: the same solve as line {lines[row.key]}; take one of them out"
+            )
+        lines[row.key] = number
+        yield row
 
 
 def _sync_folder(folder: Path) -> None:

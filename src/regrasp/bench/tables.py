@@ -9,9 +9,11 @@ from regrasp.bench.closeness import Closeness
 from regrasp.bench.contests import Contest
 from regrasp.bench.document import Table
 from regrasp.bench.growth import Growth
+from regrasp.bench.judgement import CERTIFICATE
 from regrasp.bench.means import shifted_geometric_mean
-from regrasp.bench.outcomes import Kind, Outcome
+from regrasp.bench.outcomes import PARTS, Kind, Outcome
 from regrasp.bench.profiles import ratios, share_within
+from regrasp.bench.settings import SETTINGS
 from regrasp.bench.warmth import Warmth
 
 NOTHING = "–"
@@ -30,14 +32,15 @@ def contest_table(contest: Contest) -> Table:
             [
                 solver,
                 percent(contest.count(solver, Kind.RIGHT), len(there)),
+                percent(contest.by_family(solver), 1.0),
                 percent(sum(verdicts), len(verdicts)),
-                *(str(contest.count(solver, kind)) for kind in (Kind.WRONG, Kind.NONE, Kind.UNJUDGED)),
+                *(str(contest.count(solver, kind)) for kind in (Kind.WRONG, Kind.NONE, Kind.REFUSED)),
                 seconds(contest.mean(solver)),
                 seconds(shifted_geometric_mean(times)) if times else NOTHING,
                 *(f"{100 * share_within(rising[solver], factor):.0f} %" for factor in (1, 2, 10)),
             ]
         )
-    header = ["solver", "right", "right verdict", "wrong", "no answer", "not judged", "mean time"]
+    header = ["solver", "right", "by family", "verdict only", "wrong", "no answer", "not taken", "mean time"]
     return Table([*header, "mean, shared", "fastest", "within 2x", "within 10x"], rows)
 
 
@@ -45,13 +48,22 @@ def summary_table(all_contests: Iterable[Contest]) -> Table:
     """Who is first in each contest."""
     rows = []
     for contest in all_contests:
-        first, size = contest.ranking[0], len(contest.problems)
+        size, most = len(contest.problems), contest.count(contest.ranking[0], Kind.RIGHT)
+        first = [solver for solver in contest.ranking if contest.count(solver, Kind.RIGHT) == most]
         shares = {solver: share_within(rising, 1) for solver, rising in ratios(contest).items()}
         fastest = max(contest.ranking, key=shares.__getitem__)
-        right = [percent(contest.count(solver, Kind.RIGHT), size) for solver in (first, fastest)]
-        rows.append([contest.title, first, right[0], fastest, f"{100 * shares[fastest]:.0f} %", right[1]])
-    header = ["", "most right", "its right answers", "most often fastest", "how often", "its right answers"]
-    return Table(header, rows)
+        rows.append(
+            [
+                contest.title,
+                ", ".join(first),
+                f"{most} of {size}",
+                fastest,
+                f"{100 * shares[fastest]:.0f} %",
+                f"{contest.count(fastest, Kind.RIGHT)} of {size}",
+            ]
+        )
+    header = ["", "most right", "right answers", "most often fastest", "how often", "its right answers"]
+    return Table(header, rows, words=2)
 
 
 def family_table(contest: Contest) -> Table:
@@ -72,7 +84,7 @@ def parts_table(contest: Contest) -> Table:
     rows = []
     for solver in contest.ranking:
         right = [outcome for outcome in contest.outcomes[solver].values() if outcome.is_right]
-        parts = ([getattr(o.row, name) for o in right] for name in ("build_time", "setup_time", "solve_time"))
+        parts = zip(*(outcome.parts for outcome in right), strict=True) if right else [()] * len(PARTS)
         whole = [outcome.time for outcome in right if outcome.time is not None]
         known = [[part for part in times if part is not None] for times in (*parts, whole)]
         counts = [outcome.row.iterations for outcome in right if outcome.row.iterations is not None]
@@ -102,16 +114,16 @@ def growth_table(growths: dict[str, dict[str, Growth]]) -> Table:
 
 
 def closeness_table(found: dict[str, Closeness]) -> Table:
-    """How far from the known optimum the answers are: half of them, nine tenths, all."""
+    """How far from the known optimum the answers are: half of them, nine tenths, the worst that came."""
     rows = [
         [
             solver,
             f"{there.answered} of {len(there.distances)}",
-            *(_distance(there.share(p)) for p in (0.5, 0.9, 1)),
+            *(_distance(distance) for distance in (there.share(0.5), there.share(0.9), there.worst)),
         ]
         for solver, there in sorted(found.items(), key=lambda item: (item[1].share(0.5), item[0]))
     ]
-    return Table(["solver", "answered", "median distance", "of nine tenths", "largest"], rows)
+    return Table(["solver", "answered", "median distance", "of nine tenths", "largest answered"], rows)
 
 
 def warmth_table(found: dict[tuple[str, str], Warmth]) -> Table:
@@ -153,7 +165,23 @@ def origin_table(first: Sequence[Outcome]) -> Table:
     return Table(["family", "problems", "unknowns", *truths], rows)
 
 
-def percent(part: int, whole: int) -> str:
+def certificate_table(claims: Iterable[Outcome]) -> Table:
+    """Of each solver and settings: problems without solution, verdicts, certificates, and proofs by these."""
+    groups: dict[tuple[str, str], list[Outcome]] = {}
+    for outcome in claims:
+        groups.setdefault((outcome.row.settings, outcome.row.solver), []).append(outcome)
+    rows = []
+    for (settings, solver), there in sorted(groups.items(), key=lambda g: (SETTINGS.index(g[0][0]), g[0][1])):
+        residuals = [o.row.certificate_residual for o in there if o.has_right_verdict]
+        given = [residual for residual in residuals if residual is not None]
+        proven = sum(residual <= CERTIFICATE for residual in given)
+        counts = (len(there), len(residuals), len(given), proven)
+        rows.append([solver, settings, *map(str, counts), f"{max(given):.1e}" if given else NOTHING])
+    header = ["solver", "settings", "infeasible", "says so", "with a certificate", "proven", "worst residual"]
+    return Table(header, rows, words=2)
+
+
+def percent(part: float, whole: float) -> str:
     """A share with one digit, never 100.0 % of less than all."""
     share = 100 * part / whole
     return f"{min(share, 99.9) if part < whole else share:.1f} %"

@@ -1,9 +1,11 @@
 """The process that solves. It does one thing at a time, when asked, and may be killed at any moment.
 
-    ("load", Solver)                       -> ("loaded",) or ("error", words)
+    ("load", Solver)                       -> ("loaded",)
     ("prepare", program, before, options)  -> ("prepared",)
-    ("solve",)                             -> ("answer", Answer, seconds, bytes) or ("error", words, seconds)
+    ("solve",)                             -> ("answer", Answer, seconds, bytes), ("error", words, seconds)
                                               or ("memory", words)
+
+A reply of ("error", words, None) may come to anything.
 
 The program is brought into the solver's own form before the clock starts. With ``before``, a solve is a warm
 one: a session solves ``before`` untimed, is given the right side of ``program``, and only that and the solve
@@ -14,6 +16,7 @@ import contextlib
 import ctypes
 import gc
 import os
+import pickle
 import resource
 import signal
 import sys
@@ -23,7 +26,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from regrasp.bench.answer import Answer, understood
+from regrasp.bench.answer import Answer, printable, understood
 from regrasp.bench.calls.form import Call
 from regrasp.bench.solvers import Solver
 from regrasp.programs.program import Program
@@ -81,13 +84,16 @@ def _serve(connection: Connection) -> None:
                 reply = _solved(once, is_first)
                 is_first = False
         except BaseException as error:  # Rust's panics and sys.exit() end a solve, not the run
-            reply = ("error", _words(error))
+            reply = ("error", _words(error), None)
         connection.send(reply)
 
 
 def _cold(call: Call, program: Program, options: dict[str, Any]) -> Once:
+    copies = pickle.dumps(program)
+
     def once() -> tuple[Answer, float]:
-        data = call.layout(program)  # anew each time: a solver may write into it
+        # Anew each time: a solver may write into it, or know it again.
+        data = call.layout(pickle.loads(copies))
         started = perf_counter()
         given = call.solve(data, **options)
         took = perf_counter() - started
@@ -158,4 +164,4 @@ def _die_with(parent: int) -> None:
 
 
 def _words(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"
+    return f"{type(error).__name__}: {printable(error)}"

@@ -15,19 +15,25 @@ from regrasp.plots.style import PALE, PALETTE, SMALL, TEXT, literal, new_figure,
 
 Array = NDArray[np.float64]
 Looks = Mapping[str, Mapping[str, Any]]
-_STROKES = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (5, 1, 1, 1)))
+_STROKES = ("-", (0, (4, 1.5)), (0, (5, 1, 1, 1)), (0, (1, 1.2)))
 _MARKS = ("o", "s", "^", "D")
 _WIDTH, _HEIGHT = 6.6, 3.2
 
 
 def solver_looks(names: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """A colour, stroke and mark for each solver, so that all pictures of a report agree."""
+    """A colour, stroke and mark for each solver, so that all pictures of a report agree.
+
+    A solver called through another package has the colour it has by itself, dotted.
+    """
+    names = sorted(names)
+    own = {name.rpartition(":")[2].lower() for name in names}
     looks = {}
-    for place, name in enumerate(sorted(names)):
-        turn = place // len(PALETTE) % len(_STROKES)
+    for place, name in enumerate(sorted(own)):
+        turn = place // len(PALETTE) % len(_STROKES[:-1])
         colour = PALETTE[place % len(PALETTE)]
         looks[name] = {"color": colour, "linestyle": _STROKES[turn], "marker": _MARKS[turn]}
-    return looks
+    through = {"linestyle": _STROKES[-1], "marker": _MARKS[-1]}
+    return {name: looks[name.rpartition(":")[2].lower()] | (through if ":" in name else {}) for name in names}
 
 
 def plot_profiles(ratios: Mapping[str, Array], looks: Looks, ax: Axes | None = None) -> Axes:

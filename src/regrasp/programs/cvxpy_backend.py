@@ -22,6 +22,11 @@ _STATUS = {
 
 def solve(program: Program, name: str, **options: Any) -> Solution:
     """Solve with the solver named in ``cvxpy:<SOLVER>``, or cvxpy's own choice for ``cvxpy``."""
+    return timed_solve(program, name, **options)[0]
+
+
+def timed_solve(program: Program, name: str, **options: Any) -> tuple[Solution, float | None]:
+    """The same, and the time that the solver itself tells of its work [s], or None."""
     started = perf_counter()
     _, _, solver = name.partition(":")
     if solver and solver not in cp.installed_solvers():
@@ -56,7 +61,7 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
         for (block, rows), constraint in zip(program.slices, constraints, strict=True):
             duals[rows] = _dual(block.cone, constraint)
     stats = problem.solver_stats
-    return Solution(
+    solution = Solution(
         program,
         name,
         status,
@@ -67,6 +72,7 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
         solved - built,
         said,
     )
+    return solution, None if stats is None else stats.solve_time
 
 
 def _dual(cone: Cone, constraint: Any) -> Any:

@@ -87,8 +87,8 @@ def split(program: Program, *, dense: bool = False) -> Split:
 class Ordered(NamedTuple):
     """A x + s = b with rows of zero cones first, then non-negative ones, then cones of second order.
 
-    P: its upper triangle. order: (m,) the program's row that each row is. zeros, non_negatives: rows. sizes:
-    of the second-order cones.
+    P: the objective's upper triangle. order: (m,) the program's row that each row is. zeros, non_negatives:
+    how many rows. sizes: of the second-order cones.
     """
 
     P: Any

@@ -40,8 +40,9 @@ def solve(given: tuple[qpsolvers.Problem, Split], name: str, **options: Any) -> 
         warnings.simplefilter("always")
         try:
             answer = qpsolvers.solve_problem(problem, name, **options)
-        except (qpsolvers.exceptions.QPError, ValueError) as error:  # quadprog refuses a singular P, for one
-            return Answer("failed", said=f"refused: {error}")
+        except (qpsolvers.exceptions.QPError, ValueError) as error:
+            # quadprog and ECOS take no singular P, and say so beforehand.
+            return Answer("refused" if "not positive definite" in str(error) else "failed", said=str(error))
     warned = "; ".join(str(warning.message) for warning in heard)
     status, said = _claim(answer, name, warned)
     found = status == "found"

@@ -107,15 +107,15 @@ def _scaled() -> Iterator[BenchProblem]:
             frictions, name = grasp.frictions.tolist(), f"scaled/effort/{number}-{length:g}m-{force:g}N"
             unit = force_unit(grasp, load)
             plain = state_program(grasp, load, "effort", frictions, [inf] * len(grasp), unit)
-            known = certified(plain)
+            known = certified(plain, 0.0)
             if len(grasp) == 2:
                 best = choose_state(grasp, load, "effort", method="closed-form", reserve=0.0).value
-                known = Known(Verdict.SOLVABLE, Truth.CLOSED_FORM, best / unit**2, 1e-10)
+                known = Known(Verdict.SOLVABLE, Truth.CLOSED_FORM, best / unit**2, 1e-10, 0.0)
             factor = (force * unit) ** 2
             optimum = None if known.optimum is None else known.optimum * factor
             yield BenchProblem(
                 name, "scaled", _in_units(plain, force * unit, length * (grasp.size or 1.0)),
-                replace(known, optimum=optimum, scale=factor),
+                replace(known, optimum=optimum),
             )  # fmt: skip
 
 

@@ -33,7 +33,7 @@ def nose_cone(count: int = 5, friction: float = 0.3) -> tuple[Grasp, Wrench]:
 def _cones() -> Iterator[BenchProblem]:
     grasp, load = nose_cone()
     program = state_program(grasp, load, "peak_normal", grasp.frictions.tolist(), [inf] * 5, 1.0)
-    known = Known(Verdict.SOLVABLE, Truth.PUBLISHED, _NOSE_CONE, 2e-8)
+    known = Known(Verdict.SOLVABLE, Truth.PUBLISHED, _NOSE_CONE, 2e-8, scale=0.0)
     yield BenchProblem("space-cones/nose-cone", "space-cones", program, known)
     for number, count in enumerate(_COUNTS):
         grasp, load = in_space(np.random.default_rng([5, number]), count)
@@ -42,7 +42,7 @@ def _cones() -> Iterator[BenchProblem]:
                 grasp, load, objective, grasp.frictions.tolist(), [inf] * count, force_unit(grasp, load)
             )
             name = f"space-cones/{objective}/{count:03d}"
-            yield BenchProblem(name, "space-cones", program, certified(program))
+            yield BenchProblem(name, "space-cones", program, certified(program, 0.0))
 
 
 def _pyramids() -> Iterator[BenchProblem]:
@@ -55,7 +55,7 @@ def _pyramids() -> Iterator[BenchProblem]:
                     facets,
                 )  # fmt: skip
                 name = f"space-pyramids/{objective}/{count:03d}-{facets:02d}"
-                yield BenchProblem(name, "space-pyramids", program, certified(program))
+                yield BenchProblem(name, "space-pyramids", program, certified(program, 0.0))
 
 
 SPACE_CONES = Family(

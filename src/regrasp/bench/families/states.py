@@ -25,12 +25,14 @@ def state_problem(family: str, name: str, grasp: Grasp, load: Wrench, objective:
     unit = force_unit(grasp, load)
     limits = [_LIMIT * unit if objective == "force" else inf] * len(grasp)
     program = state_program(grasp, load, objective, grasp.frictions.tolist(), limits, unit)
+    scale = 1.0 if objective == "force" else 0.0  # forces that hold a load are not near zero
     if len(grasp) > 2:
-        return BenchProblem(name, family, program, certified(program))
+        return BenchProblem(name, family, program, certified(program, scale))
     limit = None if objective != "force" else _LIMIT * unit
     value = choose_state(grasp, load, objective, method="closed-form", max_force=limit, reserve=0.0).value
     optimum = value / (unit**2 if objective == "effort" else unit) * (-1 if objective == "force" else 1)
-    return BenchProblem(name, family, program, Known(Verdict.SOLVABLE, Truth.CLOSED_FORM, optimum, 1e-10))
+    known = Known(Verdict.SOLVABLE, Truth.CLOSED_FORM, optimum, 1e-10, scale)
+    return BenchProblem(name, family, program, known)
 
 
 def _problems() -> Iterator[BenchProblem]:

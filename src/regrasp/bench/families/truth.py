@@ -8,14 +8,15 @@ _ROUNDING = 1e-9
 _SOUND = 1e-6
 
 
-def certified(program: Program) -> Known:
-    """The optimum by Clarabel at tight tolerances, with the gap that primal and dual values leave."""
+def certified(program: Program, scale: float = 1.0) -> Known:
+    """The optimum by Clarabel at tight tolerances, with the gap that primal and dual values leave.
+
+    scale: of ``Known``.
+    """
     answer = solve(program, "clarabel", throw=False)
     if answer.status is Status.SOLVED:
-        scale = max(1.0, abs(answer.objective))
-        gap = answer.absolute_gap / scale + answer.primal_residual + answer.dual_residual
+        size = max(scale, abs(answer.objective))
+        gap = answer.absolute_gap / size + answer.primal_residual + answer.dual_residual
         if gap <= _SOUND:
-            return Known(Verdict.SOLVABLE, Truth.REFERENCE, answer.objective, max(10 * gap, _ROUNDING))
-    if answer.status is Status.INFEASIBLE:  # a certificate that our audit accepts
-        return Known(Verdict.INFEASIBLE, Truth.PROOF)
+            return Known(Verdict.SOLVABLE, Truth.REFERENCE, answer.objective, max(10 * gap, _ROUNDING), scale)
     return Known(Verdict.UNKNOWN, Truth.NONE)

@@ -1,0 +1,30 @@
+"""How far a point is from satisfying a program's constraints, each row by its own unit."""
+
+from math import nan
+
+import numpy as np
+
+from regrasp.programs.program import Array, Cone, Program
+
+
+def row_residual(program: Program, x: Array) -> float:
+    """The largest violation of a row or second-order cone, relative to |a_i| |x| + |b_i|; x: (n,).
+
+    |.| is the largest entry; of a cone the largest of its rows. Rows in other units, forces and torques for
+    one, count alike. NaN if x is not finite.
+    """
+    if not np.isfinite(x).all():
+        return nan
+    slack = program.b - program.A @ x
+    scale = abs(program.A).max(axis=1).toarray().ravel() * abs(x).max(initial=0.0) + abs(program.b)
+    worst = 0.0
+    for block, rows in program.slices:
+        s, sizes = slack[rows], scale[rows]
+        if block.cone is Cone.SECOND_ORDER:
+            shape = (block.count, block.size)
+            s, sizes = s.reshape(shape), sizes.reshape(shape).max(axis=1)
+            off = np.maximum(np.linalg.norm(s[:, 1:], axis=1) - s[:, 0], 0.0)
+        else:
+            off = abs(s) if block.cone is Cone.ZERO else np.maximum(-s, 0.0)
+        worst = max(worst, float((off[off > 0] / sizes[off > 0]).max(initial=0.0)))
+    return worst
