@@ -7,8 +7,8 @@ LIMITATIONS = (
     "Problems of a family are alike. A share of right answers over all problems weighs families by their "
     "number of problems; the tables by family do not.",
     "An answer is right within ten times the accuracy that was asked for, and within 1e-2 for default "
-    "settings: these differ between solvers, and so does what they mean by an accuracy. Read default settings "
-    "together with the accuracy that is reached.",
+    "settings: these differ between solvers, and so does what they mean by an accuracy. Read default "
+    "settings together with the accuracy that is reached.",
     "Where the truth is a reference solve, it comes from Clarabel at its tightest, with a duality gap that "
     "bounds the error; a solver that shares its method may share its blind spots. Distances from known "
     "answers are given over closed forms and publications only.",
@@ -16,9 +16,9 @@ LIMITATIONS = (
     "before the clock starts; solvers reached through qpsolvers or cvxpy pay for what these do with them, as "
     "their users do. For the smallest problems even a direct call is the handing over of data rather than "
     "the algorithm.",
-    "Accuracies are asked for as absolute tolerances, as qpbenchmark asks, and judged relative to the answer. "
-    "Where numbers are small, in the family scaled and with the forces of many fingers, a solver can do what "
-    "it was asked and not be right.",
+    "Accuracies are asked for as absolute tolerances, as qpbenchmark asks, and judged relative to the "
+    "answer. Where numbers are small, in the family scaled and with the forces of many fingers, a solver can "
+    "do what it was asked and not be right.",
     "One thread on one machine. Solvers that gain from more threads, a GPU or another library of linear "
     "algebra are not seen at their best.",
     "Times of answers that are not right count at the time limit; mean times depend on that limit and on the "
