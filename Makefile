@@ -15,13 +15,16 @@ test: $(VENV)/installed-dev
 	$(BIN)/pytest -n auto
 	$(BIN)/pytest --nbmake --nbmake-timeout=300 notebooks
 	$(BIN)/regrasp demo -o $(VENV)/demo
+	rm -rf $(VENV)/bench
+	$(BIN)/regrasp bench --quick -o $(VENV)/bench
+	$(BIN)/regrasp bench report $(VENV)/bench
 
 bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py
 	$(BIN)/python benchmarks/programs.py
 	$(BIN)/python benchmarks/regrasps.py
 	$(BIN)/python benchmarks/space.py
-	$(BIN)/regrasp bench --time-limit 2 --most 6000 -o benchmarks/solvers
+	$(BIN)/regrasp bench --settings default --settings mid --settings high --repeat 3 --time-limit 5 -o benchmarks/solvers
 	$(BIN)/regrasp bench report benchmarks/solvers
 
 $(VENV)/installed: pyproject.toml

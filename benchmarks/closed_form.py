@@ -7,7 +7,6 @@ Every ratio compares two things measured in turn in this one process (or, for st
 of their own). Answers are compared before times are.
 """
 
-import argparse
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -23,11 +22,12 @@ import numpy as np
 
 import regrasp as rg
 from agreement import check_agreement, close
+from command import command
 from pairs import Pairs, quadratics
 from regrasp.closed_form import compiled
 from regrasp.closed_form.choice import OBJECTIVES, best_squeeze
 from regrasp.planning.criteria import PEAK_RATIO
-from report import Measure, Report, Row
+from report import Measure, Row
 from timing import Comparison, Side, compare
 
 PACKAGES = ("regrasp", "numpy", "numba", "scipy", "daqp", "cvxpy", "clarabel", "osqp")
@@ -252,21 +252,16 @@ def _process(*command: str) -> Side:
     return Side(lambda _: subprocess.run(command, check=True, stdout=subprocess.DEVNULL))
 
 
+def rows(quick: bool) -> Iterator[Row]:
+    """Every row of the benchmark."""
+    effort = QUICK if quick else Effort()
+    for part in (choices, removals, set_points, loci, starts):
+        yield from part(effort)
+
+
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--quick", action="store_true", help="a short run; needs -o")
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="folder to write to")
-    options = parser.parse_args()
-    if options.quick and options.output is None:
-        parser.error("a quick run is no measurement: say where to write it with -o DIR")
-    effort = QUICK if options.quick else Effort()
-    rows = chain(*(part(effort) for part in (choices, removals, set_points, loci, starts)))
-    report = Report.of("closed_form", options.quick, rows, PACKAGES)
-    report.write(options.output or Path(__file__).parent)
-    print(report.markdown())
+    command("closed_form", __doc__ or "", rows, PACKAGES)
 
 
 if __name__ == "__main__":

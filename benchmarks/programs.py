@@ -6,10 +6,7 @@
 Every ratio compares two things measured in turn in this one process. Answers are compared before times are.
 """
 
-import argparse
 from collections.abc import Callable, Iterator
-from itertools import chain
-from pathlib import Path
 
 import clarabel
 import cvxpy
@@ -21,13 +18,14 @@ from scipy import sparse
 import regrasp as rg
 from agreement import close
 from closed_form import PACKAGES, QUICK, Effort, cone_edges, paper_state
+from command import command
 from pairs import Pairs, quadratics
 from regrasp.closed_form.choice import EFFORT, best_squeeze
 from regrasp.planning.criteria import PEAK_RATIO
 from regrasp.planning.path_program import PathTask, path_program
 from regrasp.planning.state_program import state_program
 from regrasp.programs import Cone, Program, available_backends, solve
-from report import Measure, Report, Row
+from report import Measure, Row
 from timing import Side
 
 PATH_SIZES = (10, 100, 1_000, 10_000)
@@ -256,21 +254,16 @@ def cvxpy_cold(grasp: rg.Grasp, load: rg.Wrench) -> Callable[[object], np.ndarra
     return lambda _: cvxpy_warm(grasp, load)(None)
 
 
+def rows(quick: bool) -> Iterator[Row]:
+    """Every row of the benchmark."""
+    effort = QUICK if quick else Effort(rounds=15)
+    for part in (overhead, roads, growth, path_solvers):
+        yield from part(effort)
+
+
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--quick", action="store_true", help="a short run; needs -o")
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="folder to write to")
-    options = parser.parse_args()
-    if options.quick and options.output is None:
-        parser.error("a quick run is no measurement: say where to write it with -o DIR")
-    effort = QUICK if options.quick else Effort(rounds=15)
-    rows = chain(*(part(effort) for part in (overhead, roads, growth, path_solvers)))
-    report = Report.of("programs", options.quick, rows, (*PACKAGES, "quadprog", "qpsolvers"))
-    report.write(options.output or Path(__file__).parent)
-    print(report.markdown())
+    command("programs", __doc__ or "", rows, (*PACKAGES, "quadprog", "qpsolvers"))
 
 
 if __name__ == "__main__":

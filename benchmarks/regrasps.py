@@ -7,7 +7,6 @@ Every ratio compares two things measured in turn in this one process; rows of on
 or, where memory is asked for, in a process of their own. Answers are compared before times are.
 """
 
-import argparse
 import json
 import subprocess
 import sys
@@ -26,10 +25,11 @@ import regrasp as rg
 from closed_form import PACKAGES, cone_edges
 from closed_form import QUICK as QUICK_EFFORT
 from closed_form import Effort as Times
+from command import command
 from regrasp.outline import parts
 from regrasp.planning.holds import HoldGraph, evenly, named
 from regrasp.planning.reach import sequences
-from report import Measure, Report, Row
+from report import Measure, Row
 from timing import Side
 
 FRICTION = 0.5
@@ -142,8 +142,8 @@ def memory(effort: Effort) -> Iterator[Row]:
 
 def in_a_process(what: str, points: int, orientations: int) -> dict[str, float]:
     """What ``probe`` finds in a fresh process."""
-    command = [sys.executable, __file__, "--probe", what, str(points), str(orientations)]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    line = [sys.executable, __file__, "--probe", what, str(points), str(orientations)]
+    done = subprocess.run(line, check=True, capture_output=True, text=True)
     found: dict[str, float] = json.loads(done.stdout)
     return found
 
@@ -239,25 +239,19 @@ def timed(call) -> float:
     return perf_counter() - began
 
 
+def rows(quick: bool) -> Iterator[Row]:
+    """Every row of the benchmark."""
+    effort = QUICK if quick else FULL
+    for part in (sweep, growth, best_sequence, memory):
+        yield from part(effort)
+
+
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--quick", action="store_true", help="a short run; needs -o")
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="folder to write to")
-    parser.add_argument("--probe", nargs=3, help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.probe:
-        probe(options.probe[0], *map(int, options.probe[1:]))
+    if sys.argv[1:2] == ["--probe"]:
+        probe(sys.argv[2], *map(int, sys.argv[3:]))
         return
-    if options.quick and options.output is None:
-        parser.error("a quick run is no measurement: say where to write it with -o DIR")
-    effort = QUICK if options.quick else FULL
-    rows = chain(*(part(effort) for part in (sweep, growth, best_sequence, memory)))
-    report = Report.of("regrasps", options.quick, rows, (*PACKAGES, "highspy"))
-    report.write(options.output or Path(__file__).parent)
-    print(report.markdown())
+    command("regrasps", __doc__ or "", rows, (*PACKAGES, "highspy"))
 
 
 if __name__ == "__main__":

@@ -6,13 +6,10 @@
 Every ratio compares two things measured in turn in this one process. Answers are compared before times are.
 """
 
-import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import chain
 from math import pi
-from pathlib import Path
 from statistics import median
 from time import perf_counter
 
@@ -23,9 +20,10 @@ import triples
 from closed_form import PACKAGES
 from closed_form import QUICK as QUICK_EFFORT
 from closed_form import Effort as Times
+from command import command
 from programs import first_row, overhead_row, path_growth, path_task
 from regrasp.mesh import parts
-from report import Measure, Report, Row
+from report import Measure, Row
 from timing import Side
 
 FRICTION = 0.6
@@ -208,21 +206,16 @@ def timed(call) -> float:
     return perf_counter() - began
 
 
+def rows(quick: bool) -> Iterator[Row]:
+    """Every row of the benchmark."""
+    effort = QUICK if quick else FULL
+    for part in (overhead, paths, many_contacts, pyramids, table, regrasp):
+        yield from part(effort)
+
+
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--quick", action="store_true", help="a short run; needs -o")
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="folder to write to")
-    options = parser.parse_args()
-    if options.quick and options.output is None:
-        parser.error("a quick run is no measurement: say where to write it with -o DIR")
-    effort = QUICK if options.quick else FULL
-    rows = chain(*(part(effort) for part in (overhead, paths, many_contacts, pyramids, table, regrasp)))
-    report = Report.of("space", options.quick, rows, (*PACKAGES, "piqp"))
-    report.write(options.output or Path(__file__).parent)
-    print(report.markdown())
+    command("space", __doc__ or "", rows, (*PACKAGES, "piqp"))
 
 
 if __name__ == "__main__":

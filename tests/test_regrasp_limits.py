@@ -11,7 +11,8 @@ from regrasp.outline import parts
 from regrasp.planning.bottleneck import bottleneck
 from regrasp.planning.holds import HoldGraph, evenly, named
 from regrasp.planning.reach import MAX_TURN
-from regrasp.planning.regrasp_problem import RegraspOptions, RegraspProblem
+from regrasp.planning.regrasp_options import RegraspOptions
+from regrasp.planning.regrasp_problem import RegraspProblem
 from regrasp.planning.regrasp_weights import RegraspWeights
 from test_regrasp_search import ends_of, small_graph
 

@@ -4,13 +4,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import Required, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
@@ -25,45 +24,16 @@ from regrasp.planning.holds import Filter, HoldGraph, evenly
 from regrasp.planning.obstacle import why_not
 from regrasp.planning.reach import MAX_TURN, Sequence, as_sequence, sequences
 from regrasp.planning.regrasp_ends import Ends
+from regrasp.planning.regrasp_options import check_steps
 from regrasp.planning.regrasp_plan import RegraspPlan
 from regrasp.planning.regrasp_steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.regrasp_weights import RegraspWeights
 from regrasp.planning.remedies import allowed
 from regrasp.planning.stances import Places
 from regrasp.planning.timing import TimeScaling
-from regrasp.planning.triples import TripleFilter
 
 # A goal nearer than this to one of the orientations is that one [rad].
 _SAME_ANGLE = 1e-9
-
-
-class RegraspOptions(TypedDict, total=False):
-    """The options of a regrasp; what they mean stands in ``RegraspProblem`` and ``SpaceRegraspProblem``.
-
-    ``goal_rotation``, ``facets`` and ``seed`` are of solids; ``goal_orientation``, ``arcs``, ``one_finger``
-    and ``weights`` of outlines.
-    """
-
-    friction: Required[float]
-    orientations: int
-    goal_orientation: float
-    candidates: int
-    objective: str
-    states: str
-    max_turn: float
-    least_margin: float
-    min_distance: float
-    keep: Filter | TripleFilter | None
-    arcs: Arcs | None
-    one_finger: bool
-    weights: RegraspWeights | None
-    max_force: float | None
-    peak_ratio: float
-    reserve: float
-    step_duration: float
-    goal_rotation: ArrayLike | None
-    facets: int
-    seed: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,13 +84,9 @@ class RegraspProblem:
         if not isinstance(self.outline, Outline):
             raise InvalidInput(f"outline must be an Outline, got {self.outline!r}")
         _ = self.criteria
+        check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
         number(self.goal_orientation, "goal_orientation")
-        number(self.step_duration, "step_duration", above=0)
-        choice(self.states, "states", ("each", "joint"))
-        if not 0 < number(self.max_turn, "max_turn") < pi:
-            raise InvalidInput(f"max_turn must be above 0 and below pi, got {self.max_turn!r}")
         number(self.min_distance, "min_distance", least=0)
-        number(self.least_margin, "least_margin", least=0)
         if not isinstance(self.one_finger, bool):
             raise InvalidInput(f"one_finger must be True or False, got {self.one_finger!r}")
         if self.weights is not None and not isinstance(self.weights, RegraspWeights):

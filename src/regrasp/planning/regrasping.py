@@ -8,8 +8,9 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
+from regrasp.planning.regrasp_options import RegraspOptions
 from regrasp.planning.regrasp_plan import RegraspPlan
-from regrasp.planning.regrasp_problem import RegraspOptions, RegraspProblem
+from regrasp.planning.regrasp_problem import RegraspProblem
 from regrasp.planning.space_problem import SpaceRegraspProblem
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, choice, number, rotation
+from regrasp.mechanics.checks import Array, rotation
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -19,6 +19,7 @@ from regrasp.planning.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.quads import Quads
 from regrasp.planning.reach import Sequence, preferred
 from regrasp.planning.regrasp_ends import Ends
+from regrasp.planning.regrasp_options import check_steps
 from regrasp.planning.regrasp_steps import chosen_state, kept, spread_states, step_between
 from regrasp.planning.space_plan import SpaceRegraspPlan, accumulated
 from regrasp.planning.stances import Places
@@ -80,11 +81,7 @@ class SpaceRegraspProblem:
         load = self.load
         if not isinstance(load, Wrench) or load.dimension != 3 or load.torque.any() or not load.force.any():
             raise InvalidInput(f"load must be a force in space through the centre of mass, got {load!r}")
-        number(self.step_duration, "step_duration", above=0)
-        choice(self.states, "states", ("each", "joint"))
-        if not 0 < number(self.max_turn, "max_turn") < pi:
-            raise InvalidInput(f"max_turn must be above 0 and below pi, got {self.max_turn!r}")
-        number(self.least_margin, "least_margin", least=0)
+        check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
         if isinstance(self.orientations, bool) or not isinstance(self.orientations, int):
             raise InvalidInput(f"orientations must be a whole number, got {self.orientations!r}")
         _ = self.directions, self.graph
