@@ -42,6 +42,7 @@ from regrasp.bench.tables import (
 )
 from regrasp.bench.warmth import warmths
 from regrasp.errors import InvalidInput
+from regrasp.plots.solvers import plot_growth, solver_looks
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 LIMIT = 10.0
@@ -218,6 +219,15 @@ def test_warm_starts_are_compared_with_cold_ones_of_the_same_problem():
     assert (found.cold, found.warm, found.ratio) == (4e-4, 1e-4, 0.25)
     assert (found.right, found.given) == (2, 3)
     assert warmths(outcomes(rows[:3])) == {}
+
+
+def test_growth_is_drawn_by_octaves():
+    looks = solver_looks({"clarabel", "cvxpy:CLARABEL", "scs"})
+    assert looks["clarabel"]["color"] == looks["cvxpy:CLARABEL"]["color"] != looks["scs"]["color"]
+    ax = plot_growth({"scs": ([16, 31, 32, 200], [1e-3, 4e-3, 5e-3, 1e-2])}, looks)
+    (line,) = [line for line in ax.get_lines() if line.get_label() == "scs"]
+    assert line.get_xdata() == pytest.approx([np.sqrt(16 * 31), 32, 200])
+    assert line.get_ydata() == pytest.approx([2e-3, 5e-3, 1e-2])
 
 
 # -- words -------------------------------------------------------------------------------------------------

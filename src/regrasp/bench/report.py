@@ -199,8 +199,8 @@ def _growth_blocks(found: list[Outcome], settings: list[str], looks: Any) -> Ite
     yield Heading("Growth with size")
     yield Paragraph(
         f"Right answers at {name} settings. slope: of log time over log entries of A, 1 is linear. largest: "
-        "unknowns of the largest problem answered rightly. MiB: memory that this one took. Pale lines in the "
-        "pictures grow linearly."
+        "unknowns of the largest problem answered rightly. MiB: memory that this one took. In the pictures "
+        "the problems between one power of two and the next are one point, and pale lines grow linearly."
     )
     yield growth_table(grown)
     for family, by_solver in grown.items():

@@ -67,13 +67,17 @@ def plot_distances(distances: Mapping[str, Sequence[float]], looks: Looks, ax: A
 def plot_growth(
     times: Mapping[str, tuple[Sequence[float], Sequence[float]]], looks: Looks, ax: Axes | None = None
 ) -> Axes:
-    """Per solver its times [s] over the sizes of problems [entries of A], with lines of linear growth."""
+    """Per solver its times [s] over the sizes of problems [entries of A], with lines of linear growth.
+
+    Sizes of one octave are drawn as one, at their geometric means: problems of other kinds lie between.
+    """
     ax = _axes(ax)
-    for name, (sizes, seconds) in times.items():
+    merged = {name: _octaves(*found) for name, found in times.items()}
+    for name, (sizes, seconds) in merged.items():
         ax.plot(sizes, seconds, label=literal(name), linewidth=1.2, markersize=2.5, **looks[name])
     ax.set_xscale("log")
     ax.set_yscale("log")
-    everything = [seconds for _, seconds in times.values()]
+    everything = [seconds.tolist() for _, seconds in merged.values()]
     low, high = min(map(min, everything)), max(map(max, everything))
     ax.set_ylim(low / 2, high * 2)
     ends = np.array(ax.get_xlim())
@@ -95,6 +99,14 @@ def svg(ax: Axes) -> str:
     with rc_context({"svg.hashsalt": "regrasp", "svg.fonttype": "path"}):
         cast(Figure, ax.figure).savefig(text, format="svg", metadata={"Date": None})
     return text.getvalue()
+
+
+def _octaves(sizes: Sequence[float], seconds: Sequence[float]) -> tuple[Array, Array]:
+    """Geometric means of the sizes and times between one power of two and the next."""
+    logs = np.log2(np.array([sizes, seconds], dtype=float))
+    octaves = np.floor(logs[0])
+    means = np.array([logs[:, octaves == octave].mean(axis=1) for octave in np.unique(octaves)])
+    return np.exp2(means[:, 0]), np.exp2(means[:, 1])
 
 
 def _axes(ax: Axes | None) -> Axes:
