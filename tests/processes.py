@@ -1,6 +1,12 @@
 """Processes as the system sees them."""
 
+import signal
 from pathlib import Path
+
+
+def hear_interrupts() -> None:
+    """For ``preexec_fn``: what a shell starts in the background is deaf to SIGINT, and so are its children."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def is_running(pid: int) -> bool:

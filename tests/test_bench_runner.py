@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from bench_toys import TOYS, fake, qp, stripped
-from processes import is_running
+from processes import hear_interrupts, is_running
 from regrasp.bench.problem import Family, Known, Truth, Verdict
 from regrasp.bench.rows import Key
 from regrasp.bench.runner import Limits, chosen_problems, planned, run
@@ -229,7 +229,10 @@ def test_an_interrupt_ends_the_run_at_once_and_leaves_no_row_of_it(fakes: Path, 
     path = os.pathsep.join([str(fakes), *sys.path])
     line = [sys.executable, "-m", "regrasp", "bench", "--family", "loci", "--most", "4"]
     line += ["--solver", "right", "--solver", "hangs", "-o", str(out)]
-    process = subprocess.Popen(line, env=os.environ | {"PYTHONPATH": path}, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        line, env=os.environ | {"PYTHONPATH": path}, stderr=subprocess.PIPE, text=True,
+        preexec_fn=hear_interrupts,
+    )  # fmt: skip
     while not note.exists() or not note.read_text():
         assert process.poll() is None
         time.sleep(0.01)

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import regrasp as rg
+from processes import hear_interrupts
 from regrasp.files import parse_scenario, plan_scenario, read_plan
 from scenarios import PAPER, edited, regrasp
 
@@ -213,7 +214,9 @@ def test_failing_figure_leaves_nothing(
 def test_interrupt_from_the_terminal_leaves_nothing(tmp_path: Path) -> None:
     (tmp_path / "long.toml").write_text(edited(("rate = 1000.0", "rate = 1e6")))
     command = [sys.executable, "-m", "regrasp", "plan", "long.toml", "-o", "out", "--no-figures"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, preexec_fn=hear_interrupts
+    ) as process:
         deadline = time.monotonic() + 60
         while not list(tmp_path.glob(".regrasp-*/out/.regrasp-*/setpoints.csv")):  # being written
             assert process.poll() is None, process.stderr and process.stderr.read()
