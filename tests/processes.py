@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 def hear_interrupts() -> None:
-    """For ``preexec_fn``: what a shell starts in the background is deaf to SIGINT, and so are its children."""
+    """For ``preexec_fn``: children of what a shell starts in the background are deaf to SIGINT."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
