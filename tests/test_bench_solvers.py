@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from bench_toys import CONE, TOYS, UNKNOWN, by_problem, fake
+from bench_toys import CONE, TOYS, UNKNOWN, by_problem, fake, solvable
 from processes import is_running
 from regrasp.bench.answer import Answer, understood
 from regrasp.bench.judgement import judged
@@ -75,6 +75,42 @@ def test_every_solver_here_is_right_on_a_toy_and_at_high_accuracy_more_so(tmp_pa
     assert {row.solver for row in rows if row.problem == "toy/cone"} == {
         solver.name for solver in there if solver.takes_cones
     }
+
+
+def test_cones_in_any_order_have_the_same_answer_and_duals() -> None:
+    """Solvers want their cones in an order of their own; what comes back is in that of the program."""
+    rng = np.random.default_rng(0)
+    kinds = [Cone.SECOND_ORDER, Cone.ZERO, Cone.NONNEGATIVE, Cone.SECOND_ORDER, Cone.ZERO, Cone.NONNEGATIVE]
+    sizes = [(3, 1), (1, 1), (1, 2), (2, 2), (1, 1), (1, 1)]
+    blocks = tuple(Block(cone, *size) for cone, size in zip(kinds, sizes, strict=True))
+    slack = np.array([2.0, 0.6, -1.1, 0.0, 0.3, 0.8, 1.0, -0.9, 0.7, 0.1, 0.0, 0.4])
+    A = sparse.csc_matrix(rng.normal(size=(12, 5)))
+    program = Program(
+        sparse.identity(5, format="csc"), rng.normal(size=5), A, A @ rng.normal(size=5) + slack, blocks
+    )
+    answers = {}
+    for solver in installed_solvers().values():
+        if solver.takes_cones and solver.updates:
+            call = solver.load()
+            answers[solver.name] = call.solve(call.layout(program), **options(solver.name, "high"))
+    assert len(answers) >= 3
+    for answer in answers.values():
+        assert answer.x == pytest.approx(answers["clarabel"].x, abs=1e-7)
+        assert answer.duals == pytest.approx(answers["clarabel"].duals, abs=1e-6)
+
+
+def test_an_updated_solver_answers_the_problem_it_was_given_last() -> None:
+    updating = [solver for solver in installed_solvers().values() if solver.updates]
+    assert len(updating) >= 9
+    for solver in updating:
+        call, asked = solver.load(), options(solver.name, "high")
+        session = solver.session()(call.layout(TOYS[0].program), **asked)
+        session.solve()
+        for total in (2.0, 50.0, 0.1, 3.0):
+            session.update(call.layout(solvable(total).program))
+            answer = session.solve()
+            assert answer.status == "found", solver.name
+            assert answer.x == pytest.approx([total / 2, total / 2], abs=1e-6), solver.name
 
 
 # -- solvers that misbehave -----------------------------------------------------------------------------
