@@ -23,9 +23,14 @@ LIMITATIONS = (
     "algebra are not seen at their best.",
     "Times of answers that are not right count at the time limit; mean times depend on that limit and on the "
     "shift. Shares of problems do not.",
-    "A solver that finds a program infeasible is right if it is, and if its certificate, where it gives one, "
-    "passes our audit. Clarabel, OSQP, QPALM and SCS hand certificates out; the others, and all that are "
+    "A solver that finds a program infeasible is right if it is; whether its certificate proves it has a "
+    "table of its own. Clarabel, OSQP, QPALM and SCS hand certificates out; the others, and all that are "
     "called through qpsolvers or cvxpy, are believed for the verdict.",
+    "An updated solve starts from what the solver keeps, which can mislead it: after an infeasible problem, "
+    "or where the old answer still passes its checks, ProxQP has answered wrongly in our trials. The loads "
+    "of the family turn slowly and are all held.",
+    "The time limit of a solve covers laying out its data and, of an updated one, the solve before it; the "
+    "times shown do not.",
     "Performance profiles compare with the best of the solvers shown; the order of two solvers in a "
     "profile can change when a third is taken out.",
     "Memory is the growth of a process's resident set; memory that a solver takes from what was already "

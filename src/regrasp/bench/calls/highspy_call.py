@@ -1,4 +1,4 @@
-"""HiGHS, called directly: qpsolvers drops its status. An update keeps the model and its last basis.
+"""HiGHS, called directly: qpsolvers drops its status. An update keeps the model.
 
 Its QP solver is of the active-set kind.
 """
