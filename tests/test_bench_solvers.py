@@ -2,7 +2,10 @@
 
 import sys
 import time
+from dataclasses import replace
+from enum import StrEnum
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -220,6 +223,33 @@ def test_a_feasible_point_that_is_not_the_best_is_wrong() -> None:
 def test_outside_solvers_get_the_tolerances_and_nothing_for_default(fakes: Path, tmp_path: Path) -> None:
     rows = run(tmp_path / "out", TOYS[:1], [fake("asked")], ("default", "mid"))
     assert [row.said for row in rows] == ["[]", "[('eps_abs', 1e-06), ('eps_rel', 0.0)]"]
+
+
+def test_an_answer_is_told_in_plain_words_and_numbers() -> None:
+    class Word(StrEnum):
+        FOUND = "found"
+
+    given = SimpleNamespace(status=Word.FOUND, x=np.ones(2), iterations=float("nan"))
+    answer = understood(given, TOYS[0].program)
+    assert (type(answer.status), answer.status, answer.iterations) == (str, "found", None)
+
+
+def test_what_overflows_satisfies_nothing() -> None:
+    assert np.isnan(row_residual(TOYS[0].program, np.array([1.7e308, 1.7e308])))
+
+
+def test_daqp_is_updated_after_a_program_that_it_refused() -> None:
+    solver = installed_solvers()["daqp"]
+    call = solver.load()
+    program = TOYS[0].program
+    A = sparse.vstack([program.A[:1], program.A], format="csc")
+    blocks = (Block(Cone.ZERO, 1), *program.blocks)
+    b = np.concatenate([[3.0], program.b])
+    twice = Program(program.P, program.q, A, b, blocks)
+    session = solver.session()(call.layout(twice))
+    assert session.solve().status != "found"
+    session.update(call.layout(replace(twice, b=np.concatenate([program.b[:1], program.b]))))
+    assert session.solve().x == pytest.approx([0.5, 0.5])
 
 
 def test_an_answer_of_another_shape_is_refused() -> None:

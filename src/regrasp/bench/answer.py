@@ -52,14 +52,15 @@ def understood(given: Any, program: Program) -> Answer:
     status = getattr(given, "status", None)
     if status not in words:
         raise InvalidInput(f"a solver's answer needs a status among {', '.join(words)}, got {status!r}")
+    status = Claim(status).value  # a plain word: the runner must not import what another kind of string is
     x = _array("x", getattr(given, "x", None), program.q.size)
     if x is None and status == Claim.FOUND.value:
         raise InvalidInput("a solver's answer that is found needs x")
-    iterations = getattr(given, "iterations", None)
-    times = (_seconds(given, name) for name in ("build_time", "setup_time", "solve_time"))
+    times = (_number(given, name) for name in ("build_time", "setup_time", "solve_time"))
     duals = _array("duals", getattr(given, "duals", None), program.b.size)
     said = printable(getattr(given, "said", "") or status)
-    return Answer(status, x, duals, None if iterations is None else int(iterations), said, *times)
+    count = _number(given, "iterations")
+    return Answer(status, x, duals, None if count is None else int(count), said, *times)
 
 
 def printable(words: Any) -> str:
@@ -81,6 +82,7 @@ def _array(name: str, values: Any, size: int) -> Array | None:
     return array if np.isfinite(array).all() else None
 
 
-def _seconds(given: Any, name: str) -> float | None:
+def _number(given: Any, name: str) -> float | None:
+    """A time or a count; one that makes no sense has not been told."""
     value = getattr(given, name, None)
     return None if value is None or not 0 <= float(value) < inf else float(value)

@@ -11,12 +11,15 @@ def row_residual(program: Program, x: Array) -> float:
     """The largest violation of a row or second-order cone, relative to |a_i| |x| + |b_i|; x: (n,).
 
     |.| is the largest entry; of a cone the largest of its rows. Rows in other units, forces and torques for
-    one, count alike. NaN if x is not finite.
+    one, count alike. NaN if x is not finite or so large that the rows are not.
     """
     if not np.isfinite(x).all():
         return nan
-    slack = program.b - program.A @ x
-    scale = abs(program.A).max(axis=1).toarray().ravel() * abs(x).max(initial=0.0) + abs(program.b)
+    with np.errstate(over="ignore", invalid="ignore"):
+        slack = program.b - program.A @ x
+        scale = abs(program.A).max(axis=1).toarray().ravel() * abs(x).max(initial=0.0) + abs(program.b)
+    if not (np.isfinite(slack).all() and np.isfinite(scale).all()):
+        return nan
     worst = 0.0
     for block, rows in program.slices:
         s, sizes = slack[rows], scale[rows]

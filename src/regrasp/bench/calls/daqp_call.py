@@ -35,15 +35,22 @@ class Session:
     """A program set up in DAQP."""
 
     def __init__(self, data: Bounds, **options: Any) -> None:
+        self._options = options
+        self._set_up(data)
+
+    def _set_up(self, data: Bounds) -> None:
         started = perf_counter()
         sense = np.where(data.equal, _EQUALITY, 0).astype(np.intc)
         self._solver = daqp.Model()
-        self._solver.settings = options
+        self._solver.settings = self._options
         self._refused, _ = self._solver.setup(data.P, data.q, data.A, data.upper, data.lower, sense)
         self._setup = perf_counter() - started
 
     def update(self, data: Bounds) -> None:
-        """The same program with another right side."""
+        """The same program with another right side; a program that was refused leaves nothing to update."""
+        if self._refused < 0:
+            self._set_up(data)
+            return
         started = perf_counter()
         self._refused = self._solver.update(bupper=data.upper, blower=data.lower)
         self._setup = perf_counter() - started
