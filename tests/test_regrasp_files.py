@@ -26,6 +26,7 @@ from regrasp.files import (
 from regrasp.files.setpoints import checked, read_setpoints, setpoint_blocks
 from regrasp.outline import parts
 from regrasp.verification import verify_setpoints
+from regrasp_moves import check_moves
 from scenarios import regrasp
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
@@ -308,14 +309,7 @@ def test_setpoints_of_a_regrasp_hold_the_object_by_themselves(plan: rg.RegraspPl
     normal = (forces * inward).sum(axis=-1)
     across = abs(inward[..., 0] * forces[..., 1] - inward[..., 1] * forces[..., 0])
     assert (across <= 0.5 * normal + 1e-9).all()
-    moved = (np.diff(points, axis=0) != 0).any(axis=-1)
-    joints = np.diff(step) == 1
-    assert not moved[~joints].any()  # a finger moves between two steps only,
-    assert (moved.sum(axis=1) <= 1).all()  # one at a time,
-    assert moved.sum() == len(plan.moves)
-    for row, finger in np.argwhere(moved):  # without force
-        assert not forces[row, finger].any()
-        assert not forces[row + 1, finger].any()
+    joints = check_moves(points, forces, step, len(plan.moves))
     assert (np.diff(t)[joints] == 0).all()
     assert (np.diff(t)[~joints] > 0).all()
     assert angle == pytest.approx(

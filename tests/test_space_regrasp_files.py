@@ -27,6 +27,7 @@ from regrasp.files.setpoints import checked, read_setpoints, setpoint_blocks
 from regrasp.planning.quaternion import about, conjugate, product, quaternion
 from regrasp.planning.space_plan import SpaceRegraspPlan, accumulated
 from regrasp.planning.turn import rotation_matrix
+from regrasp_moves import check_moves
 from scenarios import regrasp
 from space import random_rotation
 
@@ -189,14 +190,7 @@ def test_setpoints_hold_the_object_by_themselves(
     normal = (forces * inward).sum(axis=-1)
     across = np.linalg.norm(forces - normal[..., None] * inward, axis=-1)
     assert (across <= 0.6 * normal + 1e-9).all()
-    moved = (np.diff(points, axis=0) != 0).any(axis=-1)
-    joints = np.diff(step) == 1
-    assert not moved[~joints].any()  # a finger moves between two steps only,
-    assert (moved.sum(axis=1) <= 1).all()  # one at a time,
-    assert moved.sum() == len(whole.moves)
-    for row, finger in np.argwhere(moved):  # without force
-        assert not forces[row, finger].any()
-        assert not forces[row + 1, finger].any()
+    check_moves(points, forces, step, len(whole.moves))
     last = rotation_matrix([0, -1, 0], pi / 2)
     assert rotations[-1] == pytest.approx(last.T if backwards else last, abs=1e-12)
 
