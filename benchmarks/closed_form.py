@@ -24,9 +24,9 @@ import regrasp as rg
 from agreement import check_agreement, close
 from command import command
 from pairs import Pairs, quadratics
-from regrasp.closed_form import compiled
 from regrasp.closed_form.choice import OBJECTIVES, best_squeeze
-from regrasp.planning.criteria import PEAK_RATIO
+from regrasp.closed_form.compiled import two_fingers as compiled
+from regrasp.planning.states.criteria import PEAK_RATIO
 from report import Measure, Row
 from timing import Comparison, Side, compare
 

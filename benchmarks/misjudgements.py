@@ -25,7 +25,7 @@ import qpsolvers
 
 from degenerate import Degenerate, degenerate_cases
 from regrasp.mechanics.reserve import kept_friction
-from regrasp.planning.state_program import state_program
+from regrasp.planning.states.program import state_program
 from regrasp.programs import (
     Cone,
     Program,

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from regrasp import locus_intervals
 from regrasp.closed_form.choice import OBJECTIVES, best_squeeze
-from regrasp.planning.criteria import PEAK_RATIO
+from regrasp.planning.states.criteria import PEAK_RATIO
 
 Array = NDArray[np.float64]
 

@@ -21,9 +21,9 @@ from closed_form import PACKAGES, QUICK, Effort, cone_edges, paper_state
 from command import command
 from pairs import Pairs, quadratics
 from regrasp.closed_form.choice import EFFORT, best_squeeze
-from regrasp.planning.criteria import PEAK_RATIO
-from regrasp.planning.path_program import PathTask, path_program
-from regrasp.planning.state_program import state_program
+from regrasp.planning.changes.path_program import PathTask, path_program
+from regrasp.planning.states.criteria import PEAK_RATIO
+from regrasp.planning.states.program import state_program
 from regrasp.programs import Cone, Program, available_backends, solve
 from report import Measure, Row
 from timing import Side

@@ -27,8 +27,8 @@ from closed_form import QUICK as QUICK_EFFORT
 from closed_form import Effort as Times
 from command import command
 from regrasp.outline import parts
-from regrasp.planning.holds import HoldGraph, evenly, named
-from regrasp.planning.reach import sequences
+from regrasp.planning.holds.pairs import HoldGraph, evenly, named
+from regrasp.planning.holds.sequences import sequences
 from report import Measure, Row
 from timing import Side
 

@@ -15,7 +15,7 @@ from scipy import sparse
 import regrasp as rg
 from closed_form import QUICK as QUICK_EFFORT
 from closed_form import Effort as Times
-from regrasp.planning.triples import TripleGraph, directions
+from regrasp.planning.holds.triples import TripleGraph, directions
 from report import Measure, Row
 from timing import Side
 

@@ -11,7 +11,7 @@ from regrasp.plots import plot_escape, plot_outline, plot_sensitivity, transitio
 IMAGES = Path(__file__).parent / "images"
 
 if __name__ == "__main__":
-    scenario = parse_scenario((files("regrasp.files") / "paper.toml").read_text(encoding="utf-8"))
+    scenario = parse_scenario((files("regrasp.files.scenarios") / "paper.toml").read_text(encoding="utf-8"))
     removal = plan_scenario(scenario)
     IMAGES.mkdir(exist_ok=True)
     transition_figure(removal).savefig(IMAGES / "overview.png", dpi=160, metadata={"Software": None})

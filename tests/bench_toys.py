@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from regrasp.bench.problem import BenchProblem, Known, Truth, Verdict
-from regrasp.bench.rows import TIMES, Row
-from regrasp.bench.solvers import Solver
+from regrasp.bench.running.problem import BenchProblem, Known, Truth, Verdict
+from regrasp.bench.running.result import TIMES, Row
+from regrasp.bench.running.solvers import Solver
 from regrasp.programs import Block, Cone, Program
 
 MODULE = """

@@ -9,6 +9,11 @@ from itertools import permutations
 
 import numpy as np
 
+import regrasp as rg
+from regrasp.planning.holds.pairs import HoldGraph, evenly, named
+
+WEIGHT = rg.Wrench([0, -3.0])
+
 
 def least_cost(
     graph, start, goal, o, max_turn, allowed=None, threshold=0.0, move=1.0, turn=0.0, step=0.0, worth=None
@@ -86,3 +91,27 @@ def trade_off(graph, start, goal, o, max_turn, allowed=None):
         found.append((round(moves), float(levels[low])))
         low += 1
     return found
+
+
+def small_graph(rng, points, orientations=None, share=None):
+    outline = rg.Outline.ellipse(1.0, rng.uniform(0.3, 1.0))
+    s = np.sort(rng.uniform(0, outline.length, points))
+    contacts = named([outline.contact_at(x, friction=rng.uniform(0.4, 3.0)) for x in s.tolist()], "c")
+    share = share or rng.uniform(0.15, 0.5)
+
+    def keep(first, second, angle):  # few pairs, so that ways are long
+        return rng.random(len(first)) < share
+
+    return HoldGraph(tuple(contacts), WEIGHT, evenly(orientations or int(rng.integers(1, 6))), keep=keep)
+
+
+def ends_of(rng, graph, o):
+    """Three contacts of which two hold at first, and three of which two hold at ``o``, where any do."""
+    ends, every = [], range(len(graph.contacts))
+    for k in (0, o):
+        pairs = np.flatnonzero(graph.margins[k] >= 0)
+        held = [int(side[pair]) for pair in rng.choice(pairs, min(pairs.size, 1)) for side in graph.pairs]
+        others = [v for v in every if v not in held]
+        places = [*held, *rng.choice(others, 3 - len(held), replace=False).tolist()]
+        ends.append(tuple(rng.permutation(places).tolist()))
+    return ends

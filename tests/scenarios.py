@@ -7,7 +7,7 @@ import pytest
 
 from regrasp import cli
 
-PAPER = (files("regrasp.files") / "paper.toml").read_text(encoding="utf-8")
+PAPER = (files("regrasp.files.scenarios") / "paper.toml").read_text(encoding="utf-8")
 
 
 def edited(*changes: tuple[str, str]) -> str:

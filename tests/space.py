@@ -89,3 +89,14 @@ def best_by_cvxpy(
 def _cross(r: np.ndarray) -> np.ndarray:
     x, y, z = r
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def soft_random(rng, count):
+    points = rng.normal(size=(count, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    kinds = [None if rng.random() < 0.4 else float(rng.uniform(0.02, 0.3)) for _ in range(count)]
+    kinds[0] = 0.1
+    return rg.Grasp(
+        rg.Contact(p, -p + 0.3 * rng.normal(size=3), float(rng.uniform(0.3, 0.8)), torsion=e)
+        for p, e in zip(points, kinds, strict=True)
+    )

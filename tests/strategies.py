@@ -241,3 +241,13 @@ def _distance(a: Point, b: Point) -> float:
 
 def turned(v: Point, angle: float) -> Point:
     return cos(angle) * v[0] - sin(angle) * v[1], sin(angle) * v[0] + cos(angle) * v[1]
+
+
+def comfortable_triple(rng: np.random.Generator) -> tuple[rg.Grasp, rg.Wrench]:
+    """Three contacts around a disc, roughly facing its middle."""
+    angles = 2 * np.pi * (np.arange(3) + 0.3 * rng.uniform(-1, 1, 3)) / 3
+    contacts = [
+        rg.Contact([np.cos(a), np.sin(a)], [-np.cos(a + d), -np.sin(a + d)], mu)
+        for a, d, mu in zip(angles, 0.2 * rng.normal(size=3), rng.uniform(0.3, 1.0, 3), strict=True)
+    ]
+    return rg.Grasp(contacts), rg.Wrench(rng.normal(size=2), 0.1 * rng.normal())

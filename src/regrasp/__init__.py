@@ -10,35 +10,35 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.batch import best_squeezes, locus_intervals
-from regrasp.planning.change import plan_addition, plan_removal
-from regrasp.planning.choice import choose_state
-from regrasp.planning.criteria import ChosenState
-from regrasp.planning.loads import LoadSeries
-from regrasp.planning.locus import EquilibriumLocus
-from regrasp.planning.rotation import plan_rotation
-from regrasp.planning.sampled import SampledTransition
-from regrasp.planning.timing import TimeScaling
-from regrasp.planning.transition import Transition
-from regrasp.planning.turning import TurningTransition
+from regrasp.planning.changes.finger_change import plan_addition, plan_removal
+from regrasp.planning.changes.rotation import plan_rotation
+from regrasp.planning.states.batch import best_squeezes, locus_intervals
+from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.criteria import ChosenState
+from regrasp.planning.states.two_fingers import EquilibriumLocus
+from regrasp.plans.loads import LoadSeries
+from regrasp.plans.sampled import SampledTransition
+from regrasp.plans.timing import TimeScaling
+from regrasp.plans.transition import Transition
+from regrasp.plans.turning import TurningTransition
 from regrasp.verification import Verification, verify
 
 if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
-    from regrasp.planning.bottleneck import Bottleneck, bottleneck
-    from regrasp.planning.directions import HeldDirections, held_directions
-    from regrasp.planning.held_sphere import HeldSphere, held_sphere
-    from regrasp.planning.obstacle import RegraspObstacle
-    from regrasp.planning.pyramid_loss import PyramidLosses, pyramid_losses
-    from regrasp.planning.regrasp_plan import RegraspPlan
-    from regrasp.planning.regrasp_problem import RegraspProblem
-    from regrasp.planning.regrasp_weights import RegraspWeights
-    from regrasp.planning.regrasping import plan_regrasp, plan_regrasps
-    from regrasp.planning.sensitivity import Sensitivity, sensitivity
-    from regrasp.planning.space_plan import SpaceRegraspPlan
-    from regrasp.planning.space_problem import SpaceRegraspProblem
-    from regrasp.planning.squeeze_locus import SqueezeLocus
+    from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
+    from regrasp.planning.holds.weights import RegraspWeights
+    from regrasp.planning.regrasps.planar import RegraspProblem
+    from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
+    from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
+    from regrasp.planning.regrasps.why_not import RegraspObstacle
+    from regrasp.planning.surveys.held_directions import HeldDirections, held_directions
+    from regrasp.planning.surveys.held_sphere import HeldSphere, held_sphere
+    from regrasp.planning.surveys.pyramid_loss import PyramidLosses, pyramid_losses
+    from regrasp.planning.surveys.sensitivity import Sensitivity, sensitivity
+    from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
+    from regrasp.plans.regrasp_plan import RegraspPlan
+    from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 
 __version__ = "0.1.0"
 
@@ -46,25 +46,25 @@ __version__ = "0.1.0"
 _LATER = {
     "Mesh": "regrasp.mesh.mesh",
     "Outline": "regrasp.outline.outline",
-    "Bottleneck": "regrasp.planning.bottleneck",
-    "bottleneck": "regrasp.planning.bottleneck",
-    "HeldDirections": "regrasp.planning.directions",
-    "held_directions": "regrasp.planning.directions",
-    "HeldSphere": "regrasp.planning.held_sphere",
-    "held_sphere": "regrasp.planning.held_sphere",
-    "RegraspObstacle": "regrasp.planning.obstacle",
-    "PyramidLosses": "regrasp.planning.pyramid_loss",
-    "pyramid_losses": "regrasp.planning.pyramid_loss",
-    "RegraspPlan": "regrasp.planning.regrasp_plan",
-    "RegraspProblem": "regrasp.planning.regrasp_problem",
-    "RegraspWeights": "regrasp.planning.regrasp_weights",
-    "plan_regrasp": "regrasp.planning.regrasping",
-    "plan_regrasps": "regrasp.planning.regrasping",
-    "Sensitivity": "regrasp.planning.sensitivity",
-    "sensitivity": "regrasp.planning.sensitivity",
-    "SpaceRegraspPlan": "regrasp.planning.space_plan",
-    "SpaceRegraspProblem": "regrasp.planning.space_problem",
-    "SqueezeLocus": "regrasp.planning.squeeze_locus",
+    "Bottleneck": "regrasp.planning.holds.bottleneck",
+    "bottleneck": "regrasp.planning.holds.bottleneck",
+    "HeldDirections": "regrasp.planning.surveys.held_directions",
+    "held_directions": "regrasp.planning.surveys.held_directions",
+    "HeldSphere": "regrasp.planning.surveys.held_sphere",
+    "held_sphere": "regrasp.planning.surveys.held_sphere",
+    "RegraspObstacle": "regrasp.planning.regrasps.why_not",
+    "PyramidLosses": "regrasp.planning.surveys.pyramid_loss",
+    "pyramid_losses": "regrasp.planning.surveys.pyramid_loss",
+    "RegraspPlan": "regrasp.plans.regrasp_plan",
+    "RegraspProblem": "regrasp.planning.regrasps.planar",
+    "RegraspWeights": "regrasp.planning.holds.weights",
+    "plan_regrasp": "regrasp.planning.regrasps.verbs",
+    "plan_regrasps": "regrasp.planning.regrasps.verbs",
+    "Sensitivity": "regrasp.planning.surveys.sensitivity",
+    "sensitivity": "regrasp.planning.surveys.sensitivity",
+    "SpaceRegraspPlan": "regrasp.plans.space_regrasp_plan",
+    "SpaceRegraspProblem": "regrasp.planning.regrasps.spatial",
+    "SqueezeLocus": "regrasp.planning.surveys.squeeze_locus",
 }
 
 __all__ = [

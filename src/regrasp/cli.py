@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from regrasp.files import AnyScenario
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
-    from regrasp.planning.regrasp_plan import RegraspPlan
-    from regrasp.planning.transition import Transition
+    from regrasp.plans.regrasp_plan import RegraspPlan
+    from regrasp.plans.transition import Transition
     from regrasp.verification import Verification
 
 # Exit statuses; 0 only for a plan that verified.
@@ -59,7 +59,7 @@ def demo(output: Path) -> None:
     from regrasp.files import parse_scenario
 
     name = "paper.toml"
-    text = (files("regrasp.files") / name).read_text(encoding="utf-8")
+    text = (files("regrasp.files.scenarios") / name).read_text(encoding="utf-8")
     _work(parse_scenario(text, name), name, output, copy=text)
     click.echo(f"\nNext: change {output / name}, then run  {_called()} plan {output / name} -o {output}")
 
@@ -94,7 +94,7 @@ def verify(path: Path) -> None:
     """
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
-    from regrasp.files.setpoints import checked, read_setpoints
+    from regrasp.files.plans.setpoints import checked, read_setpoints
 
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
@@ -162,8 +162,8 @@ def bench(
     if output is None:
         raise click.UsageError("the results need a folder: -o DIR")
     from regrasp.bench.families.catalogue import FAMILIES
-    from regrasp.bench.runner import Limits, chosen_problems, run
-    from regrasp.bench.solvers import chosen_solvers
+    from regrasp.bench.running.runner import Limits, chosen_problems, run
+    from regrasp.bench.running.solvers import chosen_solvers
 
     if quick:
         most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
@@ -202,7 +202,7 @@ def bench(
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 def bench_report(folder: Path) -> None:
     """Write the report of the results in DIR."""
-    from regrasp.bench.report import write_report
+    from regrasp.bench.reporting.report import write_report
 
     for path in write_report(folder):
         click.echo(f"wrote {path}")
@@ -261,7 +261,7 @@ def _work(
 ) -> None:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
     from regrasp.files import plan_scenario, write_plan, write_setpoints
-    from regrasp.files.setpoints import checked, setpoint_blocks
+    from regrasp.files.plans.setpoints import checked, setpoint_blocks
     from regrasp.files.source import naming
     from regrasp.files.staging import whole_folder
     from regrasp.verification import verify
@@ -324,13 +324,13 @@ def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", f
     """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
     with _progress() as progress:
         task = progress.add_task("drawing figures", total=None)
-        from regrasp.planning.regrasp_plan import RegraspPlan
-        from regrasp.plots import overview
+        from regrasp.plans.regrasp_plan import RegraspPlan
+        from regrasp.plots.pages import overview
 
         first = planned.steps[0] if isinstance(planned, RegraspPlan) else planned
         solid: dict[str, Any] = {"mesh": shape} if first.grasp.dimension == 3 else {}
         if isinstance(planned, RegraspPlan):
-            from regrasp.plots.regrasp import plot_regrasp
+            from regrasp.plots.regrasps.steps import plot_regrasp
 
             drawn = {"overview": plot_regrasp(planned, shape)}
             for k, step in enumerate(planned.steps, 1):

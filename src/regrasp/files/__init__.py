@@ -1,11 +1,17 @@
 """Scenarios in, plans and set-points out. Imports pydantic, so it is imported when it is used."""
 
-from regrasp.files.plan_file import read_plan, write_plan
-from regrasp.files.planned import plan_scenario
-from regrasp.files.regrasp_scenario import RegraspScenario
-from regrasp.files.scenario import AnyScenario, Scenario, parse_scenario, read_scenario, scenario_schema
-from regrasp.files.setpoints import write_setpoints
-from regrasp.files.space_regrasp_scenario import SpaceRegraspScenario
+from regrasp.files.plans.plan_file import read_plan, write_plan
+from regrasp.files.plans.setpoints import write_setpoints
+from regrasp.files.scenarios.planned import plan_scenario
+from regrasp.files.scenarios.regrasp import RegraspScenario
+from regrasp.files.scenarios.scenario import (
+    AnyScenario,
+    Scenario,
+    parse_scenario,
+    read_scenario,
+    scenario_schema,
+)
+from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 
 __all__ = [
     "AnyScenario",

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from regrasp.mechanics.checks import Array, read_only
-from regrasp.mechanics.frames import tangents_of
+from regrasp.mechanics.orientation.tangents import tangents_of
 
 
 class Cones:

@@ -38,7 +38,7 @@ class EscapeTwist(ArrayValue, Pictured):
     frictions: tuple[float, ...]
     limits: tuple[float, ...]
 
-    _drawn_by = "regrasp.plots.escape:escape_png"
+    _drawn_by = "regrasp.plots.escapes.escape:escape_png"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "twist", array(self.twist, "twist", self.load.vector.shape))

@@ -11,7 +11,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
-from regrasp.mechanics.frames import tangents_of
+from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import torque
 

@@ -5,36 +5,40 @@ what it draws. New axes belong to a figure of their own (``ax.figure``), as wide
 N, m and s unless ``units`` names others; numbers are never converted.
 """
 
-from regrasp.plots.animation import animate
-from regrasp.plots.components import plot_force_components, plot_wrench_components
-from regrasp.plots.directions import plot_directions
-from regrasp.plots.escape import plot_escape
-from regrasp.plots.history import plot_angles, plot_magnitudes, plot_margins
-from regrasp.plots.hold_map import plot_hold_map
-from regrasp.plots.iso_torque import plot_iso_torque
-from regrasp.plots.load_history import plot_load
-from regrasp.plots.locus import plot_locus
-from regrasp.plots.object import plot_state, plot_transition
-from regrasp.plots.outline import plot_outline
-from regrasp.plots.overview import (
+from regrasp.plots.escapes.escape import plot_escape
+from regrasp.plots.grasps.outline import plot_outline
+from regrasp.plots.grasps.state import plot_state, plot_transition
+from regrasp.plots.look.png import png
+from regrasp.plots.look.style import contact_colours
+from regrasp.plots.look.units import SI, Units
+from regrasp.plots.over_time.components import plot_force_components, plot_wrench_components
+from regrasp.plots.over_time.load import plot_load
+from regrasp.plots.over_time.magnitudes import plot_angles, plot_magnitudes, plot_margins
+from regrasp.plots.over_time.scaling import plot_scaling
+from regrasp.plots.pages.film import animate
+from regrasp.plots.pages.overview import (
     figures,
     iso_torque_figure,
-    png,
     states_figure,
     transition_figure,
     transition_png,
     wrenches_figure,
 )
-from regrasp.plots.page import html
-from regrasp.plots.regrasp import plot_regrasp
-from regrasp.plots.sensitivity import plot_sensitivity
-from regrasp.plots.sphere import load_sphere_figure, plot_load_map, plot_load_sphere
-from regrasp.plots.style import contact_colours
-from regrasp.plots.timing import plot_scaling
-from regrasp.plots.trade_off import plot_trade_off
-from regrasp.plots.units import SI, Units
-from regrasp.plots.wrench_loop import plot_wrench_loop, plot_wrench_paths
-from regrasp.plots.wrench_space import plot_locus_segment, plot_wrench_cone, plot_wrench_plane
+from regrasp.plots.pages.page import html
+from regrasp.plots.regrasps.hold_map import plot_hold_map
+from regrasp.plots.regrasps.steps import plot_regrasp
+from regrasp.plots.regrasps.trade_off import plot_trade_off
+from regrasp.plots.surveys.held_directions import plot_directions
+from regrasp.plots.surveys.held_sphere import load_sphere_figure, plot_load_map, plot_load_sphere
+from regrasp.plots.surveys.sensitivity import plot_sensitivity
+from regrasp.plots.wrench_space.iso_torque import plot_iso_torque
+from regrasp.plots.wrench_space.locus import plot_locus
+from regrasp.plots.wrench_space.planes_and_cones import (
+    plot_locus_segment,
+    plot_wrench_cone,
+    plot_wrench_plane,
+)
+from regrasp.plots.wrench_space.wrench_loop import plot_wrench_loop, plot_wrench_paths
 
 __all__ = [
     "SI",

@@ -21,8 +21,8 @@ from regrasp.verification.exact import RESOLUTION, check_state, dot, exact
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.regrasps import Regrasp, check_joints
-from regrasp.verification.rows import Checked, check_rows
-from regrasp.verification.turns import check_turn
+from regrasp.verification.setpoints import Checked, check_rows
+from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
 
 

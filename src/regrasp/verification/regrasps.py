@@ -7,7 +7,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, Vector, dot, exact
 from regrasp.verification.protocols import Plan
-from regrasp.verification.turned import cosine_sine
+from regrasp.verification.rotated_loads import cosine_sine
 
 Matrix = list[Vector]
 # No more fingers than these touch the object at once, in the plane and in space.

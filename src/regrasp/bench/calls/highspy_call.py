@@ -10,8 +10,8 @@ import highspy
 import numpy as np
 from scipy import sparse
 
-from regrasp.bench.answer import Answer
 from regrasp.bench.calls.form import bounded
+from regrasp.bench.running.answer import Answer
 from regrasp.errors import InvalidInput
 from regrasp.programs.program import Array, Program
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import piqp
 
-from regrasp.bench.answer import Answer
 from regrasp.bench.calls.form import FEW, Split, split
+from regrasp.bench.running.answer import Answer
 from regrasp.programs.program import Program
 
 _CLAIMS = {

@@ -5,8 +5,8 @@ from typing import Any
 
 import scs
 
-from regrasp.bench.answer import Answer
 from regrasp.bench.calls.form import Ordered, ordered
+from regrasp.bench.running.answer import Answer
 from regrasp.programs.program import Program
 
 # "Inaccurate" verdicts are not verdicts.

@@ -5,8 +5,8 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.orientation.spiral import even_directions
 from regrasp.mechanics.wrench import Wrench, torque
-from regrasp.planning.spiral import even_directions
 
 # Forces stay inside their cones by this share of the friction, so that a held load is held with room.
 _INSIDE = 0.8

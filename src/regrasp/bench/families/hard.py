@@ -10,15 +10,15 @@ from scipy import sparse
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.states import state_problem
 from regrasp.bench.families.truth import certified
-from regrasp.bench.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.choice import choose_state
-from regrasp.planning.chooser import force_unit
-from regrasp.planning.escape import escape_twist
-from regrasp.planning.locus import EquilibriumLocus
-from regrasp.planning.state_program import state_program
+from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.escape import escape_twist
+from regrasp.planning.states.program import state_program
+from regrasp.planning.states.solving import force_unit
+from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.programs import Block, Cone, Program
 
 _TILT = 0.3

@@ -6,10 +6,10 @@ from math import isfinite
 import numpy as np
 
 from regrasp.bench.families.grasps import planar
-from regrasp.bench.problem import BenchProblem, Family, Known, Truth, Verdict
-from regrasp.planning.chooser import force_unit
-from regrasp.planning.locus import EquilibriumLocus
-from regrasp.planning.locus_program import locus_program
+from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.planning.states.solving import force_unit
+from regrasp.planning.states.two_fingers import EquilibriumLocus
+from regrasp.planning.surveys.locus_program import locus_program
 
 _COUNT = 20
 

@@ -7,13 +7,13 @@ import numpy as np
 
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.truth import certified
-from regrasp.bench.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.choice import choose_state
-from regrasp.planning.chooser import force_unit
-from regrasp.planning.path_program import PathTask, path_program
+from regrasp.planning.changes.path_program import PathTask, path_program
+from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.solving import force_unit
 from regrasp.programs import Program
 
 _INSTANTS = (10, 30, 100, 300, 1000, 3000, 10_000)

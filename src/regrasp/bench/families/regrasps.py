@@ -6,11 +6,11 @@ import numpy as np
 
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.truth import certified
-from regrasp.bench.problem import BenchProblem, Family
+from regrasp.bench.running.problem import BenchProblem, Family
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.planning.chooser import force_unit
-from regrasp.planning.sequence_program import SequenceState, sequence_program
+from regrasp.planning.regrasps.joint_states import SequenceState, sequence_program
+from regrasp.planning.states.solving import force_unit
 
 _STEPS = (4, 8, 16, 32, 64)
 _LIMIT = 10.0

@@ -7,12 +7,12 @@ import numpy as np
 
 from regrasp.bench.families.grasps import in_space
 from regrasp.bench.families.truth import certified
-from regrasp.bench.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.chooser import force_unit
-from regrasp.planning.state_program import state_program
+from regrasp.planning.states.program import state_program
+from regrasp.planning.states.solving import force_unit
 
 _COUNTS = (4, 5, 6, 8, 16, 32, 64, 128, 256, 512)
 _FACETS = (4, 8, 16, 32)

@@ -8,10 +8,10 @@ import numpy as np
 
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.states import state_problem
-from regrasp.bench.problem import BenchProblem, Family
+from regrasp.bench.running.problem import BenchProblem, Family
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.chooser import force_unit
-from regrasp.planning.state_program import state_program
+from regrasp.planning.states.program import state_program
+from regrasp.planning.states.solving import force_unit
 
 _STEPS = 40
 _TURN = 0.01

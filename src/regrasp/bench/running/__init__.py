@@ -1,0 +1,1 @@
+"""Running solvers over problems: processes, settings, rows that outlive everything."""

@@ -1,0 +1,106 @@
+"""A worker seen from the runner: started, asked, and killed when it does not answer in time."""
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+from multiprocessing import Pipe
+from typing import Any
+
+from regrasp.bench.running.result import CRASHED, TIMEOUT
+
+# Libraries that would use every core are held to one.
+_PINNED = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "NUMEXPR_NUM_THREADS",
+    "RAYON_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+_CODE = """
+import json, sys
+path, channel, parent, memory = json.loads(sys.argv[1])
+sys.path[:] = path
+from regrasp.bench.running.worker import main
+main(channel, parent, memory)
+"""
+
+
+class WorkerLost(Exception):
+    """The worker did not come back and is gone. Carries the ``status`` and what to say of it."""
+
+    def __init__(self, status: str, said: str) -> None:
+        super().__init__(f"{status}: {said}")
+        self.status, self.said = status, said
+
+
+class Worker:
+    """One process that solves; started when first asked and again after it was lost.
+
+    memory_limit: [bytes] of addresses it may have, 0 for no limit.
+    """
+
+    def __init__(self, memory_limit: int) -> None:
+        self._memory_limit = memory_limit
+        self._process: subprocess.Popen[bytes] | None = None
+        self.loaded: str | None = None
+
+    def ask(self, *message: Any, within: float) -> tuple[Any, ...]:
+        """The reply to a message. Raises ``WorkerLost`` if there is none ``within`` so many seconds."""
+        if self._process is None:
+            self._start()
+        try:
+            self._connection.send(message)
+            if not self._connection.poll(within):
+                self.kill()
+                raise WorkerLost(TIMEOUT, f"no answer within {within:g} s")
+            reply: tuple[Any, ...] = self._connection.recv()
+        except (EOFError, OSError) as error:
+            raise WorkerLost(CRASHED, self._ended()) from error
+        return reply
+
+    def kill(self) -> None:
+        """End the process, whatever it is doing."""
+        if self._process is not None:
+            self._end()
+            self._process.wait()
+            self._connection.close()
+        self._process = self.loaded = None
+
+    def interrupt(self) -> None:
+        """End the process from another thread; a reply that is awaited is lost."""
+        if self._process is not None:
+            self._end()
+
+    def _end(self) -> None:
+        """Kill the process and what it has started; they are a session of their own."""
+        assert self._process is not None
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+
+    def _start(self) -> None:
+        self._connection, theirs = Pipe()
+        given = json.dumps([sys.path, theirs.fileno(), os.getpid(), self._memory_limit])
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", _CODE, given],
+            pass_fds=[theirs.fileno()],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=os.environ | dict.fromkeys(_PINNED, "1"),
+            start_new_session=True,  # an interrupt from the keyboard is the runner's to handle
+        )
+        theirs.close()
+
+    def _ended(self) -> str:
+        """How the process ended, by itself; it is cleared away."""
+        assert self._process is not None
+        code = self._process.wait()
+        self.kill()
+        if code < 0:
+            return f"the process was ended by {signal.Signals(-code).name}"
+        return f"the process ended with exit status {code}"

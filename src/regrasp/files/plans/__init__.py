@@ -1,0 +1,1 @@
+"""Plans and set-points as files."""

@@ -1,0 +1,303 @@
+"""A plan as a JSON file: self-contained, versioned, and read back as the equal plan, bit for bit.
+
+A whole regrasp is of kind ``regrasp`` and lists its steps, each as the plan of a transition; in space it has
+the object's ``rotations`` besides.
+"""
+
+import json
+from math import inf
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from regrasp.errors import InvalidInput
+from regrasp.files.source import naming, text_of
+from regrasp.files.staging import whole_file
+from regrasp.files.strict import Strict, validated
+from regrasp.mechanics.checks import array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.plans.course import Course
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.sampled import SampledTransition
+from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.timing import TimeScaling
+from regrasp.plans.transition import Choice, Record, Transition
+from regrasp.plans.turn import Turn
+from regrasp.plans.turning import TurningTransition
+
+FORMAT = "regrasp plan"
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+VERSION = 1
+
+
+class _Contact(Strict):
+    name: str
+    position: list[float]
+    normal: list[float]
+    friction: float
+    max_force: float | None
+    torsion: float | None = None  # of a soft finger
+
+
+class _Scaling(Strict):
+    duration: float
+    control: list[float]
+    degree: int
+
+
+class _Choice(Strict):
+    end: Literal["start", "end"]
+    objective: str
+    method: str
+    force_limits: list[float | None]  # JSON has no infinity: None is no limit
+
+
+class _Record(Strict):
+    reserve: float
+    choices: list[_Choice]
+    balancing: float
+    path: str = "closed-form"
+    path_objective: str | None = None
+    rate_limits: list[Positive | None] = Field(default_factory=list)
+    least_normals: list[NotNegative] = Field(default_factory=list)
+
+
+class _Course(Strict):
+    times: list[float]
+    forces: list[list[list[float]]]
+    loads: list[list[float]]  # force, then torque
+
+
+class _Turn(Strict):
+    angles: list[float]
+    forces: list[list[list[float]]]
+    end_load: list[float]  # force, then torque; in the object frame after the turn
+    axis: list[float] | None = None  # in space
+    middles: list[list[list[float]]] | None = None  # where a part of the load does not turn
+
+
+class _Transition(Strict):
+    kind: Literal["removal", "addition", "rotation", "exchange"]
+    contact: str | None  # none for a rotation
+    load: list[float]  # force, then torque; at the start
+    contacts: list[_Contact]
+    start: list[list[float]]
+    end: list[list[float]]
+    scaling: _Scaling
+    course: _Course | None = None  # none for the straight path
+    record: _Record
+    arrival: str | None = None  # of an exchange
+    turn: _Turn | None = None  # of an object that turns
+
+
+class _Header(Strict):
+    format: Literal["regrasp plan"]
+    version: Literal[1]
+
+
+class _Plan(_Transition, _Header):
+    pass
+
+
+class _Regrasp(_Header):
+    kind: Literal["regrasp"]
+    steps: list[_Transition] = Field(min_length=1)
+    orientations: list[float]
+    margin: float
+    rotations: list[list[list[float]]] | None = None  # in space
+
+
+def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
+    """Write a plan with everything needed to read it back and verify it.
+
+    Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
+    """
+    header = {"format": FORMAT, "version": VERSION}
+    if isinstance(plan, RegraspPlan):
+        document = header | _regrasp_document(plan)
+        validated(_Regrasp, document, path)
+    elif isinstance(plan, Transition):
+        document = header | _document(plan)
+        validated(_Plan, document, path)
+    else:
+        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {plan!r}")
+    with whole_file(path) as file:
+        json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
+        file.write("\n")
+
+
+def read_plan(path: str | Path) -> Transition | RegraspPlan:
+    """The plan of a file that ``write_plan`` wrote; judge it with ``regrasp.verify``.
+
+    Raises one ``InvalidInput`` that names the file and what is wrong in it.
+    """
+    path = Path(path)
+    text = text_of(path, "a plan in JSON")
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise InvalidInput(f'{path}: expected a plan with "format": "{FORMAT}", found other JSON')
+    if data.get("version") != VERSION:
+        raise InvalidInput(
+            f"{path}: version: expected {VERSION}, got {data.get('version')!r}; "
+            f"a plan of a newer regrasp needs that regrasp to be read"
+        )
+    if data.get("kind") == "regrasp":
+        whole = validated(_Regrasp, data, path)
+        with naming(path):
+            return _regrasp(whole)
+    stored = validated(_Plan, data, path)
+    with naming(path):
+        return _plan(stored)
+
+
+def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:
+    turned = {"rotations": plan.rotations.tolist()} if isinstance(plan, SpaceRegraspPlan) else {}
+    return {
+        "kind": "regrasp",
+        "orientations": list(plan.orientations),
+        "margin": plan.margin,
+        **turned,
+        "steps": [_document(step) for step in plan.steps],
+    }
+
+
+def _regrasp(stored: _Regrasp) -> RegraspPlan:
+    steps = []
+    for k, step in enumerate(stored.steps):
+        with naming(f"steps[{k}]"):
+            steps.append(_plan(step))
+    count = len(stored.orientations)
+    if count != len(steps) + 1:
+        raise InvalidInput(
+            f"orientations: expected {len(steps) + 1} angles, one more than the steps, got {count}"
+        )
+    given, in_space = stored.rotations, steps[0].grasp.dimension == 3
+    if in_space != (given is not None):
+        problem = "a required key is missing, for the steps are in space"
+        raise InvalidInput(f"rotations: {problem if in_space else 'leave them out in the plane'}")
+    whole = tuple(steps), tuple(stored.orientations), stored.margin
+    plan = RegraspPlan(*whole)
+    if given is not None:
+        plan = SpaceRegraspPlan(*whole, rotations=array(given, "rotations", (count, 3, 3)))
+    _ = plan.moves  # raises where a step has more fingers than the first
+    return plan
+
+
+def _document(plan: Transition) -> dict[str, Any]:
+    scaling, record, course = plan.scaling, plan.record, plan.course
+    document: dict[str, Any] = {
+        "kind": plan.kind,
+        "contact": plan.contact,
+        "load": plan.start.load.vector.tolist(),
+        "contacts": [
+            {
+                "name": c.name,
+                "position": c.position.tolist(),
+                "normal": c.normal.tolist(),
+                "friction": c.friction,
+                "max_force": c.max_force,
+            }
+            | ({} if c.torsion is None else {"torsion": c.torsion})
+            for c in plan.grasp
+        ],
+        "start": plan.start.forces.tolist(),
+        "end": plan.end.forces.tolist(),
+        "scaling": {
+            "duration": scaling.duration,
+            "control": list(scaling.control),
+            "degree": scaling.degree,
+        },
+        "course": None
+        if course is None
+        else {
+            "times": course.times.tolist(),
+            "forces": course.forces.tolist(),
+            "loads": course.loads.tolist(),
+        },
+        "record": {
+            "reserve": record.reserve,
+            "choices": [
+                {
+                    "end": c.end,
+                    "objective": c.objective,
+                    "method": c.method,
+                    "force_limits": [None if limit == inf else limit for limit in c.force_limits],
+                }
+                for c in record.choices
+            ],
+            "balancing": record.balancing,
+            "path": record.path,
+            "path_objective": record.path_objective,
+            "rate_limits": [None if limit == inf else limit for limit in record.rate_limits],
+            "least_normals": list(record.least_normals),
+        },
+    }
+    if plan.arrival is not None:
+        document["arrival"] = plan.arrival
+    if plan.turn is not None:
+        document["turn"] = {
+            "angles": plan.turn.angles.tolist(),
+            "forces": plan.turn.forces.tolist(),
+            "end_load": plan.end.load.vector.tolist(),
+            "axis": None if plan.turn.axis is None else plan.turn.axis.tolist(),
+            "middles": None if plan.turn.middles is None else plan.turn.middles.tolist(),
+        }
+    return document
+
+
+def _plan(stored: _Transition) -> Transition:
+    grasp = Grasp(
+        Contact(c.position, c.normal, c.friction, max_force=c.max_force, torsion=c.torsion, name=c.name)
+        for c in stored.contacts
+    )
+    for key in ("rate_limits", "least_normals"):
+        count = len(getattr(stored.record, key))
+        if count not in (0, len(grasp)):
+            raise InvalidInput(f"record.{key}: expected {len(grasp)} numbers or none, got {count}")
+    load = Wrench.from_vector(stored.load)
+    given, turned = stored.course, stored.turn
+    if given is not None and turned is not None:
+        raise InvalidInput("a plan has a course or a turn, not both")
+    course = None if given is None else Course(given.times, given.forces, given.loads)
+    turn = None if turned is None else Turn(turned.angles, turned.forces, turned.axis, turned.middles)
+    last = load
+    if course is not None:
+        last = Wrench.from_vector(course.loads[-1])
+    elif turned is not None:
+        last = Wrench.from_vector(turned.end_load)
+    ends = GraspState(grasp, load, stored.start), GraspState(grasp, last, stored.end)
+    scaling = TimeScaling(stored.scaling.duration, tuple(stored.scaling.control), stored.scaling.degree)
+    kind, contact, record = stored.kind, stored.contact, _read_record(stored.record)
+    if course is not None:
+        return SampledTransition(kind, contact, *ends, scaling, record, arrival=stored.arrival, course=course)
+    if turn is not None:
+        return TurningTransition(kind, contact, *ends, scaling, record, arrival=stored.arrival, turn=turn)
+    return Transition(kind, contact, *ends, scaling, record, arrival=stored.arrival)
+
+
+def _read_record(record: _Record) -> Record:
+    choices = (
+        Choice(c.end, c.objective, c.method, tuple(_unlimited(limit) for limit in c.force_limits))
+        for c in record.choices
+    )
+    return Record(
+        record.reserve,
+        tuple(choices),
+        record.balancing,
+        record.path,
+        record.path_objective,
+        tuple(_unlimited(limit) for limit in record.rate_limits),
+        tuple(record.least_normals),
+    )
+
+
+def _unlimited(limit: float | None) -> float:
+    return inf if limit is None else limit

@@ -1,0 +1,117 @@
+"""Set-points of a plan as a table in CSV."""
+
+import csv
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from regrasp.errors import InvalidInput
+from regrasp.files.plans.regrasp_table import RegraspTable
+from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_times
+from regrasp.files.source import text_of
+from regrasp.files.staging import whole_file
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.transition import Transition, setpoint_columns
+from regrasp.verification import Verification, verify_setpoints
+
+# Rows computed at a time, so that memory does not grow with the duration.
+_BLOCK = 8192
+
+# More than a day at 1000 per second; a file of that many rows is a slip of the pen.
+_MOST = 1e8
+
+
+def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Rows]:
+    """All set-points in order, some thousand at a time; both ends of every step have one.
+
+    Raises ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points.
+    """
+    if plan.duration * rate > _MOST:
+        raise InvalidInput(
+            f"rate {rate:g} for {plan.duration:g} s makes {plan.duration * rate:.3g} set-points; "
+            f"at most {_MOST:g} are made"
+        )
+    for k, step in enumerate(_steps(plan)):
+        times = step.times(rate)
+        for first in range(0, times.size, _BLOCK):
+            t = times[first : first + _BLOCK]
+            yield Rows(k, t, step.orientation(t), step.forces(t))
+
+
+def checked(plan: Transition | RegraspPlan, rows: Rows) -> Verification:
+    """The verdict on set-points of a plan."""
+    verdict = verify_setpoints(_steps(plan)[rows.step], rows.forces, rows.times, rows.angles)
+    if isinstance(plan, RegraspPlan):
+        named = tuple(f"step {rows.step + 1}: {violation}" for violation in verdict.violations)
+        return replace(verdict, violations=named)
+    return verdict
+
+
+def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: float = 1000.0) -> None:
+    """Write ``t`` [s] and the columns ``<name>_fx``, ``<name>_fy``[, ``<name>_fz``] per contact [N].
+
+    With soft fingers ``<name>_mn`` follows, the torque about the normal [N m]. Where the object turns,
+    ``angle`` [rad] follows ``t``. Of a regrasp the columns are ``t``, ``angle``, ``step`` (from 1) and
+    ``F1_x``, ``F1_y``, ``F1_fx``, ``F1_fy`` per finger: its contact point and its force in the object frame.
+    A finger in the air stays at its last point, without force; it moves between the last row of a step and
+    the first row of the next, which have the same time. In space points and forces have a ``z``, and in
+    the place of ``angle`` stand ``qw``, ``qx``, ``qy``, ``qz``, the unit quaternion from the object's frame
+    to its frame at the start; its sign never jumps.
+
+    rate: rows per second; both ends of the plan, and of every step, have a row. Every number reads back as
+    the same double.
+    Raises ``InvalidInput`` as ``setpoint_blocks`` does, and where the file cannot be written.
+    """
+    blocks = setpoint_blocks(plan, rate)
+    with whole_file(path) as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(_columns(plan))
+        if isinstance(plan, RegraspPlan):
+            table = RegraspTable(plan)
+            for block in blocks:
+                rows.writerows(table.rows(block))
+            return
+        for _, t, angles, forces in blocks:
+            turned = [] if plan.turn is None else [angles]
+            rows.writerows(np.column_stack([t, *turned, forces.reshape(t.size, -1)]).tolist())
+
+
+def read_setpoints(path: str | Path, plan: Transition | RegraspPlan) -> list[Rows]:
+    """The set-points of a file that ``write_setpoints`` wrote for this plan, one entry for each step.
+
+    Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise from 0 to the
+    duration, and angles, steps and finger positions that are not the plan's.
+    """
+    path = Path(path)
+    header, *lines = text_of(path, "set-points in CSV").splitlines() or [""]
+    columns = _columns(plan)
+    if header.split(",") != columns:
+        raise InvalidInput(f"{path}: expected the columns {','.join(columns)}, got {header[:200]}")
+    try:
+        table = np.array([[float(x) for x in line.split(",")] for line in lines], dtype=float)
+    except ValueError as error:
+        raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
+    if table.ndim != 2 or table.shape[1] != len(columns) or not np.isfinite(table).all():
+        raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
+    if isinstance(plan, RegraspPlan):
+        return RegraspTable(plan).read(path, table)
+    times = table[:, 0]
+    check_times(path, times, 0.0, plan.duration)
+    turned = 0 if plan.turn is None else 1
+    angles = plan.orientation(times)
+    if turned:
+        check_angles(path, table[:, 1], angles)
+        angles = table[:, 1]
+    return [Rows(0, times, angles, table[:, 1 + turned :].reshape(times.size, *plan.start.forces.shape))]
+
+
+def _steps(plan: Transition | RegraspPlan) -> tuple[Transition, ...]:
+    return plan.steps if isinstance(plan, RegraspPlan) else (plan,)
+
+
+def _columns(plan: Transition | RegraspPlan) -> list[str]:
+    if isinstance(plan, RegraspPlan):
+        return RegraspTable(plan).columns
+    return ["t", *([] if plan.turn is None else ["angle"]), *setpoint_columns(plan.grasp)]

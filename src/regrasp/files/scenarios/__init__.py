@@ -1,0 +1,1 @@
+"""Scenarios: what a person writes in a TOML file, and the way to its plan."""

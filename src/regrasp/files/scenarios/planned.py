@@ -1,0 +1,136 @@
+"""From a scenario to its plan."""
+
+from math import radians
+from typing import Any, Literal
+
+from regrasp.files.scenarios.regrasp import RegraspScenario
+from regrasp.files.scenarios.scenario import AnyScenario, Scenario
+from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
+from regrasp.files.scenarios.tasks import Change, Removal, Rotation
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.changes.finger_change import plan_addition, plan_removal
+from regrasp.planning.changes.rotation import plan_rotation
+from regrasp.planning.holds.sequences import MAX_TURN
+from regrasp.planning.regrasps.verbs import plan_regrasp
+from regrasp.plans.loads import LoadSeries
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.transition import Transition
+
+# Keys of a task that the planner takes under the same name.
+_STATE_OPTIONS = ("objective", "method", "max_force", "peak_ratio", "reserve", "balance_tolerance")
+_CHANGE_OPTIONS = (
+    *_STATE_OPTIONS,
+    "whole_objective",
+    "min_normal",
+    "path_objective",
+    "instants",
+    "facets",
+)
+_REGRASP_OPTIONS = (
+    "orientations",
+    "candidates",
+    "objective",
+    "states",
+    "min_distance",
+    "max_force",
+    "peak_ratio",
+    "reserve",
+    "step_duration",
+)
+_SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
+
+
+def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
+    """What a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
+    if isinstance(scenario, RegraspScenario):
+        return _regrasp(scenario)
+    if isinstance(scenario, SpaceRegraspScenario):
+        return _space_regrasp(scenario)
+    task, load = scenario.task, scenario.external
+    if isinstance(task, Rotation):
+        return _rotation(scenario, task)
+    options = _taken(task, _CHANGE_OPTIONS)
+    options["load"], options["rate_limit"] = load, task.rate_limit
+    options["scaling"] = task.time_scaling
+    if isinstance(load, LoadSeries):
+        options["scaling"] = task.scaling_lasting(load.duration)
+    elif task.rate_limit is not None and task.duration is None:
+        straight = options | {"rate_limit": None, "path_objective": None, "idle_time": None}
+        options["scaling"] = _planned(scenario, task, **straight).fastest(task.rate_limit).scaling
+    return _planned(scenario, task, **options, idle_time=task.idle_time)
+
+
+def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
+    task = scenario.task
+    return plan_regrasp(
+        scenario.outline.value,
+        scenario.start_grasp,
+        scenario.goal_grasp,
+        Wrench(scenario.load.force),
+        friction=scenario.friction,
+        goal_orientation=radians(task.goal_degrees),
+        least_margin=radians(task.least_margin_degrees),
+        weights=None if task.weights is None else task.weights.value,
+        arcs=None if task.arcs is None else [arc or None for arc in task.arcs],
+        max_turn=MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
+        one_finger=task.one_finger,
+        **_taken(task, _REGRASP_OPTIONS),
+    )
+
+
+def _space_regrasp(scenario: SpaceRegraspScenario) -> RegraspPlan:
+    task = scenario.task
+    return plan_regrasp(
+        scenario.object.value,
+        scenario.start_grasp,
+        scenario.goal_grasp,
+        Wrench(scenario.load.force),
+        friction=scenario.friction,
+        least_margin=radians(task.least_margin_degrees),
+        max_turn=radians(task.max_turn_degrees),
+        **_taken(task, _SPACE_REGRASP_OPTIONS),
+    )
+
+
+def _rotation(scenario: Scenario, task: Rotation) -> Transition:
+    whole = scenario.grasp
+    return plan_rotation(
+        _given(scenario, whole, "force") or whole,
+        task.angle,
+        axis=task.unit_axis,
+        load=scenario.wrench("start"),
+        end=_given(scenario, whole, "end_force"),
+        scaling=task.time_scaling,
+        **_taken(task, _STATE_OPTIONS),
+    )
+
+
+def _taken(task: Any, keys: tuple[str, ...]) -> dict[str, Any]:
+    return {key: getattr(task, key) for key in keys}
+
+
+def _planned(
+    scenario: Scenario, task: Change, *, idle_time: float | None = None, **options: Any
+) -> Transition:
+    whole = scenario.grasp
+    rest = whole.without(task.contact)
+    if isinstance(task, Removal):
+        start, end = _given(scenario, whole, "force"), _given(scenario, rest, "end_force")
+        return plan_removal(start or whole, task.contact, end=end, idle_from=idle_time, **options)
+    arriving = whole[task.contact]
+    after = rest.with_contact(arriving)
+    start, end = _given(scenario, rest, "force"), _given(scenario, after, "end_force")
+    return plan_addition(start or rest, arriving, end=end, idle_until=idle_time, **options)
+
+
+def _given(scenario: Scenario, grasp: Grasp, key: Literal["force", "end_force"]) -> GraspState | None:
+    """The state of ``grasp`` whose forces stand in the scenario, if they do: all of them, or none."""
+    forces = {entry.name: getattr(entry, key) for entry in scenario.contacts}
+    rows = [forces[name] for name in grasp.names]
+    if None in rows:
+        return None
+    load = scenario.wrench("start" if key == "force" else "end")
+    # beside soft fingers a point contact has a fourth number, too: no torque
+    return GraspState(grasp, load, [(*row, 0.0)[: grasp.width] for row in rows])

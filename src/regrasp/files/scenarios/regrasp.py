@@ -1,0 +1,200 @@
+"""The scenario of a whole regrasp: an outline, where the fingers start and where they are to be."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+
+from regrasp.errors import InvalidInput
+from regrasp.files.scenarios.keys import Positive, Vector
+from regrasp.files.scenarios.regrasp_task import CommonTask, Ended
+from regrasp.files.strict import Strict
+from regrasp.mechanics.contact import Contact
+from regrasp.outline.outline import Outline
+from regrasp.outline.parts import PARTS
+from regrasp.planning.holds.sequences import MAX_TURN
+from regrasp.planning.holds.weights import RegraspWeights
+
+Ring = Annotated[list[Vector], Field(min_length=3)]
+
+_SHAPES = ("vertices", "points", "ellipse", "part", "file")
+
+# A position farther from the outline than this fraction of its length is in other coordinates or units.
+_NEAR = 0.05
+
+# A goal this near to one of the orientations is that one [degrees].
+_SAME_DEGREES = 1e-6
+
+
+class Weight(Strict):
+    """The external force on the object, through its centre of mass and fixed in the world."""
+
+    force: Vector = Field(description="[N], x and y in the object frame before it turns")
+
+
+class OutlineEntry(Strict):
+    """The boundary of the object, in one of five ways."""
+
+    vertices: Ring | None = Field(None, description="[m], of a polygon, in either direction")
+    points: Ring | None = Field(None, description="[m], of a smooth curve through them")
+    ellipse: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = Field(
+        None, description="[m], half axes along x and y"
+    )
+    part: Literal["wrench", "cam", "gear", "bracket", "bottle", "puzzle_piece"] | None = Field(
+        None, description="a part that comes with regrasp"
+    )
+    file: Annotated[str, Field(min_length=1)] | None = Field(
+        None, description="SVG, DXF or coordinates (CSV, TXT, DAT), relative to the scenario"
+    )
+    holes: list[Ring] = Field(
+        [], description="[m], vertices of holes, of an outline from vertices, points or ellipse"
+    )
+    scale: Positive | None = Field(None, description="metres per unit of the file; 1 if absent")
+
+    _value: Outline = PrivateAttr()
+
+    @property
+    def value(self) -> Outline:
+        """The outline."""
+        return self._value
+
+    @model_validator(mode="after")
+    def _is_an_outline(self, info: ValidationInfo) -> "OutlineEntry":
+        given = [shape for shape in _SHAPES if getattr(self, shape) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"expected exactly one of {', '.join(_SHAPES)}, found {', '.join(given) or 'none of them'}"
+            )
+        problems = []
+        if self.holes and given[0] in ("part", "file"):
+            problems.append(f"holes go with vertices, points or ellipse; a {given[0]} has its own")
+        if self.scale is not None and given[0] != "file":
+            problems.append(f"scale goes with file, found {given[0]}")
+        if problems:
+            raise ValueError("\n".join(problems))
+        try:
+            self._value = self._made((info.context or {}).get("folder", Path()))
+        except (InvalidInput, ImportError) as error:
+            raise ValueError(str(error)) from None
+        return self
+
+    def _made(self, folder: Path) -> Outline:
+        if self.vertices is not None:
+            return Outline(self.vertices, self.holes)
+        if self.points is not None:
+            return Outline.smooth(self.points, self.holes)
+        if self.ellipse is not None:
+            return Outline.ellipse(*self.ellipse, holes=self.holes)
+        if self.part is not None:
+            return PARTS[self.part]()
+        return Outline.from_file(folder / str(self.file), scale=1.0 if self.scale is None else self.scale)
+
+
+class Places(Strict):
+    """Where three fingers touch: by arc lengths or by positions."""
+
+    arc_lengths: Annotated[list[float], Field(min_length=3, max_length=3)] | None = Field(
+        None, description="[m], counter-clockwise along the outline from its first vertex"
+    )
+    positions: Annotated[list[Vector], Field(min_length=3, max_length=3)] | None = Field(
+        None, description="[m], relative to the centre of mass; fingers touch at the nearest boundary points"
+    )
+
+    @model_validator(mode="after")
+    def _one_way_to_say_it(self) -> "Places":
+        if (self.arc_lengths is None) == (self.positions is None):
+            found = "neither" if self.positions is None else "both"
+            raise ValueError(f"expected either arc_lengths or positions, found {found}")
+        return self
+
+
+class Weights(Strict):
+    """What a sequence costs; the least cost is then looked for, not the fewest moves."""
+
+    moves: float = Field(1.0, ge=0, description="for each finger move")
+    turning: float = Field(0.0, ge=0, description="per radian that the object turns")
+    time: float = Field(0.0, ge=0, description="per second of the plan")
+    effort: float = Field(0.0, ge=0, description="for each hold times its least largest force, in loads")
+
+    @property
+    def value(self) -> RegraspWeights:
+        """The weights."""
+        return RegraspWeights(self.moves, self.turning, self.time, self.effort)
+
+    @model_validator(mode="after")
+    def _not_all_zero(self) -> "Weights":
+        try:
+            _ = self.value
+        except InvalidInput as error:
+            raise ValueError(str(error).removeprefix("weights: ")) from None
+        return self
+
+
+class RegraspTask(CommonTask):
+    """How to get from the start to the goal."""
+
+    orientations: int = Field(72, ge=1, description="angles of the object that are tried; 1 forbids turning")
+    goal_degrees: float = Field(
+        0.0, description="the object's angle in the end, counter-clockwise; one of the orientations"
+    )
+    candidates: int = Field(120, ge=1, description="points on the outline where fingers may touch")
+    max_turn_degrees: Annotated[float, Field(gt=0, lt=180)] | None = Field(
+        None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"
+    )
+    one_finger: bool = Field(False, description="whether one finger of a hold may carry the whole load")
+    arcs: Annotated[list[list[Vector]], Field(min_length=3, max_length=3)] | None = Field(
+        None,
+        description="[m], for each finger the arcs it may touch, counter-clockwise from one arc length to "
+        "another; an empty list is the whole outline",
+    )
+    weights: Weights | None = None
+
+    @model_validator(mode="after")
+    def _goal_is_tried(self) -> "RegraspTask":
+        step = 360 / self.orientations
+        if abs((self.goal_degrees + step / 2) % step - step / 2) > _SAME_DEGREES:
+            raise ValueError(
+                f"goal_degrees must be a multiple of 360 / orientations = {step:g}, got {self.goal_degrees:g}"
+            )
+        return self
+
+
+class RegraspScenario(Ended):
+    """A planar object with its outline, three fingers on it, and where they are to be."""
+
+    title: str | None = Field(None, description="shown above the plan")
+    friction: float = Field(ge=0, description="Coulomb coefficient all along the outline")
+    load: Weight
+    outline: OutlineEntry
+    start: Places
+    goal: Places
+    task: RegraspTask
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> "RegraspScenario":
+        problems = self._end_problems()
+        if problems:
+            raise ValueError("\n".join(problems))
+        return self
+
+    def _placed(self, end: Literal["start", "goal"]) -> tuple[str, list[Any], Callable[[Any], Contact]]:
+        places: Places = getattr(self, end)
+        if places.arc_lengths is not None:
+            return "arc_lengths", places.arc_lengths, self._at
+        return "positions", places.positions or [], lambda position: self._at(self._nearest(position))
+
+    def _at(self, arc_length: float) -> Contact:
+        return self.outline.value.contact_at(arc_length, friction=self.friction)
+
+    def _nearest(self, position: list[float]) -> float:
+        outline = self.outline.value
+        s = outline.nearest(np.array(position) + outline.centre_of_mass)
+        off = float(np.linalg.norm(outline.points(s) - position))
+        if off > _NEAR * outline.length:
+            raise InvalidInput(
+                f"({position[0]:g}, {position[1]:g}) is {off:.3g} m from the outline; "
+                f"positions are relative to its centre of mass, in metres"
+            )
+        return s

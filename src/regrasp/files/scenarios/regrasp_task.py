@@ -1,0 +1,76 @@
+"""What scenarios of whole regrasps have in common, in the plane and in space."""
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, Literal
+
+from pydantic import Field
+
+from regrasp.errors import InvalidInput
+from regrasp.files.scenarios.keys import PeakRatio, Positive, Reserve
+from regrasp.files.strict import Strict
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.planning.states.criteria import PEAK_RATIO, Objective
+
+
+class CommonTask(Strict):
+    """How states are chosen, what every hold must have, and the timing."""
+
+    kind: Literal["regrasp"]
+    objective: Objective = Field("angle", description="what the state of every hold is chosen for")
+    states: Literal["each", "joint"] = Field("each", description="chosen each by itself, or all together")
+    least_margin_degrees: float = Field(0.0, ge=0, description="angle margin every hold must have")
+    min_distance: float = Field(0.0, ge=0, description="[m], between two fingers that hold the object")
+    max_force: Positive | None = Field(None, description="limit on every force [N]")
+    peak_ratio: PeakRatio = PEAK_RATIO
+    reserve: Reserve = RESERVE
+    step_duration: Positive = Field(1.0, description="[s] of each step")
+    rate: Positive = Field(1000.0, description="set-points per second")
+
+
+class Ended(Strict):
+    """A scenario with a grasp at the start and one at the goal, given by places on the object."""
+
+    @cached_property
+    def start_grasp(self) -> Grasp:
+        """The contacts before the regrasp."""
+        return Grasp(self._contacts("start"))
+
+    @cached_property
+    def goal_grasp(self) -> Grasp:
+        """The contacts after it."""
+        return Grasp(self._contacts("goal"))
+
+    def _placed(self, end: Literal["start", "goal"]) -> tuple[str, list[Any], Callable[[Any], Contact]]:
+        """The key of an end's places, the places, and what makes a contact of one."""
+        raise NotImplementedError
+
+    def _contacts(self, end: Literal["start", "goal"]) -> list[Contact]:
+        key, places, made = self._placed(end)
+        contacts, problems = [], []
+        for i, place in enumerate(places):
+            try:
+                contacts.append(made(place))
+            except InvalidInput as error:
+                problems.append(f"{end}.{key}[{i}]{self._from}: {error}")
+        if problems:
+            raise InvalidInput("\n".join(problems))
+        return contacts
+
+    @property
+    def _from(self) -> str:
+        """Where places are counted from, if that must be said."""
+        return ""
+
+    def _end_problems(self, key: str = "") -> list[str]:
+        """What is wrong with both ends, a line each; ``key`` follows the end's name where none stands."""
+        problems = []
+        for end in ("start", "goal"):
+            try:
+                _ = self.start_grasp if end == "start" else self.goal_grasp
+            except InvalidInput as error:
+                lines = str(error).splitlines()
+                problems += [line if line.startswith(end) else f"{end}{key}: {line}" for line in lines]
+        return problems

@@ -1,0 +1,1 @@
+"""Directions and turns in space: tangents, quaternions, even spirals of directions."""

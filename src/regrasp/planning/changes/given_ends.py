@@ -1,0 +1,85 @@
+"""What planning starts from: given states balanced, limits carried along, the clock."""
+
+from functools import lru_cache
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.checks import number
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState, check_load
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.escape import infeasible
+from regrasp.plans.timing import TimeScaling
+
+BALANCE_TOLERANCE = 1e-3
+"""Default largest change of a typed-in force, as a fraction of the largest force, to reach equilibrium."""
+
+
+def balanced_start(state: GraspState, criteria: Criteria, tolerance: float, label: str) -> GraspState:
+    """A given state in exact equilibrium inside the cones less the reserve; ``label`` names it in errors."""
+    try:
+        balanced = state.balanced(reserve=criteria.reserve)
+    except Infeasible:
+        raise infeasible(state.grasp, state.load, criteria) from None
+    if balanced is state:
+        return state
+    change, largest = float(abs(balanced.forces - state.forces).max()), float(state.magnitudes.max())
+    if change > tolerance * largest:
+        raise InvalidInput(
+            f"{label}: the forces are no equilibrium inside the friction cones and limits; the nearest "
+            f"one differs by {change:.3g}, more than {tolerance:g} of the largest force "
+            f"{largest:.4g}; correct them, or allow more by balance_tolerance"
+        )
+    return balanced
+
+
+def grasp_and_load(start: GraspState | Grasp, load: Wrench | None) -> tuple[Grasp, Wrench]:
+    """The grasp and the load of a start, which may be a state or a grasp."""
+    if isinstance(start, GraspState):
+        if load is not None and load != start.load:
+            raise InvalidInput(f"the start state has the load {start.load!r}; leave load out, got {load!r}")
+        return start.grasp, start.load
+    if not isinstance(start, Grasp):
+        raise InvalidInput(f"start must be a GraspState or a Grasp, got {start!r}")
+    if load is None:
+        raise InvalidInput("a plan from a grasp needs the load: load=Wrench(force=[...])")
+    check_load(start, load)
+    return start, load
+
+
+def limited(grasp: Grasp, max_force: float | None) -> Grasp:
+    """The grasp with every force limited to ``max_force``, so that a plan carries its limits with it."""
+    if max_force is None:
+        return grasp
+    return Grasp(
+        with_limit(contact, max_force if contact.max_force is None else min(contact.max_force, max_force))
+        for contact in grasp
+    )
+
+
+def eased(grasp: Grasp, fraction: float) -> Grasp:
+    """The grasp with a fraction of every force limit, which leaves room for forces to grow in a turn."""
+    return Grasp(c if c.max_force is None else with_limit(c, fraction * c.max_force) for c in grasp)
+
+
+def with_limit(contact: Contact, limit: float) -> Contact:
+    """The same contact with another force limit [N]."""
+    return contact.changed(max_force=limit)
+
+
+def scaling_of(duration: float | None, scaling: TimeScaling | None) -> TimeScaling:
+    """T(t) from a duration [s] or a whole time function; one second if neither is given."""
+    if scaling is None:
+        return _spline(1.0 if duration is None else number(duration, "duration", above=0))
+    if duration is not None:
+        raise InvalidInput("scaling has a duration of its own; give one of duration and scaling")
+    if not isinstance(scaling, TimeScaling):
+        raise InvalidInput(f"scaling must be a TimeScaling, got {scaling!r}")
+    return scaling
+
+
+@lru_cache
+def _spline(duration: float) -> TimeScaling:
+    """One value for one duration, so that its polynomials are worked out once."""
+    return TimeScaling.spline(duration)

@@ -1,0 +1,205 @@
+"""Planning a path by a program: solved, moved into exact equilibrium, checked; or refused with the reason."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import Infeasible, SolverFailed
+from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.changes.path_program import PathTask, path_program
+from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.solving import SLACK
+from regrasp.programs import Solution, Status, solve
+
+# Where an answer breaks a rate or a least normal force by rounding, twice the breach is kept back next.
+_ATTEMPTS = 4
+
+
+def planned_path(
+    task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None = None
+) -> Array:
+    """The best path (K, n, d) [N], in exact equilibrium inside cones and limits at every instant.
+
+    objective: ``change``, ``effort``, ``peak`` or ``force``; of the paths with the least peak or the widest
+    margin the one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or
+    the limit that stands in the way.
+    """
+    slack = SLACK
+    for _ in range(_ATTEMPTS):
+        answer = _best(_kept(task, slack), objective, criteria, backend, facets)
+        forces = _exact(task, answer)
+        breach = _breach(task, forces)
+        if breach <= 0:
+            return forces
+        slack += 2 * breach
+    raise SolverFailed(
+        f"{backend}: the path breaks a rate limit or a least normal force by {breach:.2g} of it",
+        answer.program,
+        answer,
+    )
+
+
+def _best(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
+    if objective not in ("force", "peak"):
+        return _solved(task, objective, criteria, backend, facets)
+    margin = 0.0
+    if objective == "peak" or (task.limits == inf).any():
+        least = _solved(task, "peak", criteria, backend, facets)
+        ratio = 1 + 1e-6 if objective == "peak" else criteria.peak_ratio
+        task = replace(task, limits=np.minimum(task.limits, ratio * float(least.value[-1]) * task.unit))
+    if objective == "force":
+        widest = _solved(task, "force", criteria, backend, facets)
+        margin = float(widest.value[-1]) * task.unit
+        margin -= 1e-7 * abs(margin)
+    # Many paths are as good; of these the one of least change is a matter of the problem alone.
+    program = path_program(task, "change", least_margin=margin, facets=facets)
+    answer = solve(program, backend)
+    if answer.status is not Status.SOLVED:
+        raise SolverFailed(
+            f"{backend}: no path of least change among the best for {objective}", program, answer
+        )
+    return answer
+
+
+def _kept(task: PathTask, slack: float) -> PathTask:
+    keep = 1 - SLACK
+    return replace(
+        task,
+        frictions=keep * task.frictions,
+        limits=keep * task.limits,
+        rates=(1 - slack) * task.rates,
+        least_normals=(1 + slack) * task.least_normals,
+    )
+
+
+def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
+    program = path_program(task, objective, facets=facets)
+    try:
+        answer = solve(program, backend)
+    except SolverFailed:
+        reason = _why_not(task, criteria, backend, facets, proven=False)
+        if reason is None:
+            raise
+        raise reason from None
+    below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -1e-7
+    if answer.status is Status.SOLVED and not below:
+        return answer
+    proven = answer.status is Status.INFEASIBLE or below
+    raise _why_not(task, criteria, backend, facets, proven=proven) or SolverFailed(
+        f"{backend}: {answer.status.advice}", program, answer
+    )
+
+
+def _why_not(
+    task: PathTask, criteria: Criteria, backend: str, facets: int | None, *, proven: bool
+) -> Infeasible | None:
+    """The reason in words: an instant that cannot be held at all, or the limit that cannot be kept.
+
+    proven: whether a certificate says that there is no path. Without one a reason must prove itself.
+    """
+    for time, load, active in zip(task.times, task.loads, task.active, strict=True):
+        grasp = task.grasp.subset(np.flatnonzero(active).tolist())
+        wrench = Wrench.from_vector(load)
+        if not _holds(task, wrench, active):
+            reason = infeasible(grasp, wrench, criteria)
+            if reason.certificate is None and not proven:
+                return None
+            return Infeasible(f"at t = {time:.6g} s: {reason}", reason.certificate)
+    if (task.rates < inf).any():
+        least = solve(path_program(task, "rate", facets=facets), backend, throw=False)
+        if least.status is Status.SOLVED and least.value[-1] > 1 + 1e-6:  # itself a proof: a least value
+            return Infeasible(
+                f"the forces would have to change at {least.value[-1]:.4g} times the rate limits: allow "
+                f"faster changes, a longer duration or other ends"
+            )
+    if proven and (task.least_normals > 0).any():
+        freed = replace(task, least_normals=0 * task.least_normals)
+        if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
+            return Infeasible(
+                f"no path keeps every normal force at {task.least_normals.max():g} or more; without "
+                f"min_normal there is one"
+            )
+    if proven:
+        return Infeasible(
+            "no path keeps all of this together: every instant can be held, and no single limit is to blame; "
+            "loosen limits, allow more time, or give other ends"
+        )
+    return None
+
+
+def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
+    """Whether the active fingers can hold a load within cones and limits."""
+    used = np.flatnonzero(active)
+    grasp = task.grasp.subset(used.tolist())
+    start = np.zeros((used.size, grasp.dimension))
+    return (
+        nearest_equilibrium(
+            start,
+            grasp.matrix,
+            load.vector,
+            grasp.normals,
+            task.frictions[used],
+            task.limits[used],
+            grasp.size,
+        )
+        is not None
+    )
+
+
+def _exact(task: PathTask, answer: Solution) -> Array:
+    """The solver's path with every instant moved into exact equilibrium inside the cones."""
+    d = task.grasp.dimension
+    forces = np.zeros((task.times.size, len(task.grasp), d))
+    forces[0], forces[-1] = task.start, task.end
+    inner = forces[1:-1]
+    inner[:] = task.reference[1:-1]
+    inner[task.active[1:-1]] += answer.value[: d * int(task.active[1:-1].sum())].reshape(-1, d) * task.unit
+    wanted = forces.copy()
+    for pattern in np.unique(task.active[1:-1], axis=0):
+        rows = 1 + np.flatnonzero((task.active[1:-1] == pattern).all(axis=1))
+        used = np.flatnonzero(pattern)
+        forces[np.ix_(rows, used)] = _balanced(task, forces[np.ix_(rows, used)], task.loads[rows], used)
+    scale = max(task.unit, float(abs(wanted).max()))
+    if abs(forces - wanted).max() > 1e-5 * scale:
+        raise SolverFailed(
+            "the answer is no equilibrium inside the cones at some instant", answer.program, answer
+        )
+    return forces
+
+
+def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp]) -> Array:
+    """Forces (m, k, d) of some fingers at m instants, shifted into equilibrium; by Newton if that fails."""
+    grasp = task.grasp.subset(used.tolist())
+    mu, limits = task.frictions[used], task.limits[used]
+    weight = 1 / task.grasp.lengths
+    g, w = grasp.matrix * weight[:, None], loads * weight
+    flat = forces.reshape(len(forces), -1)
+    inverse = np.linalg.pinv(g)
+    for _ in range(2):
+        flat = flat - (flat @ g.T + w) @ inverse.T
+    moved = flat.reshape(forces.shape)
+    normal = (moved * grasp.normals).sum(axis=-1)
+    inside = grasp.cones.tangential(moved) <= mu * normal
+    inside &= (moved**2).sum(axis=-1) <= limits**2
+    scale = np.maximum(abs(flat).max(axis=1), abs(w).max(axis=1))
+    good = inside.all(axis=1) & (abs(flat @ g.T + w).max(axis=1) <= EQUILIBRIUM / 2 * scale)
+    for k in np.flatnonzero(~good):
+        exact = nearest_equilibrium(
+            forces[k], grasp.matrix, loads[k], grasp.normals, mu, limits, task.grasp.size or 1.0
+        )
+        moved[k] = np.inf if exact is None else exact
+    return moved
+
+
+def _breach(task: PathTask, forces: Array) -> float:
+    """The fraction by which the exact forces break a rate or a least normal force; not above 0 if none."""
+    speed = np.linalg.norm(np.diff(forces, axis=0), axis=-1) / np.diff(task.times)[:, None]
+    normal = (forces * task.grasp.normals).sum(axis=-1)
+    needed = task.active & (task.least_normals > 0)
+    short = (1 - normal / np.where(task.least_normals > 0, task.least_normals, 1.0))[needed]
+    return float(max((speed / task.rates - 1).max(), short.max(initial=-inf)))

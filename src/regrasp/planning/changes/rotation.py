@@ -1,0 +1,228 @@
+"""Planning the turn of an object in its fingers' hold."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from math import ceil, cos, pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.orientation.rotations import unit_axis
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.rotated_loads import load_between, still_part, turned_load
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.changes.given_ends import (
+    BALANCE_TOLERANCE,
+    balanced_start,
+    eased,
+    grasp_and_load,
+    limited,
+    scaling_of,
+)
+from regrasp.planning.states.choosing import choose_forces
+from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, Criteria
+from regrasp.plans.timing import TimeScaling
+from regrasp.plans.transition import Choice, Record
+from regrasp.plans.turn import Turn
+from regrasp.plans.turning import TurningTransition
+
+STEP = pi / 3
+"""Largest angle between two states of a turn if there are any: forces grow by 1 / cos(pi / 6) = 1.155."""
+
+# How often the step is halved where a state between two angles does not exist.
+_HALVINGS = 4
+# A step this near to pi lets forces grow without bound.
+_NEARLY_PI = 0.95 * pi
+
+
+def plan_rotation(
+    start: GraspState | Grasp,
+    angle: float,
+    *,
+    axis: ArrayLike | None = None,
+    load: Wrench | None = None,
+    end: GraspState | None = None,
+    objective: str = "angle",
+    method: str = "auto",
+    duration: float | None = None,
+    scaling: TimeScaling | None = None,
+    max_force: float | None = None,
+    peak_ratio: float = PEAK_RATIO,
+    reserve: float = RESERVE,
+    balance_tolerance: float = BALANCE_TOLERANCE,
+) -> TurningTransition:
+    """Forces over time while the object turns and all fingers stay.
+
+    start: the state to start from; or a grasp, whose state is then chosen under ``load``.
+    angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size.
+    axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in space
+    only. The load is fixed in the world, such as a weight; in the object frame it turns the other way.
+    end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
+    Everything else is as for ``plan_removal``.
+
+    Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
+    ``STEP`` and left out where none exists, as long as the gap is below pi. Where a part of the load does not
+    turn (a torque in the plane, a load along the axis in space), every one of them must exist, and one more
+    between each two, under a turning part that is larger by 1 / cos(step / 2); steps are halved down to
+    ``STEP`` / 16 until it does.
+    Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
+    """
+    criteria = Criteria(objective, max_force, peak_ratio, reserve)
+    turn = number(angle, "angle")
+    if turn == 0:
+        raise InvalidInput("angle must not be 0: there is nothing to turn")
+    number(balance_tolerance, "balance_tolerance", least=0)
+    clock = scaling_of(duration, scaling)
+    given, load = grasp_and_load(start, load)
+    about = _axis(axis, given)
+    grasp = limited(given, max_force)
+    count = max(ceil(abs(turn) / STEP - 1e-9), 1)
+    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9), about)
+    choices: list[Choice] = []
+    change = 0.0
+    first: Array
+    if isinstance(start, GraspState):
+        state = GraspState(grasp, load, start.forces)
+        balanced = balanced_start(state, criteria, balance_tolerance, "start")
+        first, change = balanced.forces, float(abs(balanced.forces - start.forces).max())
+    else:
+        best = chooser.at(0.0)
+        first = np.array(best.forces)
+        choices.append(Choice("start", objective, best.method, best.force_limits))
+    last_load = turned_load(load, turn, about)
+    if end is None:
+        best = chooser.at(turn)
+        last = np.array(best.forces)
+        choices.append(Choice("end", objective, best.method, best.force_limits))
+    else:
+        _refuse_other_end(end, given, last_load)
+        state = GraspState(grasp, last_load, end.forces)
+        balanced = balanced_start(state, criteria, balance_tolerance, "end")
+        last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
+    if still_part(load, about) is None:
+        knots = Turn(*_on_the_way(chooser, turn, count, first, last), about)
+    else:
+        knots = _along_arcs(chooser, turn, count, first, last)
+    plan = TurningTransition(
+        "rotation",
+        None,
+        GraspState(grasp, load, first),
+        GraspState(grasp, last_load, last),
+        clock,
+        Record(reserve, tuple(choices), change),
+        turn=knots,
+    )
+    _refuse_high_forces(plan)
+    return plan
+
+
+def _refuse_other_end(end: GraspState, grasp: Grasp, load: Wrench) -> None:
+    same = isinstance(end, GraspState) and end.grasp == grasp
+    if not same or abs(end.load.vector - load.vector).max() > 1e-9 * abs(load.vector).max():
+        raise InvalidInput(
+            f"end must be a state of the same contacts under the load seen from the turned object, {load!r}; "
+            f"got {end!r}"
+        )
+
+
+class _Chooser(NamedTuple):
+    """Chooses states of one grasp at angles of the object."""
+
+    grasp: Grasp
+    load: Wrench
+    criteria: Criteria
+    method: str
+    ease: float
+    """Fraction of the force limits that leaves room for the growth of forces between two states."""
+    axis: Array | None
+
+    def at(self, angle: float) -> ChosenForces:
+        """The best forces after a turn by ``angle``, within eased limits if there are any."""
+        return self.under(turned_load(self.load, angle, self.axis))
+
+    def under(self, load: Wrench) -> ChosenForces:
+        """The best forces under a load, within eased limits if there are any."""
+        grasp, criteria = self.grasp, self.criteria
+        if any(contact.max_force is not None for contact in grasp):
+            less = eased(grasp, self.ease)
+            try:
+                return choose_forces(less, load, replace(criteria, max_force=None), self.method)
+            except Infeasible:
+                pass  # the whole limits may do, and the path is checked in the end
+        return choose_forces(grasp, load, criteria, self.method)
+
+
+def _on_the_way(
+    chooser: _Chooser, turn: float, count: int, first: Array, last: Array
+) -> tuple[list[float], list[Array]]:
+    """Angles and forces at ``count`` equal steps, without those at which no state exists."""
+    knots, forces = [0.0], [first]
+    reason: Infeasible | None = None
+    for k in range(1, count):
+        angle = turn * k / count
+        try:
+            best = chooser.at(angle)
+        except Infeasible as refusal:
+            reason = reason or Infeasible(f"after a turn of {angle:.6g} rad: {refusal}", refusal.certificate)
+            continue
+        knots.append(angle)
+        forces.append(np.array(best.forces))
+    knots.append(turn)
+    forces.append(last)
+    widest = max(abs(b - a) for a, b in pairwise(knots))
+    if widest > _NEARLY_PI and reason is not None:
+        raise reason
+    return knots, forces
+
+
+def _along_arcs(chooser: _Chooser, turn: float, count: int, first: Array, last: Array) -> Turn:
+    """States at equal steps and one between each two, in halved steps until all exist."""
+    for halved in range(_HALVINGS + 1):
+        angles = [turn * k / (count << halved) for k in range((count << halved) + 1)]
+        forces = [first, *(_reached(chooser.at, a) for a in angles[1:-1]), last]
+        try:
+            middles = [_reached(partial(_between, chooser, b - a), (a + b) / 2) for a, b in pairwise(angles)]
+        except Infeasible as refusal:
+            reason = refusal
+            continue
+        return Turn(angles, forces, chooser.axis, middles)
+    raise reason
+
+
+def _between(chooser: _Chooser, step: float, middle: float) -> ChosenForces:
+    return chooser.under(load_between(chooser.load, middle - step / 2, middle + step / 2, chooser.axis))
+
+
+def _reached(choose: Callable[[float], ChosenForces], angle: float) -> Array:
+    try:
+        return np.array(choose(angle).forces)
+    except Infeasible as refusal:
+        raise Infeasible(f"after a turn of {angle:.6g} rad: {refusal}", refusal.certificate) from None
+
+
+def _axis(axis: ArrayLike | None, grasp: Grasp) -> Array | None:
+    """The axis of a turn, checked: one in space, none in the plane."""
+    if grasp.dimension == 2:
+        if axis is not None:
+            raise InvalidInput(f"an object in the plane turns in the plane; leave axis out, got {axis!r}")
+        return None
+    if axis is None:
+        raise InvalidInput("a turn in space needs the axis, such as axis=[1, 0, 0]")
+    return unit_axis(axis)
+
+
+def _refuse_high_forces(plan: TurningTransition) -> None:
+    for i, contact in enumerate(plan.grasp):
+        peak = float(plan.peaks[i])
+        if contact.max_force is not None and peak > contact.max_force:
+            raise Infeasible(
+                f"{contact.name} would need {peak:.4g} in the turn, above its limit {contact.max_force:g}; "
+                f"choose states with less force, or turn in smaller steps"
+            )

@@ -1,0 +1,1 @@
+"""The hold graph and the sequences of holds on it."""

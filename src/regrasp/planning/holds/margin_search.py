@@ -1,0 +1,105 @@
+"""The widest least margin that so many finger moves can keep.
+
+With F_i(h, o) the widest least margin of a way from the start to hold h at orientation o with i moves, and
+B_j(h, o) the same from the goal,
+
+    F_i+1 = best over all triples T of the ways inside T that begin with F_i,
+    widest margin with i + j + 1 moves = max over h, o of min(F_i(h, o), B_j(h, o)).
+
+Both ends advance in turn, the smaller one first, so that few triples are looked at for the usual few moves.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.planning.holds.stances import Places, Stances
+
+ALIKE = 1e-6
+"""Margins nearer than this [rad] are one: those of a graph are in single precision."""
+
+_NONE = -0.5  # below every margin, above the mark of no hold
+
+
+class Widest(NamedTuple):
+    """The widest least margin with so many moves, and how many of them each end made.
+
+    useful: (H,) holds that a way of that margin can pass.
+    """
+
+    moves: int
+    margin: float
+    forward: int
+    backward: int
+    useful: NDArray[np.bool_]
+
+
+class WideEnd:
+    """What is reached from one end, move by move.
+
+    known: (H, O) widest margins [rad], -1 where nothing is reached; top: (H,) the widest of each hold. fresh:
+    (H,) whether the last move widened it.
+    """
+
+    def __init__(self, fingers: Stances, ways: list[Places], o: int) -> None:
+        from regrasp.closed_form.compiled.hold_paths import widen
+
+        self.fingers, self.moves = fingers, 0
+        margins, rows = fingers.margins, fingers.rows
+        ends = [fingers.of(way) for way in ways]
+        known = np.full((rows.size, margins.shape[1]), -1.0, dtype=np.float32)
+        for holds in ends:
+            for h in holds:
+                known[h, o] = margins[rows[h], o]
+        result, inside = np.empty((fingers.fingers, margins.shape[1])), []
+        for holds in ends:
+            widen(holds, known, margins, rows, fingers.near, _NONE, result)
+            inside.append(result.astype(np.float32))
+        for holds, reached in zip(ends, inside, strict=True):
+            for h, row in zip(holds, reached, strict=True):
+                known[h] = np.maximum(known[h], row)
+        self.known, self.top = known, known.max(axis=1)
+        self.fresh = self.top >= 0
+
+    def move(self, floor: float) -> None:
+        """One finger move further, where that leads to margins above ``floor``."""
+        from regrasp.closed_form.compiled.hold_paths import threads
+
+        fingers = self.fingers
+        self.fresh = fingers.moves.widest(
+            np.flatnonzero(self.fresh), self.fresh, self.known, fingers.margins, fingers.rows, fingers.holds,
+            fingers.count, fingers.near, floor, threads(),
+        )  # fmt: skip
+        self.top[self.fresh] = self.known[self.fresh].max(axis=1)
+        self.moves += 1
+
+
+def widest_by_moves(fingers: Stances, start: Places, goal: Places, o: int, extra: int) -> Iterator[Widest]:
+    """The widest margin of the fewest moves, then that of more moves wherever it is wider.
+
+    The start is held at the first orientation, the goal at that of place ``o``. At most ``extra`` moves more
+    than the fewest.
+    """
+    goals = fingers.ways(goal)
+    start = fingers.start(start)
+    ends = WideEnd(fingers, [start], 0), WideEnd(fingers, goals, o)
+    floor, moves, fewest = _NONE, 0, None
+    together = ends[0].known[list(fingers.of(start)), o] if start in goals else np.empty(0)
+    while True:
+        margin = float(together.max(initial=-1.0))
+        if margin > floor:
+            fewest = moves if fewest is None else fewest
+            useful = np.maximum(ends[0].top, ends[1].top) >= margin - ALIKE
+            yield Widest(moves, margin, ends[0].moves, ends[1].moves, useful)
+            floor = margin + ALIKE
+        if fewest is not None and moves >= fewest + extra:
+            return
+        moves += 1
+        if moves > 1:
+            if not (ends[0].fresh.any() and ends[1].fresh.any()):
+                return  # one end has reached all it can
+            min(ends, key=lambda end: int(end.fresh.sum())).move(floor)
+        both = np.flatnonzero(np.minimum(ends[0].top, ends[1].top) > floor)
+        together = np.minimum(ends[0].known[both], ends[1].known[both])

@@ -1,0 +1,258 @@
+"""The hold graph: every pair of points that holds the load, at every orientation (docs/facts.md, 7)."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.criteria import PEAK_RATIO
+
+Filter = Callable[[Array, Array, float], NDArray[np.bool_]]
+"""(m, 2) first points, (m, 2) second points, the object's angle [rad] -> (m,) which pairs are allowed."""
+
+MOST_BYTES = 2 * 2**30
+"""Default memory for the margins of a hold graph."""
+
+
+@dataclass(frozen=True, eq=False)
+class WidestHolds:
+    """The widest hold of every pair over the angles of a graph.
+
+    margins: (P,) [rad]; negative where a pair holds at no angle. places: (P,) of the angles where they are
+    reached, the first of equals. holding: (O,) how many pairs hold at each angle.
+    """
+
+    margins: NDArray[np.float32]
+    places: NDArray[np.int32]
+    holding: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class HoldGraph:
+    """Pairs of contacts that hold a load through the centre of mass while the object has one of some angles.
+
+    contacts: candidates. load: at angle 0. angles: (O,) of the object [rad]. A hold's margin is the widest
+    least angle margin [rad] of its states, with forces below the contacts' own limits or, without one,
+    ``peak_ratio`` times the least peak force. min_distance: between two fingers [m]. keep: a filter of pairs
+    by reach or collision. one_finger: whether a pair also holds where one of its fingers carries the whole
+    load; otherwise both have to push (see ``single_fingers``). ``margins`` takes 4 bytes per pair and
+    angle, and raises ``InvalidInput`` where that is more than ``most_bytes``; ``widest`` does without.
+    """
+
+    contacts: tuple[Contact, ...]
+    load: Wrench
+    angles: Array
+    peak_ratio: float = PEAK_RATIO
+    min_distance: float = 0.0
+    keep: Filter | None = None
+    most_bytes: int = MOST_BYTES
+    one_finger: bool = False
+
+    def __post_init__(self) -> None:
+        if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
+            raise InvalidInput("a hold graph needs two planar contacts or more")
+        if not isinstance(self.load, Wrench):
+            raise InvalidInput(f"load must be a Wrench, got {self.load!r}; write Wrench(force=[...])")
+        if self.load.dimension != 2 or self.load.torque.any() or not self.load.force.any():
+            raise InvalidInput(
+                f"the load of a hold graph is a force through the centre of mass, not zero, got {self.load!r}"
+            )
+        if self.keep is not None and not callable(self.keep):
+            raise InvalidInput(f"keep must be a function of points and the angle, got {self.keep!r}")
+
+    @cached_property
+    def pairs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """Indices (P,) of the first and the second contact of every pair, the first below the second."""
+        from regrasp.closed_form.compiled.holds import pairs_of
+
+        return pairs_of(len(self.contacts))
+
+    @cached_property
+    def margins(self) -> NDArray[np.float32]:
+        """(O, P) margins [rad]; negative where a pair cannot hold the load or is not allowed."""
+        from regrasp.closed_form.compiled.holds import NO_HOLD, hold_margins
+
+        count, needed = len(self.contacts), 4 * self.pairs[0].size * len(self.angles)
+        if needed > self.most_bytes:
+            raise InvalidInput(
+                f"{count} points at {len(self.angles)} orientations need {needed / 2**30:.3g} GiB, more than "
+                f"{self.most_bytes / 2**30:.3g}; take fewer, allow more by most_bytes, or ask for widest()"
+            )
+        result = np.empty((len(self.angles), self.pairs[0].size), dtype=np.float32)
+        hold_margins(*self.pairs, self.loads, self._candidates, result)
+        result[:, ~self._apart] = NO_HOLD
+        for o, places in self._alone.items():
+            result[o, places] = self._shared(o, places)
+        if self.keep is not None:
+            for o, row in enumerate(result):
+                row[~self._kept(o)] = NO_HOLD
+        return result
+
+    def widest(self) -> WidestHolds:
+        """The widest hold of every pair over all angles, in memory that does not grow with the angles."""
+        from regrasp.closed_form.compiled.holds import NO_HOLD, STRETCH, widest_margins
+
+        size = self.pairs[0].size
+        margins, places = np.full(size, NO_HOLD, dtype=np.float32), np.zeros(size, dtype=np.int32)
+        holding = []
+        for some in self._together():
+            o, loads = some.start, self.loads[some]
+            counts = np.zeros((-(-size // STRETCH), len(loads)), dtype=np.int64)
+            allowed = self._apart if self.keep is None else self._apart & self._kept(o)
+            alone = self._alone.get(o, np.empty(0, dtype=np.int64))
+            alone = alone[allowed[alone]]
+            if alone.size:
+                allowed = allowed.copy()
+                allowed[alone] = False
+            widest_margins(*self.pairs, loads, self._candidates, allowed, o, margins, places, counts)
+            holding.append(counts.sum(axis=0))
+            if alone.size:
+                shared = self._shared(o, alone)
+                wider = shared > margins[alone]
+                margins[alone[wider]], places[alone[wider]] = shared[wider], o
+                holding[-1] += (shared >= 0).sum()
+        return WidestHolds(margins, places, np.concatenate(holding))
+
+    def _together(self) -> Iterator[slice]:
+        """Orientations to sweep at once: those with a filter or with ``_alone`` pairs go by themselves."""
+        begun = 0
+        for o in range(len(self.angles) + 1):
+            own = o < len(self.angles) and (self.keep is not None or o in self._alone)
+            if (own or o == len(self.angles)) and begun < o:
+                yield slice(begun, o)
+                begun = o
+            if own:
+                yield slice(o, o + 1)
+                begun = o + 1
+
+    @cached_property
+    def _alone(self) -> dict[int, NDArray[np.int64]]:
+        """Pairs with a contact that the load passes through, by orientation, where both have to push."""
+        from regrasp.planning.holds.single_fingers import held_alone
+
+        found: dict[int, NDArray[np.int64]] = {}
+        for o, load in enumerate(self.loads if not self.one_finger else ()):
+            through = held_alone(self._points, load)
+            if not through.size:
+                continue
+            first, second = self.pairs
+            pairs = np.flatnonzero((np.isin(first, through) | np.isin(second, through)) & self._apart)
+            if pairs.size:
+                found[o] = pairs
+        return found
+
+    def _shared(self, o: int, places: NDArray[np.int64]) -> NDArray[np.float32]:
+        """(m,) margins of pairs at an orientation, with both fingers at work."""
+        from regrasp.planning.holds.single_fingers import shared_margins
+
+        first, second = (ends[places] for ends in self.pairs)
+        return shared_margins(self.contacts, first, second, self.loads[o], self.peak_ratio).astype(np.float32)
+
+    @cached_property
+    def _points(self) -> Array:
+        return np.array([c.position for c in self.contacts])
+
+    @cached_property
+    def _apart(self) -> NDArray[np.bool_]:
+        """(P,) whether two contacts are far enough from each other."""
+        first, second = self.pairs
+        least = max(self.min_distance, 1e-9 * abs(self._points).max())
+        x, y = self._points.T
+        apart: NDArray[np.bool_] = np.hypot(x[first] - x[second], y[first] - y[second]) >= least
+        return apart
+
+    def _kept(self, o: int) -> NDArray[np.bool_]:
+        """(P,) what the filter says at an orientation."""
+        assert self.keep is not None
+        first, second = self.pairs
+        kept = self.keep(self._points[first], self._points[second], float(self.angles[o]))
+        if np.shape(kept) != first.shape:
+            raise InvalidInput(
+                f"keep must return which of {first.size} pairs are allowed, shape {first.shape}; it returned "
+                f"shape {np.shape(kept)}"
+            )
+        return np.asarray(kept, dtype=np.bool_)
+
+    @property
+    def _candidates(self) -> tuple[Any, ...]:
+        """Points, normals, frictions, limits and peak ratio, as the compiled loops take them."""
+        mu = np.array([c.friction for c in self.contacts])
+        limits = np.array([inf if c.max_force is None else c.max_force for c in self.contacts])
+        normals = np.array([c.normal for c in self.contacts])
+        return self._points, normals, mu, limits, float(self.peak_ratio)
+
+    @property
+    def loads(self) -> Array:
+        """(O, 2) forces of the load seen from the object at each angle [N]."""
+        return np.array([turned_load(self.load, a).force for a in self.angles.tolist()])
+
+    def pair(self, i: int, j: int) -> int:
+        """The place of a pair of contacts in ``pairs``."""
+        i, j = min(i, j), max(i, j)
+        return i * len(self.contacts) - i * (i + 1) // 2 + (j - i - 1)
+
+    def margin(self, i: int, j: int, o: int) -> float:
+        """The margin of a hold at the orientation of place ``o`` [rad]; negative where it does not hold."""
+        return float(self.margins[o, self.pair(i, j)])
+
+    def components(self, o: int | None = None) -> NDArray[np.int32]:
+        """(V,) the component of each contact at one orientation, or over all; -1 without any hold.
+
+        Two holds can be exchanged into one another, without turning or with turns, exactly when their points
+        are in one component.
+        """
+        from scipy.sparse import coo_matrix
+        from scipy.sparse.csgraph import connected_components
+
+        first, second = self.pairs
+        holds = (self.margins[o] if o is not None else self.margins.max(axis=0)) >= 0
+        count = len(self.contacts)
+        graph = coo_matrix((np.ones(holds.sum()), (first[holds], second[holds])), (count, count))
+        _, labels = connected_components(graph, directed=False)
+        used = np.zeros(count, dtype=bool)
+        used[first[holds]] = used[second[holds]] = True
+        return np.where(used, labels, -1).astype(np.int32)
+
+    def reachable(self, places: Iterable[int]) -> NDArray[np.bool_]:
+        """(V,) the contacts in holds that can be reached, with turns, from holds within ``places``."""
+        start = sorted(set(places))
+        labels = self.components()
+        own = {
+            int(labels[i])
+            for k, i in enumerate(start)
+            for j in start[k + 1 :]
+            if self.margins[:, self.pair(i, j)].max() >= 0
+        }
+        return np.isin(labels, sorted(own)) & (labels >= 0)
+
+    def row(self, i: int, o: int) -> Array:
+        """(V,) margins of contact i with every other at an orientation; negative where they do not hold."""
+        count = len(self.contacts)
+        others = np.arange(count)
+        low, high = np.minimum(others, i), np.maximum(others, i)
+        places = low * count - low * (low + 1) // 2 + (high - low - 1)
+        result = np.full(count, -1.0)
+        apart = others != i
+        result[apart] = self.margins[o, places[apart]]
+        return result
+
+
+def evenly(orientations: int) -> Array:
+    """(O,) angles of the object [rad] spread over a full turn, the first 0."""
+    if isinstance(orientations, bool) or not isinstance(orientations, int) or orientations < 1:
+        raise InvalidInput(f"orientations must be a whole number of at least 1, got {orientations!r}")
+    return 2 * np.pi * np.arange(orientations) / orientations
+
+
+def named(contacts: Sequence[Contact], prefix: str) -> list[Contact]:
+    """The contacts called prefix1, prefix2, ..."""
+    return [contact.named(f"{prefix}{i}") for i, contact in enumerate(contacts, 1)]

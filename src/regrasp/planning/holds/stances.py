@@ -1,0 +1,83 @@
+"""Where fingers can stand and which of their holds hold, for the searches over finger moves."""
+
+from abc import ABC, abstractmethod
+from copy import copy
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.mechanics.checks import Array
+
+if TYPE_CHECKING:
+    from regrasp.closed_form.compiled.hold_paths import Moves
+
+Places = tuple[int, ...]
+"""Contacts of a stance by their places in a graph, in the order of the fingers where that matters."""
+
+Holds = tuple[int, ...]
+"""The numbers of the holds of a stance: all its contacts but one."""
+
+
+class Stances(ABC):
+    """Stances of some fingers on contacts, all but one of which hold (``hold_paths``).
+
+    holds: how holds are numbered, as the compiled ``stances`` take it. rows: (H,) the row of margins of each
+    hold. margins: (rows, O) [rad], -1 where it does not hold. count: of contacts.
+    near: (O, k) from where the object may turn to an orientation in one step, the nearest first; turning:
+    (O, k) these turns [rad]; apart: (O, O) angles between all orientations [rad].
+    """
+
+    fingers: ClassVar[int]
+    holds: tuple[Any, ...]
+    rows: NDArray[np.int64]
+    margins: NDArray[np.float32]
+    count: int
+    near: NDArray[np.int64]
+    turning: Array
+    apart: Array
+
+    @property
+    @abstractmethod
+    def moves(self) -> "Moves":
+        """The compiled loops over stances."""
+
+    @abstractmethod
+    def of(self, contacts: Places) -> Holds:
+        """The holds of a stance."""
+
+    @abstractmethod
+    def points(self, hold: int) -> tuple[int, ...]:
+        """The contacts of a hold, rising."""
+
+    @abstractmethod
+    def renumbered(self, numbers: NDArray[np.int64], kept: NDArray[np.int64]) -> tuple[Any, ...]:
+        """``holds`` with other numbers, of the holds ``kept``."""
+
+    def start(self, contacts: Places) -> Places:
+        """The contacts in the order in which ``ways`` gives them."""
+        return tuple(sorted(contacts))
+
+    def ways(self, contacts: Places) -> list[Places]:
+        """How the fingers may take contacts: one way where it does not matter which is which."""
+        return [tuple(sorted(contacts))]
+
+    def only(self, useful: NDArray[np.bool_]) -> "Stances":
+        """The same with useful holds numbered alone; the last number stands for all others: no holds."""
+        few = copy(self)
+        kept = np.append(np.flatnonzero(useful), 0)
+        numbers = np.where(useful, np.cumsum(useful) - 1, kept.size - 1)
+        few.margins = self.margins[self.rows[kept]]
+        few.margins[-1] = -1.0
+        few.holds = self.renumbered(numbers, kept)
+        few.rows = np.arange(kept.size)
+        return few
+
+
+def nearest_turns(apart: Array, max_turn: float) -> tuple[NDArray[np.int64], Array]:
+    """(O, k) from where the object may turn to an orientation in one step, the nearest first; these turns."""
+    within = apart <= max_turn + 1e-9
+    order = np.argsort(np.round(apart, 9), axis=1, kind="stable")[:, : within.sum(axis=1).max()]
+    own = np.arange(len(order))[:, None]  # fills the row where fewer are near
+    near = np.where(np.take_along_axis(within, order, axis=1), order, own).astype(np.int64)
+    return near, np.take_along_axis(apart, near, axis=1)

@@ -1,0 +1,1 @@
+"""Planning whole regrasps, of planar objects and of solid ones."""

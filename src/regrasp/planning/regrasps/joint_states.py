@@ -1,0 +1,131 @@
+"""All states of a regrasp in one program: the widest worst margin, then the least change of force.
+
+The unknowns are the forces of every state, block after block, and t:
+
+    equilibrium, cones less t, limits     of every state, as in ``state_program`` for ``force``
+    margin    maximise t
+    change    minimise the sum of |f_k+1 - f_k|^2 over states that follow one another, with t given;
+              a contact that one of the two does not have counts with zero there
+"""
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import sparse
+
+from regrasp.errors import Infeasible, InvalidInput, SolverFailed
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.program import state_program
+from regrasp.planning.states.solving import SLACK, Chooser
+from regrasp.programs import Program, Status, solve
+
+# Fraction of the widest margin that the second program may give up.
+_MARGIN = 1e-7
+
+
+@dataclass(frozen=True)
+class SequenceState:
+    """One state of a sequence: its grasp and load, who its contacts are, and what they may use.
+
+    places: (n,) one name for each contact, by which it is known in the other states. frictions, limits [N],
+    counts: (n,); a contact that does not count may be idle, and its margin is left out of the worst.
+    """
+
+    grasp: Grasp
+    load: Wrench
+    places: tuple[Hashable, ...]
+    frictions: list[float]
+    limits: list[float]
+    counts: tuple[bool, ...]
+
+    @property
+    def weights(self) -> Array:
+        """(n,) distance to the edge of a cone per margin, 0 for contacts that do not count."""
+        return np.where(self.counts, np.sqrt(1 + np.array(self.frictions) ** 2), 0.0)
+
+
+def sequence_program(states: Sequence[SequenceState], unit: float, margin: float | None = None) -> Program:
+    """The program of the widest worst margin; or, with a least ``margin`` [N], that of the least change.
+
+    Unknowns are the forces of all states in order, in units of ``unit`` [N], then t for the first program.
+    """
+    if len(states) < 2:
+        raise InvalidInput(f"a sequence has two states or more, got {len(states)}")
+    parts = [
+        state_program(s.grasp, s.load, "force", s.frictions, s.limits, unit, weights=s.weights)
+        for s in states
+    ]
+    forces = sparse.block_diag([part.A[:, :-1] for part in parts], format="csc")
+    distances = sparse.vstack([part.A[:, -1] for part in parts], format="csc")
+    b = np.concatenate([part.b for part in parts])
+    blocks = tuple(block for part in parts for block in part.blocks)
+    width = forces.shape[1]
+    if margin is None:
+        q = np.zeros(width + 1)
+        q[-1] = -1.0
+        whole = sparse.hstack([forces, distances], format="csc")
+        return Program(sparse.csc_matrix((width + 1, width + 1)), q, whole, b, blocks)
+    change = _changes(states, width)
+    shifted = b - distances.toarray()[:, 0] * (margin / unit)
+    return Program(
+        sparse.csc_matrix(2 * change.T @ change), np.zeros(width), forces, shifted, blocks, size=1.0
+    )
+
+
+def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "clarabel") -> list[Array]:
+    """Forces (n, d) of every state [N], in exact equilibrium, by both programs in turn.
+
+    Raises ``Infeasible`` where some state has no forces, ``SolverFailed`` where the back end finds none.
+    """
+    kept = [
+        replace(
+            state,
+            frictions=[mu * (1 - SLACK) for mu in state.frictions],
+            limits=[limit * (1 - SLACK) for limit in state.limits],
+        )
+        for state in states
+    ]
+    widest = solve(sequence_program(kept, unit), backend)
+    if widest.status is Status.INFEASIBLE or (widest.status is Status.SOLVED and widest.value[-1] < -1e-7):
+        raise Infeasible("some state of the sequence has no forces inside cones and limits")
+    if widest.status is not Status.SOLVED:
+        raise SolverFailed(f"{backend}: {widest.status.advice}", widest.program, widest)
+    margin = float(widest.value[-1]) * unit
+    answer = solve(sequence_program(kept, unit, margin - _MARGIN * abs(margin)), backend)
+    if answer.status is not Status.SOLVED:
+        raise SolverFailed(f"{backend}: no least change at the widest margin", answer.program, answer)
+    result, begin = [], 0
+    for state in states:
+        shape = (len(state.grasp), state.grasp.width)
+        size = shape[0] * shape[1]
+        wanted = answer.value[begin : begin + size].reshape(shape) * unit
+        begin += size
+        chooser = Chooser(state.grasp, state.load, backend, None, state.limits)
+        forces = chooser.settled(wanted, state.frictions, state.limits)
+        if forces is None:
+            raise SolverFailed(f"{backend} answered forces far from equilibrium", answer.program, answer)
+        result.append(state.grasp.cones.forces(forces))
+    return result
+
+
+def _changes(states: Sequence[SequenceState], width: int) -> sparse.csr_matrix:
+    """Rows f_k+1 - f_k of every contact of two states that follow one another."""
+    d = states[0].grasp.width
+    starts = np.concatenate([[0], np.cumsum([d * len(state.grasp) for state in states])])
+    rows: list[int] = []
+    columns: list[int] = []
+    signs: list[float] = []
+    row = 0
+    for k in range(len(states) - 1):
+        for place in dict.fromkeys((*states[k].places, *states[k + 1].places)):
+            for at, sign in ((k, -1.0), (k + 1, 1.0)):
+                if place in states[at].places:
+                    first = int(starts[at]) + d * states[at].places.index(place)
+                    rows += range(row, row + d)
+                    columns += range(first, first + d)
+                    signs += [sign] * d
+            row += d
+    return sparse.csr_matrix((signs, (rows, columns)), (row, width))

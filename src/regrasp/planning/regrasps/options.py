@@ -1,0 +1,51 @@
+"""The options of a regrasp, in the plane and in space, and what both ask of them."""
+
+from math import pi
+from typing import Required, TypedDict
+
+from numpy.typing import ArrayLike
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import choice, number
+from regrasp.planning.holds.pairs import Filter
+from regrasp.planning.holds.triples import TripleFilter
+from regrasp.planning.holds.weights import RegraspWeights
+from regrasp.planning.regrasps.arcs import Arcs
+
+
+class RegraspOptions(TypedDict, total=False):
+    """The options of a regrasp; what they mean stands in ``RegraspProblem`` and ``SpaceRegraspProblem``.
+
+    ``goal_rotation``, ``facets`` and ``seed`` are of solids; ``goal_orientation``, ``arcs``, ``one_finger``
+    and ``weights`` of outlines.
+    """
+
+    friction: Required[float]
+    orientations: int
+    goal_orientation: float
+    candidates: int
+    objective: str
+    states: str
+    max_turn: float
+    least_margin: float
+    min_distance: float
+    keep: Filter | TripleFilter | None
+    arcs: Arcs | None
+    one_finger: bool
+    weights: RegraspWeights | None
+    max_force: float | None
+    peak_ratio: float
+    reserve: float
+    step_duration: float
+    goal_rotation: ArrayLike | None
+    facets: int
+    seed: int
+
+
+def check_steps(step_duration: float, states: str, max_turn: float, least_margin: float) -> None:
+    """Raises ``InvalidInput`` for options of the steps that are not what they must be."""
+    number(step_duration, "step_duration", above=0)
+    choice(states, "states", ("each", "joint"))
+    if not 0 < number(max_turn, "max_turn") < pi:
+        raise InvalidInput(f"max_turn must be above 0 and below pi, got {max_turn!r}")
+    number(least_margin, "least_margin", least=0)

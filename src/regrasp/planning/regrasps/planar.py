@@ -1,0 +1,234 @@
+"""What a regrasp is to do and under which limits: the hold graph, its ends, and the plans on it."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE, kept_friction
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline import Outline
+from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
+from regrasp.planning.holds.cost_search import cheapest
+from regrasp.planning.holds.pairs import Filter, HoldGraph, evenly
+from regrasp.planning.holds.planar_stances import Fingering
+from regrasp.planning.holds.sequences import MAX_TURN, Sequence, as_sequence, sequences
+from regrasp.planning.holds.stances import Places
+from regrasp.planning.holds.weights import RegraspWeights
+from regrasp.planning.regrasps.arcs import Arcs, arc_lengths, on_arcs
+from regrasp.planning.regrasps.ends import Ends
+from regrasp.planning.regrasps.options import check_steps
+from regrasp.planning.regrasps.remedies import allowed
+from regrasp.planning.regrasps.steps import chosen_states, regrasp_of, spread_states
+from regrasp.planning.regrasps.why_not import why_not
+from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.timing import TimeScaling
+
+# A goal nearer than this to one of the orientations is that one [rad].
+_SAME_ANGLE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class RegraspProblem:
+    """From one grasp of three fingers to another: what is asked, its hold graph, and the plans.
+
+    outline: an ``Outline``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and
+    at the contacts of ``start`` and ``goal``, three each, relative to the centre of mass.
+    load: a force through the centre of mass, seen from the object before it turns.
+    orientations: angles of the object that are tried, over a full turn; 1 forbids turning.
+    goal_orientation: the object's angle in the end [rad]; tried besides if it is none of these.
+    objective: what the state of every hold is chosen for, each by itself. states: ``each``, or ``joint``: all
+    states in one program, for the widest worst force margin and then the least change of force.
+    max_turn: largest turn during one step [rad].
+    least_margin: angle margin [rad] that every hold must have at the least; more moves may be needed for it.
+    min_distance [m], keep: which two fingers may hold together. one_finger: whether a pair also holds where
+    one of its fingers carries the whole load; by default both must push.
+    arcs: where each finger of the start may touch, an arc (lo, hi) in arc length [m], several, or None for
+    everywhere; see ``arcs``. Any finger whose arc allows it may take a contact of the goal.
+    weights: look for the least cost in place of the fewest moves and the widest margin.
+    max_force, peak_ratio, reserve: as for ``choose_state``. step_duration: [s] of each step.
+    Raises ``InvalidInput`` for arguments that are not what they must be.
+    """
+
+    outline: Outline
+    start: Grasp
+    goal: Grasp
+    load: Wrench
+    friction: float
+    orientations: int = 72
+    goal_orientation: float = 0.0
+    candidates: int = 120
+    objective: str = "angle"
+    states: str = "each"
+    max_turn: float = MAX_TURN
+    least_margin: float = 0.0
+    min_distance: float = 0.0
+    keep: Filter | None = None
+    arcs: Arcs | None = None
+    one_finger: bool = False
+    weights: RegraspWeights | None = None
+    max_force: float | None = None
+    peak_ratio: float = PEAK_RATIO
+    reserve: float = RESERVE
+    step_duration: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.outline, Outline):
+            raise InvalidInput(f"outline must be an Outline, got {self.outline!r}")
+        _ = self.criteria
+        check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
+        number(self.goal_orientation, "goal_orientation")
+        number(self.min_distance, "min_distance", least=0)
+        if not isinstance(self.one_finger, bool):
+            raise InvalidInput(f"one_finger must be True or False, got {self.one_finger!r}")
+        if self.weights is not None and not isinstance(self.weights, RegraspWeights):
+            raise InvalidInput(f"weights must be RegraspWeights, got {self.weights!r}")
+        _ = self.graph, self.allowed
+
+    @cached_property
+    def criteria(self) -> Criteria:
+        """Objective and limits of every choice of a state."""
+        return Criteria(self.objective, self.max_force, self.peak_ratio, self.reserve)
+
+    @cached_property
+    def ends(self) -> Ends:
+        """The contacts of both grasps, which are on the outline."""
+        ends = Ends(self.start, self.goal, self.max_force)
+        for contact in ends.contacts:
+            where = contact.position + self.outline.centre_of_mass
+            on = self.outline.points(self.outline.nearest(where))
+            ends.refuse_off(contact, on, self.outline.length, "outline")
+        return ends
+
+    @cached_property
+    def angles(self) -> Array:
+        """(O,) angles of the object that are tried [rad], the goal's among them."""
+        spread = evenly(self.orientations)
+        off = abs((spread - self.goal_orientation + pi) % (2 * pi) - pi)
+        if off.min() <= _SAME_ANGLE:
+            return spread
+        if self.orientations == 1:
+            raise InvalidInput(
+                f"orientations=1 forbids turning, but goal_orientation is {self.goal_orientation:g} rad"
+            )
+        return np.append(spread, self.goal_orientation % (2 * pi))
+
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contacts of both ends, then the candidates; with their whole friction."""
+        return self.ends.joined(
+            [
+                self.outline.contact_at(float(s), friction=self.friction, max_force=self.max_force)
+                for s in self.outline.sample(self.candidates)
+            ]
+        )
+
+    @cached_property
+    def graph(self) -> HoldGraph:
+        """The holds of these contacts."""
+        return self.graph_on(self.contacts)
+
+    def graph_on(self, contacts: Iterable[Contact]) -> HoldGraph:
+        """The holds of contacts, with the friction that the reserve leaves."""
+        kept = tuple(c.changed(friction=kept_friction(c.friction, self.reserve)) for c in contacts)
+        return HoldGraph(
+            kept, self.load, self.angles, self.peak_ratio, self.min_distance, self.keep,
+            one_finger=self.one_finger,
+        )  # fmt: skip
+
+    @cached_property
+    def allowed(self) -> NDArray[np.bool_] | None:
+        """(3, V) which finger may touch which contact; None where all may touch all."""
+        if self.arcs is None:
+            return None
+        positions = np.array([c.position for c in self.contacts])
+        allowed = on_arcs(self.arcs, arc_lengths(self.outline, positions), self.outline.length)
+        self.ends.check(allowed, self.arcs)
+        return allowed
+
+    @property
+    def places(self) -> tuple[Places, Places, int]:
+        """The start's and the goal's contacts in the graph, and the place of the last orientation."""
+        off = (self.graph.angles - self.goal_orientation + pi) % (2 * pi) - pi
+        return self.ends.start, self.ends.goal, int(np.argmin(abs(off)))
+
+    def sequences(self, extra: int = 0, max_turn: float | None = None) -> list[Sequence]:
+        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins.
+
+        max_turn: in place of the problem's [rad].
+        """
+        start, goal, last = self.places
+        turn = self.max_turn if max_turn is None else max_turn
+        if self.weights is None:
+            return sequences(
+                self.graph, start, goal, last, max_turn=turn, least_margin=self.least_margin,
+                allowed=self.allowed, extra=extra,
+            )  # fmt: skip
+        fingers = Fingering(self.graph, turn, self.least_margin, self.allowed)
+        costs = self.weights.costs(self.graph, fingers.margins, self.step_duration)
+        found = cheapest(fingers, costs, start, goal, last)
+        return [] if found is None else [as_sequence(fingers, found)]
+
+    def plans(self, extra: int = 0) -> list[RegraspPlan]:
+        """The plan of each sequence.
+
+        Forces grow while the object turns. Where force limits leave too little room for that, sequences of
+        smaller turns are looked for, of half the size each time.
+        Raises ``Infeasible`` where there is none, and says why.
+        """
+        if isinstance(extra, bool) or not isinstance(extra, int) or extra < 0:
+            raise InvalidInput(f"extra must be a whole number of at least 0, got {extra!r}")
+        if extra and self.weights is not None:
+            raise InvalidInput("extra trades moves against margin; leave it out, or weights")
+        turn, found = self.max_turn, self.sequences(extra)
+        if not found:
+            raise why_not(self)
+        while True:
+            try:
+                return [self._plan(sequence) for sequence in found]
+            except Infeasible as error:
+                turn /= 2
+                found = self.sequences(extra, turn)
+                if not found:
+                    raise Infeasible(
+                        f"the force limits leave no room for forces to grow while the object turns: {error}; "
+                        f"allow more force, or more orientations for smaller turns",
+                        error.certificate,
+                    ) from None
+
+    def allowing(self, force: float) -> "RegraspProblem":
+        """The same problem with at least this force [N] wherever it is limited."""
+        start, goal = (Grasp(allowed(c, force) for c in grasp) for grasp in (self.start, self.goal))
+        most = None if self.max_force is None else max(force, self.max_force)
+        return replace(self, start=start, goal=goal, max_force=most)
+
+    def bottleneck(self) -> Bottleneck | None:
+        """What limits the way, however many moves it takes; None where there is none. Not with ``arcs``."""
+        if self.arcs is not None:
+            raise InvalidInput("a bottleneck is that of fingers that may touch everywhere; leave arcs out")
+        return bottleneck(self.graph, *self.places, max_turn=self.max_turn)
+
+    def _plan(self, sequence: Sequence) -> RegraspPlan:
+        start, goal, _ = self.places
+        states = chosen_states(
+            sequence,
+            self.contacts,
+            start,
+            goal,
+            self.load,
+            self.graph.angles,
+            self.criteria,
+            self.one_finger,
+            self.least_margin,
+        )
+        if self.states == "joint":
+            states = spread_states(states, self.criteria, self.least_margin)
+        return regrasp_of(states, self.contacts, TimeScaling.spline(self.step_duration), self.reserve)

@@ -1,0 +1,180 @@
+"""What would make an impossible regrasp possible: friction, force, or an option less.
+
+More friction and larger force limits only add holds, so the least that is needed is found by bisection, each
+time on a graph built anew.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from math import ceil, floor, log10
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import Infeasible
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.changes.given_ends import with_limit
+from regrasp.planning.holds.bottleneck import bottleneck, connected
+from regrasp.planning.holds.pairs import Filter, HoldGraph
+from regrasp.planning.holds.sequences import sequences
+from regrasp.planning.states.criteria import Criteria
+
+MOST_FRICTION = 16.0
+"""Friction coefficients are tried up to this one, a cone of 86 degrees."""
+_MOST_LOADS = 1e4  # and force limits up to so many loads
+_DIGITS = 3
+
+
+class Asked(Protocol):
+    """What is read of a ``RegraspProblem``."""
+
+    @property
+    def graph(self) -> HoldGraph:
+        """The holds."""
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contacts of both ends, then the candidates."""
+
+    @property
+    def places(self) -> tuple[tuple[int, ...], tuple[int, ...], int]:
+        """The start's and the goal's contacts, and the place of the last orientation."""
+
+    @property
+    def allowed(self) -> NDArray[np.bool_] | None:
+        """(3, V) which finger may touch which contact, or None."""
+
+    @property
+    def criteria(self) -> Criteria:
+        """Objective and limits."""
+
+    @property
+    def load(self) -> Wrench:
+        """Before the object turns."""
+
+    @property
+    def max_turn(self) -> float:
+        """Of one step [rad]."""
+
+    @property
+    def least_margin(self) -> float:
+        """That every hold must have [rad]."""
+
+    @property
+    def min_distance(self) -> float:
+        """Between two fingers [m]."""
+
+    @property
+    def keep(self) -> Filter | None:
+        """A filter of pairs."""
+
+    @property
+    def one_finger(self) -> bool:
+        """Whether one finger of a hold may carry the load alone."""
+
+    def graph_on(self, contacts: Iterable[Contact]) -> HoldGraph:
+        """The holds of other contacts."""
+
+    def allowing(self, force: float) -> "Asked":
+        """The same with at least this force [N] where it is limited."""
+
+    def plans(self, extra: int = 0) -> Any:
+        """Plans, or ``Infeasible``."""
+
+
+def possible_on(problem: Asked, graph: HoldGraph, arcs: bool = True) -> bool:
+    """Whether any sequence exists on another graph of the same contacts, whatever its margins."""
+    start, goal, last = problem.places
+    if problem.allowed is None or not arcs:
+        return connected(graph, start, goal, last, problem.max_turn)
+    return bool(sequences(graph, start, goal, last, max_turn=problem.max_turn, allowed=problem.allowed))
+
+
+def widest_margin(problem: Asked) -> float:
+    """The widest least margin of any sequence [rad], where there is one."""
+    start, goal, last = problem.places
+    if problem.allowed is None:
+        found = bottleneck(problem.graph, start, goal, last, max_turn=problem.max_turn)
+        assert found is not None
+        return found.margin
+    every = sequences(
+        problem.graph, start, goal, last, max_turn=problem.max_turn, allowed=problem.allowed, extra=10**6
+    )
+    return every[-1].margin
+
+
+def friction_needed(problem: Asked) -> float | None:
+    """The least coefficient at every contact with which there is a sequence; None up to ``MOST_FRICTION``."""
+
+    def possible(mu: float) -> bool:
+        return possible_on(problem, problem.graph_on([raised(c, mu) for c in problem.contacts]))
+
+    return least_value(possible, min(c.friction for c in problem.contacts), MOST_FRICTION)
+
+
+def force_needed(problem: Asked) -> float | None:
+    """The least limit [N] in place of smaller ones with which there is a plan; None without limits."""
+
+    def possible(limit: float) -> bool:
+        return possible_on(problem, problem.graph_on([allowed(c, limit) for c in problem.contacts]))
+
+    least = least_force(possible, problem.contacts, problem.load)
+    if least is None:
+        return None
+    for share in (1.0, 1.01, 1.03, 1.1, 1.3, 2.0):  # forces grow while the object turns
+        limit = _rounded_up(share * least)
+        try:
+            problem.allowing(limit).plans()
+        except Infeasible:
+            continue
+        return limit
+    return None
+
+
+def least_force(possible: Callable[[float], bool], contacts: Iterable[Contact], load: Wrench) -> float | None:
+    """The least force limit [N] with which it is possible, of contacts some of which are limited; or None."""
+    limits = [c.max_force for c in contacts if c.max_force is not None]
+    return least_value(possible, min(limits), _MOST_LOADS * float(np.hypot(*load.force))) if limits else None
+
+
+def in_the_way(problem: Asked) -> Iterator[str]:
+    """Options that stand in the way, each by itself."""
+    graph = problem.graph
+    if not problem.one_finger and possible_on(problem, replace(graph, one_finger=True)):
+        yield "asking that both fingers push (one_finger=True)"
+    if problem.min_distance > 0 and possible_on(problem, replace(graph, min_distance=0.0)):
+        yield "min_distance"
+    if problem.keep is not None and possible_on(problem, replace(graph, keep=None)):
+        yield "keep"
+    if problem.allowed is not None and possible_on(problem, graph, arcs=False):
+        yield "arcs"
+
+
+def raised(contact: Contact, friction: float) -> Contact:
+    """The contact with at least this friction."""
+    mu = max(contact.friction, friction)
+    return Contact(contact.position, contact.normal, mu, max_force=contact.max_force, name=contact.name)
+
+
+def allowed(contact: Contact, force: float) -> Contact:
+    """The contact with at least this force, where it has a limit."""
+    return contact if contact.max_force is None else with_limit(contact, max(force, contact.max_force))
+
+
+def least_value(possible: Callable[[float], bool], now: float, most: float) -> float | None:
+    """The least value above ``now``, to three digits, with which it is possible; None up to ``most``."""
+    if not possible(most):
+        return None
+    low, high = now, most
+    while high - low > 10.0 ** (floor(log10(high)) - _DIGITS) and high > 1e-6 * most:
+        middle = (low + high) / 2 if low > high / 4 else max(high / 4, 2 * low)
+        low, high = (low, middle) if possible(middle) else (middle, high)
+    rounded = _rounded_up(high)
+    return rounded if possible(rounded) else high
+
+
+def _rounded_up(value: float) -> float:
+    unit = 10.0 ** (floor(log10(value)) + 1 - _DIGITS)
+    return float(f"{ceil(value / unit - 1e-9) * unit:.{_DIGITS + 1}g}")

@@ -1,0 +1,267 @@
+"""What a regrasp in space is to do: candidates on a mesh, directions of the load, plans on its holds."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, pairwise
+from math import atan2, cos, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.checks import Array, rotation
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.holds.sequences import Sequence, preferred
+from regrasp.planning.holds.spatial_stances import Quads
+from regrasp.planning.holds.stances import Places
+from regrasp.planning.holds.triples import FACETS, TripleFilter, TripleGraph, directions
+from regrasp.planning.regrasps.ends import Ends
+from regrasp.planning.regrasps.options import check_steps
+from regrasp.planning.regrasps.steps import chosen_state, kept, spread_states, step_between
+from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
+from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
+from regrasp.plans.timing import TimeScaling
+from regrasp.plans.transition import Transition
+
+if TYPE_CHECKING:
+    from regrasp.mesh.mesh import Mesh
+
+MAX_TURN = pi / 2
+"""Default largest turn during one step in space [rad]: forces grow by 1 / cos(turn / 2) = 1.41 at most."""
+# Directions nearer than this [rad] are one.
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceRegraspProblem:
+    """From one grasp of four fingers to another: what is asked, its triples that hold, and the plans.
+
+    mesh: a ``Mesh``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and at the
+    contacts of ``start`` and ``goal``, four each, relative to the centre of mass.
+    load: a force through the centre of mass, fixed in the world, seen from the object before it turns.
+    orientations: directions of the load, seen from the object, that are tried, spread over the sphere; the
+    start's and the goal's are tried besides. 1 forbids turning.
+    goal_rotation: (3, 3) from the object's frame in the end to its frame at the start; the same if not given.
+    objective: what the state of every hold is chosen for. states: ``each``, or ``joint``: all states in one
+    program, for the widest worst force margin and then the least change of force.
+    max_turn: largest turn during one step [rad], below pi. least_margin: angle margin [rad] that every hold
+    must have in its inner pyramids of ``facets`` faces. min_distance [m], keep: which three fingers may hold
+    together. seed: of the candidates. max_force, peak_ratio, reserve: as for ``choose_state``. step_duration:
+    [s] of each step.
+    Raises ``InvalidInput`` for arguments that are not what they must be.
+    """
+
+    mesh: "Mesh"
+    start: Grasp
+    goal: Grasp
+    load: Wrench
+    friction: float
+    orientations: int = 42
+    goal_rotation: ArrayLike | None = None
+    candidates: int = 40
+    objective: str = "angle"
+    states: str = "each"
+    max_turn: float = MAX_TURN
+    least_margin: float = 0.0
+    min_distance: float = 0.0
+    keep: TripleFilter | None = None
+    facets: int = FACETS
+    seed: int = 0
+    max_force: float | None = None
+    peak_ratio: float = PEAK_RATIO
+    reserve: float = RESERVE
+    step_duration: float = 1.0
+
+    def __post_init__(self) -> None:
+        _ = self.criteria, self.rotation
+        load = self.load
+        if not isinstance(load, Wrench) or load.dimension != 3 or load.torque.any() or not load.force.any():
+            raise InvalidInput(f"load must be a force in space through the centre of mass, got {load!r}")
+        check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
+        if isinstance(self.orientations, bool) or not isinstance(self.orientations, int):
+            raise InvalidInput(f"orientations must be a whole number, got {self.orientations!r}")
+        _ = self.directions, self.graph
+
+    @cached_property
+    def criteria(self) -> Criteria:
+        """Objective and limits of every choice of a state."""
+        return Criteria(self.objective, self.max_force, self.peak_ratio, self.reserve)
+
+    @cached_property
+    def rotation(self) -> Array:
+        """(3, 3) from the object's frame in the end to its frame at the start."""
+        return np.eye(3) if self.goal_rotation is None else rotation(self.goal_rotation, "goal_rotation")
+
+    @cached_property
+    def ends(self) -> Ends:
+        """The contacts of both grasps, which are on the mesh."""
+        ends = Ends(self.start, self.goal, self.max_force, fingers=4, dimension=3)
+        centre = self.mesh.centre_of_mass
+        for contact in ends.contacts:
+            on = self.mesh.nearest(contact.position + centre) - centre
+            ends.refuse_off(contact, on, float(self.mesh.size.max()), "mesh")
+        return ends
+
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contacts of both ends, then the candidates; with their whole friction."""
+        sampled = self.mesh.contacts(
+            self.candidates, friction=self.friction, max_force=self.max_force, seed=self.seed
+        )
+        return self.ends.joined(list(sampled))
+
+    @cached_property
+    def directions(self) -> Array:
+        """(O, 3) unit directions of the load seen from the object: at the start, in the end, and others."""
+        first = self.load.force / np.linalg.norm(self.load.force)
+        last = self.rotation.T @ first
+        turns = _angle(first, last) > _SAME
+        if self.orientations <= 1:
+            if self.orientations < 1:
+                raise InvalidInput(f"orientations must be at least 1, got {self.orientations}")
+            if turns:
+                raise InvalidInput("orientations=1 forbids turning, but goal_rotation turns the load")
+            return first[None]
+        given = [first, last] if turns else [first]
+        others = directions(self.orientations)[:, :3]
+        away = [all(_angle(other, one) > _SAME for one in given) for other in others]
+        return np.vstack([given, others[away]])
+
+    @cached_property
+    def graph(self) -> TripleGraph:
+        """The triples that hold the load in these directions."""
+        size = float(np.linalg.norm(self.load.force))
+        loads = np.pad(size * self.directions, ((0, 0), (0, 3)))
+        return TripleGraph(
+            self.contacts, loads, self.facets, self.peak_ratio, self.reserve, self.min_distance, self.keep
+        )
+
+    @property
+    def places(self) -> tuple[Places, Places, int]:
+        """The start's and the goal's contacts in the graph, and the place of the last direction."""
+        last = self.rotation.T @ self.directions[0]
+        return self.ends.start, self.ends.goal, int(_angle(self.directions[0], last) > _SAME)
+
+    def sequences(self, extra: int = 0) -> list[Sequence]:
+        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins."""
+        stances = Quads(self.graph, self.directions, self.max_turn, self.least_margin)
+        return preferred(stances, *self.places, extra)
+
+    def plans(self, extra: int = 0) -> list[SpaceRegraspPlan]:
+        """The plan of each sequence. Raises ``Infeasible`` where there is none, and says why."""
+        if isinstance(extra, bool) or not isinstance(extra, int) or extra < 0:
+            raise InvalidInput(f"extra must be a whole number of at least 0, got {extra!r}")
+        found = self.sequences(extra)
+        if not found:
+            raise self._why_not()
+        return [self._plan(sequence) for sequence in found]
+
+    def _plan(self, sequence: Sequence) -> SpaceRegraspPlan:
+        ways = [o for *_, o in sequence.holds]
+        whole = Criteria("force", self.max_force, self.peak_ratio, self.reserve)
+        start, goal, _ = self.places
+        states = [chosen_state(start, self.contacts, self._seen(0), whole)]
+        for k, (*places, o) in enumerate(sequence.holds):
+            beside = [
+                _angle(self.directions[a], self.directions[b])
+                for a, b in pairwise(ways[max(k - 1, 0) : k + 2])
+            ]
+            ease = cos(max(beside, default=0.0) / 2) * (1 - 1e-9)  # forces grow while the object turns
+            state = chosen_state(tuple(places), self.contacts, self._seen(o), self.criteria, ease)
+            if not state.all_work:
+                state = chosen_state(tuple(places), self.contacts, self._seen(o), whole, ease)
+            states.append(kept(state, self.contacts, self.criteria, ease, self.least_margin))
+        states.append(chosen_state(goal, self.contacts, self._seen(ways[-1]), whole))
+        if self.states == "joint":
+            states = spread_states(states, self.criteria, self.least_margin)
+        scaling, ways = TimeScaling.spline(self.step_duration), [0, *ways, ways[-1]]
+        steps = [
+            step_between(a, b, self.contacts, scaling, self.reserve, *self._turn(u, v))
+            for (a, b), (u, v) in zip(pairwise(states), pairwise(ways), strict=True)
+        ]
+        steps += self._last_turn(steps, scaling)
+        turned, rotations = accumulated(steps)
+        margin = min(state.margin for state in states[1:-1])
+        return SpaceRegraspPlan(tuple(steps), turned, margin, rotations=rotations)
+
+    def _seen(self, o: int) -> Wrench:
+        """The load seen in a direction; that of the start as it was given."""
+        if o == 0:
+            return self.load
+        return Wrench(float(np.linalg.norm(self.load.force)) * self.directions[o])
+
+    def _turn(self, a: int, b: int) -> tuple[float, Array | None]:
+        """The turn of the object that takes the load from one direction to another, and its axis."""
+        if a == b:
+            return 0.0, None
+        u, v = self.directions[a], self.directions[b]
+        across = np.cross(v, u)
+        return _angle(u, v), across / np.linalg.norm(across)
+
+    def _last_turn(self, steps: list[Transition], scaling: TimeScaling) -> list[Transition]:
+        """A turn about the load, which changes no force, to where the object is to be; none if it is."""
+        from regrasp.planning.changes.rotation import plan_rotation
+
+        _, rotations = accumulated(steps)
+        rest = rotations[-1].T @ self.rotation
+        axis = steps[-1].end.load.force / np.linalg.norm(self.load.force)
+        off = np.array([rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]])
+        angle = atan2(float(off @ axis), float(np.trace(rest)) - 1)
+        if abs(angle) <= _SAME:
+            return []
+        end = steps[-1].end
+        return [plan_rotation(end, angle, axis=axis, end=end, scaling=scaling, reserve=self.reserve)]
+
+    def _held(self, graph: TripleGraph, places: Places, o: int) -> bool:
+        """Whether any three of four fingers hold the load in a direction, with the least margin."""
+        triples = [graph.triple(*three) for three in combinations(sorted(places), 3)]
+        return bool((graph.margins[o, triples] >= max(self.least_margin, 0.0)).any())
+
+    def _in_the_way(self, places: Places, o: int) -> str | None:
+        """In words, an option without which three fingers of an end would hold; None where there is none."""
+        four = tuple(self.contacts[place] for place in places)
+        load = self.graph.loads[[o]]
+        free = tuple(c.changed(max_force=None) for c in four)
+        variants = {
+            "keep": (four, self.min_distance, None),
+            f"min_distance={self.min_distance:g}": (four, 0.0, self.keep),
+            "these force limits": (free, self.min_distance, self.keep),
+        }
+        for option, (contacts, apart, keep) in variants.items():
+            graph = TripleGraph(contacts, load, self.facets, self.peak_ratio, self.reserve, apart, keep)
+            if self._held(graph, tuple(range(4)), 0):
+                return option
+        return None
+
+    def _why_not(self) -> Infeasible:
+        """Which end has no hold, or how far the fingers come from both."""
+        start, goal, last = self.places
+        for what, places, o in (("start", start, 0), ("goal", goal, last)):
+            if not self._held(self.graph, places, o):
+                option = self._in_the_way(places, o)
+                if option is not None:
+                    return Infeasible(
+                        f"no three fingers of the {what} hold the load there with {option}; without it "
+                        f"they do"
+                    )
+                wanted = f" with a margin of {self.least_margin:.4g} rad" if self.least_margin else ""
+                return Infeasible(
+                    f"no three fingers of the {what} hold the load there{wanted} (in inner pyramids of "
+                    f"{self.graph.facets} facets), so none of its fingers can leave or arrive; more "
+                    f"friction, other contacts or more facets may do"
+                )
+        holding = int((self.graph.margins >= 0).any(axis=0).sum())
+        return Infeasible(
+            f"no sequence of holds leads from the start to the goal on {len(self.contacts)} points and "
+            f"{len(self.directions)} directions of the load, of which {holding} triples hold one; try more "
+            f"candidates, orientations, facets or friction, a larger max_turn, or a smaller least_margin"
+        )
+
+
+def _angle(a: Array, b: Array) -> float:
+    """Between two unit vectors [rad], to rounding."""
+    return atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))

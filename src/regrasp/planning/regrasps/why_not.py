@@ -1,0 +1,170 @@
+"""Why there is no sequence of holds, and what would make one possible."""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from math import degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import Infeasible, RegraspError, SolverFailed
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.planning.regrasps.remedies import (
+    MOST_FRICTION,
+    Asked,
+    allowed,
+    force_needed,
+    friction_needed,
+    in_the_way,
+    least_force,
+    least_value,
+    possible_on,
+    raised,
+    widest_margin,
+)
+from regrasp.planning.states.choosing import choose_forces
+from regrasp.planning.states.criteria import Criteria
+
+
+@dataclass(frozen=True)
+class RegraspObstacle:
+    """Why no sequence of holds leads from a start to a goal; the ``certificate`` of its ``Infeasible``.
+
+    start, goal: components of the hold graph, over all orientations, of the contacts that hold at each end;
+    -1 stands for contacts without any hold. friction: with at least this coefficient at every contact there
+    is a sequence [-]. max_force: with this limit in place of smaller ones there is one [N]. margin: the
+    widest least margin of any sequence where a least margin is asked for [rad]. Each None where it is not
+    what is missing, or where nothing up to a friction of 16, or limits of ten thousand loads, would do.
+    without: options that alone would leave a sequence if they were not given.
+    """
+
+    start: tuple[int, ...]
+    goal: tuple[int, ...]
+    friction: float | None = None
+    max_force: float | None = None
+    margin: float | None = None
+    without: tuple[str, ...] = ()
+
+
+def why_not(problem: Asked) -> Infeasible:
+    """The error that says why a problem has no plan."""
+    unheld = _unheld_end(problem)
+    if unheld is not None:
+        return unheld
+    graph, (start, goal, last) = problem.graph, problem.places
+    parts = [_components(graph, places, o) for places, o in ((start, 0), (goal, last))]
+    if problem.least_margin > 0 and possible_on(problem, graph):
+        margin = widest_margin(problem)
+        return Infeasible(
+            f"no sequence of holds keeps angle margins of {problem.least_margin:.4g} rad; the widest worst "
+            f"margin on the sampled points and orientations is {margin:.4g} rad",
+            RegraspObstacle(parts[0], parts[1], margin=margin),
+        )
+    obstacle = RegraspObstacle(
+        parts[0],
+        parts[1],
+        friction_needed(problem),
+        force_needed(problem),
+        without=tuple(in_the_way(problem)),
+    )
+    return Infeasible(f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}", obstacle)
+
+
+def _components(graph: HoldGraph, places: tuple[int, ...], o: int) -> tuple[int, ...]:
+    """The components of an end's points that hold there, or of all its points if none do."""
+    held = {v for i in places for j in places if i != j and graph.margin(i, j, o) >= 0 for v in (i, j)}
+    component = graph.components()
+    return tuple(sorted({int(component[i]) for i in held or places}))
+
+
+def _reason(problem: Asked, start: tuple[int, ...], goal: tuple[int, ...]) -> str:
+    graph, (*ends, last) = problem.graph, problem.places
+    for what, places, o in (("start", ends[0], 0), ("goal", ends[1], last)):
+        pairs = [graph.pair(i, j) for k, i in enumerate(places) for j in places[k + 1 :]]
+        held: NDArray[np.bool_] = np.any(graph.margins[:, pairs] >= 0, axis=1)
+        if not held[o]:
+            some = ", ".join(f"{degrees(a):.4g}" for a in graph.angles[held][:4])
+            more = ", ..." if held.sum() > 4 else ""
+            where = f"only at {some}{more} deg" if some else "and at no other orientation"
+            return (
+                f"no two fingers of the {what} hold the load at {degrees(graph.angles[o]):.4g} deg, "
+                f"{where}, so none of its fingers can leave or arrive"
+            )
+    count = int((graph.margins.max(axis=0) >= 0).sum())
+    common = tuple(sorted(set(start) & set(goal) - {-1}))
+    apart = "the turns between are too large" if problem.allowed is None else "the arcs keep them apart"
+    where = (
+        f"both ends have points in component {_listed(common)}, but {apart}"
+        if common
+        else f"the start's points are in component {_listed(start)} and the goal's in {_listed(goal)}"
+    )
+    return (
+        f"no sequence of holds leads from the start to the goal: on {len(graph.contacts)} points and "
+        f"{len(graph.angles)} orientations ({count} pairs hold at one of them) {where}"
+    )
+
+
+def _listed(components: tuple[int, ...]) -> str:
+    return " and ".join("none" if c < 0 else str(c) for c in components)
+
+
+def _remedy(problem: Asked, obstacle: RegraspObstacle) -> str:
+    now = sorted({c.friction for c in problem.contacts})
+    given = f"{now[0]:g}" if len(now) == 1 else f"{now[0]:g} to {now[-1]:g}"
+    ways = []
+    if obstacle.friction is not None:
+        ways.append(f"with friction {obstacle.friction:g} instead of {given}")
+    if obstacle.max_force is not None:
+        ways.append(f"with force limits of {obstacle.max_force:g}")
+    ways += [f"without {option}" for option in obstacle.without]
+    if not ways:
+        return f"no friction up to {MOST_FRICTION:g} would do; try more candidates or orientations"
+    return f"there would be one {', or '.join(ways)}"
+
+
+def _unheld_end(problem: Asked) -> Infeasible | None:
+    """The error of an end that even three fingers cannot hold."""
+    graph, (start, goal, last) = problem.graph, problem.places
+    for what, places, o in (("start", start, 0), ("goal", goal, last)):
+        load = turned_load(problem.load, float(graph.angles[o]))
+        contacts = [problem.contacts[i] for i in places]
+        reason = _refusal(contacts, load, problem.criteria)
+        if isinstance(reason, Infeasible):
+            held = partial(_held_with, contacts, load, problem.criteria)
+            friction = least_value(
+                lambda mu: held(friction=mu),  # noqa: B023
+                min(c.friction for c in contacts),
+                MOST_FRICTION,
+            )
+            force = least_force(lambda limit: held(force=limit), contacts, problem.load)  # noqa: B023
+            ways = [] if friction is None else [f"with friction {friction:g}"]
+            ways += [] if force is None else [f"with force limits of {force:g}"]
+            needs = (
+                f"they would {' or '.join(ways)}" if ways else f"no friction up to {MOST_FRICTION:g} would do"
+            )
+            return Infeasible(
+                f"the fingers of the {what} cannot hold the load at {degrees(graph.angles[o]):.4g} deg: "
+                f"{reason}; {needs}",
+                reason.certificate,
+            )
+    return None
+
+
+def _refusal(contacts: list[Contact], load: Wrench, criteria: Criteria) -> RegraspError | None:
+    try:
+        choose_forces(Grasp(contacts), load, replace(criteria, objective="force"))
+    except (Infeasible, SolverFailed) as error:  # at the very edge of its cones a grasp may be undecided
+        return error
+    return None
+
+
+def _held_with(
+    contacts: list[Contact], load: Wrench, criteria: Criteria, friction: float = 0.0, force: float = 0.0
+) -> bool:
+    """Whether a grasp holds with at least this friction, and at least this force where it is limited."""
+    stronger = [allowed(raised(c, friction), force) for c in contacts]
+    return _refusal(stronger, load, replace(criteria, max_force=None)) is None

@@ -1,0 +1,1 @@
+"""Choosing the forces of a grasp under a load."""

@@ -1,0 +1,147 @@
+"""Closed forms for millions of two-finger grasps at once."""
+
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.choice import OBJECTIVES
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, choice, number
+from regrasp.planning.states.criteria import PEAK_RATIO, UNBOUNDED
+
+# The arguments of a batch in order, each with the size of its last axis (1: a number).
+_SIZES = {
+    "r1": 2, "n1": 2, "mu1": 1, "r2": 2, "n2": 2, "mu2": 1, "force": 2, "torque": 1, "limit1": 1, "limit2": 1,
+}  # fmt: skip
+
+
+def locus_intervals(
+    r1: ArrayLike,
+    n1: ArrayLike,
+    mu1: ArrayLike,
+    r2: ArrayLike,
+    n2: ArrayLike,
+    mu2: ArrayLike,
+    force: ArrayLike,
+    torque: ArrayLike = 0.0,
+) -> tuple[Array, Array]:
+    """Ends (lo, hi) of the squeeze interval of many pairs of planar contacts [N].
+
+    r1, r2: (..., 2) positions; n1, n2: (..., 2) normals of any length; mu1, mu2: (...) frictions;
+    force (..., 2) and torque (...) of the load. Leading shapes broadcast; lo and hi have that shape.
+    An empty locus is lo = inf, hi = -inf. The same function as ``EquilibriumLocus.interval``, compiled by
+    Numba on the first call (seconds, then cached) and run on all cores.
+    Raises ``InvalidInput`` for wrong shapes, numbers that are not finite, zero normals, negative
+    frictions and coincident contacts.
+    """
+    arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque)
+    from regrasp.closed_form.compiled import two_fingers as compiled
+
+    lo, hi = np.empty(shape), np.empty(shape)
+    if compiled.intervals(*_blocks(arrays, compiled.BLOCK), whole, lo.reshape(-1), hi.reshape(-1)):
+        _refuse_bad_values(arrays)
+    return lo, hi
+
+
+def best_squeezes(
+    r1: ArrayLike,
+    n1: ArrayLike,
+    mu1: ArrayLike,
+    r2: ArrayLike,
+    n2: ArrayLike,
+    mu2: ArrayLike,
+    force: ArrayLike,
+    torque: ArrayLike = 0.0,
+    *,
+    objective: str = "angle",
+    max_force: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+    peak_ratio: float = PEAK_RATIO,
+) -> Array:
+    """The best squeeze of many pairs of planar contacts [N]; NaN where no state exists.
+
+    Arguments as for ``locus_intervals``. ``max_force`` limits the forces: (...) for both, or a tuple of two
+    (...), one for each contact; infinite for none. Without it the objectives ``angle`` and ``force`` limit
+    them to ``peak_ratio`` times the least peak force of each pair. The full friction is used: pass
+    ``mu * (1 - reserve)`` to keep a reserve.
+    """
+    choice(objective, "objective", OBJECTIVES)
+    number(peak_ratio, "peak_ratio", least=1)
+    limits: tuple[ArrayLike, ...] = max_force if isinstance(max_force, tuple) else (max_force, max_force)
+    if len(limits) != 2:
+        raise InvalidInput(f"max_force must be one limit or a tuple of two, got a tuple of {len(limits)}")
+    limit1, limit2 = (inf if limit is None else limit for limit in limits)
+    arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque, limit1, limit2)
+    from regrasp.closed_form.compiled import two_fingers as compiled
+
+    x = np.empty(shape)
+    blocks = _blocks(arrays, compiled.BLOCK)
+    if compiled.squeezes(*blocks, OBJECTIVES.index(objective), float(peak_ratio), whole, x.reshape(-1)):
+        _refuse_bad_values(arrays)
+        if objective in UNBOUNDED:
+            _refuse_endless(objective, *arrays[6:])
+    return x
+
+
+def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...]]:
+    """Flat arrays of one value, or one for every grasp; which of them are whole; the common shape."""
+    arrays, leading = [], []
+    for (name, size), argument in zip(_SIZES.items(), arguments, strict=False):
+        try:
+            value = np.asarray(argument, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InvalidInput(f"{name} must be an array of numbers, got {type(argument).__name__}") from None
+        if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
+            raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
+        arrays.append(value)
+        leading.append(value.shape[:-1] if size == 2 else value.shape)
+    try:
+        shape = np.broadcast_shapes(*leading)
+    except ValueError:
+        shapes = ", ".join(f"{n} {s}" for n, s in zip(_SIZES, leading, strict=False))
+        raise InvalidInput(f"leading shapes must broadcast, got {shapes}") from None
+    flat, whole = [], []
+    for value, lead, size in zip(arrays, leading, _SIZES.values(), strict=False):
+        single = int(np.prod(lead)) == 1 and shape != ()
+        if not single:
+            value = np.broadcast_to(value, (*shape, 2) if size == 2 else shape)
+        flat.append(np.ascontiguousarray(value).reshape(-1))
+        whole.append(0 if single else 1)
+    return flat, np.array(whole), shape
+
+
+def _refuse_bad_values(arrays: list[Array]) -> None:
+    """Name what is wrong with the numbers; the compiled loops say only that something may be."""
+    for (name, size), flat in zip(_SIZES.items(), arrays, strict=False):
+        value = flat.reshape(-1, size)
+        if name.startswith("limit"):
+            if not (value > 0).all():
+                raise InvalidInput("max_force must be greater than 0 everywhere")
+            continue
+        if not np.isfinite(value).all():
+            raise InvalidInput(
+                f"{name} must be finite, got {int((~np.isfinite(value)).sum())} entries that are not"
+            )
+        if name in ("n1", "n2") and not value.any(axis=-1).all():
+            raise InvalidInput(f"{name} must not be zero; give the direction that points into the object")
+        if name in ("mu1", "mu2") and (value < 0).any():
+            raise InvalidInput(f"{name} must be at least 0 everywhere")
+    if (arrays[0].reshape(-1, 2) == arrays[3].reshape(-1, 2)).all(axis=-1).any():
+        raise InvalidInput("r1 and r2 coincide in at least one pair; place contacts at different points")
+
+
+def _refuse_endless(objective: str, force: Array, torque: Array, limit1: Array, limit2: Array) -> None:
+    idle = ~force.reshape(-1, 2).any(axis=-1) & (torque == 0)
+    if (idle & (np.isinf(limit1) | np.isinf(limit2))).any():
+        raise InvalidInput(f"objective {objective!r} under a zero load needs max_force")
+
+
+def _blocks(arrays: list[Array], size: int) -> list[Array]:
+    """One value becomes a block of equal values, which serves every block of grasps.
+
+    All read-only, whether ours or a view of the caller's: Numba compiles anew for every mix of both.
+    """
+    blocks = [np.tile(v, size) if v.size == w else v for v, w in zip(arrays, _SIZES.values(), strict=False)]
+    for block in blocks:
+        block.setflags(write=False)
+    return blocks

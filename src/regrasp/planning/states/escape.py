@@ -1,0 +1,152 @@
+"""Finding the escape twist of a load that a grasp cannot hold.
+
+The finger wrenches nearest to balancing the load leave the gap rho = -w_ext - G f. Nothing the contacts can
+add points along rho, or it would bring them nearer; so -rho is the twist sought (separating hyperplane).
+"""
+
+from math import inf
+
+import numpy as np
+
+from regrasp.errors import Infeasible
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.separation import cleared, gap_left
+
+# Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
+_REACHES = (1e2, 1e4)
+_NEARER = 0.1
+# A load that does less than this fraction of work along a free motion does none.
+_WORK = 1e-9
+
+
+def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
+    """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
+    names = ", ".join(grasp.names)
+    loose = loose_twist(grasp, load)
+    if loose is not None:
+        return Infeasible(
+            f"no forces of {names} balance {load!r}: none resists {grasp.freedom}, about which the "
+            f"load has a torque; the object escapes by {loose}",
+            loose,
+        )
+    full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
+    frictions, limits = full.frictions(grasp), full.limits(grasp)
+    twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
+    if twist is not None:
+        return Infeasible(
+            f"no forces of {names} inside their friction cones balance {load!r}: "
+            f"the object escapes by {twist}",
+            twist,
+        )
+    twist = escape_twist(grasp, load, frictions, limits) if min(limits) < inf else None
+    if twist is not None:
+        bounds = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, limits, strict=True) if f < inf)
+        return Infeasible(
+            f"no forces of {names} inside their friction cones and force limits ({bounds}) balance {load!r}: "
+            f"the object escapes by {twist}; the cones alone would hold it with larger forces",
+            twist,
+        )
+    limit = (
+        _only_in_the_limit(grasp, load, frictions) if grasp.dimension == 3 and min(limits) == inf else None
+    )
+    if limit is not None:
+        return Infeasible(
+            f"no forces of {names} inside their friction cones balance {load!r}, but only in the limit: "
+            f"forces of {_REACHES[0]:g} times the load miss it by {limit[0]:.2g} of the load, of "
+            f"{_REACHES[1]:g} times by {limit[1]:.2g}, so no motion proves it; the contacts would "
+            f"need a little more friction"
+        )
+    return Infeasible(
+        f"no forces of {names} that balance {load!r} were found with {criteria.reserve:g} of the friction "
+        f"kept in reserve, and no motion proves that there are none without it: the load needs more friction "
+        f"than that leaves, or is at the limit of what they can hold; choose a smaller reserve"
+    )
+
+
+def loose_twist(grasp: Grasp, load: Wrench) -> EscapeTwist | None:
+    """A motion that moves no contact and along which the load does work; two fingers in space leave one."""
+    if not len(grasp.free_twists):
+        return None
+    power = grasp.free_twists @ load.vector
+    weight = 1 / grasp.lengths
+    if abs(power).max() * (grasp.size or 1.0) <= _WORK * float(abs(load.vector * weight).max()):
+        return None
+    infinite = [inf] * len(grasp)
+    twist = EscapeTwist(
+        grasp, load, power @ grasp.free_twists, tuple(grasp.frictions.tolist()), tuple(infinite)
+    )
+    return twist if twist.is_proof else None
+
+
+def escape_twist(
+    grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]
+) -> EscapeTwist | None:
+    """The proven escape twist of a grasp, or None where none is found."""
+    d = grasp.dimension
+    weight = 1 / grasp.lengths  # torques as forces
+    target = -load.vector * weight
+    unit = float(abs(target).max())
+    if unit == 0:
+        return None
+    if min(limits) < inf or d == 3:
+        gaps = [gap_left(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
+        if d == 3:
+            gaps.append(cleared(grasp, gaps[0] * weight, frictions, limits) / weight)
+    else:
+        gaps = _gaps(_edge_wrenches(grasp, weight, frictions), target / unit)
+    twists = [
+        EscapeTwist(grasp, load, -gap * weight / float(abs(gap).max()), tuple(frictions), tuple(limits))
+        for gap in gaps
+        if gap.any() and np.isfinite(gap).all()
+    ]
+    best = max(twists, key=lambda twist: twist.least_force, default=None)
+    return best if best is not None and best.is_proof else None
+
+
+def _only_in_the_limit(grasp: Grasp, load: Wrench, frictions: list[float]) -> tuple[float, float] | None:
+    """How far forces of ``_REACHES`` times the load miss it, relative to it, if larger ones come nearer."""
+    weight = 1 / grasp.lengths
+    target = -load.vector * weight
+    target = target / float(abs(target).max())
+    near, far = (
+        float(np.linalg.norm(gap_left(grasp, target, weight, frictions, [reach] * len(grasp))))
+        for reach in _REACHES
+    )
+    return (near, far) if 0 < far < _NEARER * near else None
+
+
+def _gaps(wrenches: Array, target: Array) -> list[Array]:
+    """Target - G f at the nearest f, a non-negative combination of the edges; then the same, tilted a hair.
+
+    The twist touches the edges of the cones next to it, where rounding lets a contact oppose by 1e-16 of its
+    force. If the wrenches leave a half-space free, 2^-40 of a twist that all edges push along clears them.
+    """
+    from scipy.optimize import nnls
+
+    combination, _ = nnls(wrenches, target)
+    gap: Array = target - wrenches @ combination
+    # Least distance programming (Lawson and Hanson 1974, ch. 23): min |v| subject to W'v >= 1.
+    equations = np.vstack([wrenches, np.ones(wrenches.shape[1])])
+    goal = np.append(np.zeros(len(target)), 1.0)
+    combination, miss = nnls(equations, goal)
+    if miss < 1e-9:
+        return [gap]  # W'v >= 1 has no solution: the wrenches leave no half-space free
+    residual = equations @ combination - goal
+    clear = residual[:-1] / residual[-1]
+    return [gap, gap + clear * (2.0**-40 * float(np.linalg.norm(gap) / np.linalg.norm(clear)))]
+
+
+def _edge_wrenches(grasp: Grasp, weight: Array, frictions: list[float]) -> Array:
+    """(3, 2n) wrenches of both edges of every cone, torques divided by the grasp's size."""
+    edges = []
+    for contact, mu in zip(grasp, frictions, strict=True):
+        n = contact.normal
+        t = np.array([-n[1], n[0]])
+        for e in (n - mu * t, n + mu * t):
+            r = contact.position
+            edges.append(np.array([e[0], e[1], r[0] * e[1] - r[1] * e[0]]) * weight)
+    return np.array(edges).T

@@ -1,0 +1,138 @@
+"""The highest level of a narrowing that forces reach, from below and from above; see ``narrowing``."""
+
+from collections.abc import Iterable
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from regrasp.errors import SolverFailed
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.grasp import Grasp
+from regrasp.planning.states.escape import escape_twist
+from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
+from regrasp.planning.states.solving import FEASIBLE, Chooser, Found
+from regrasp.programs import Status
+
+# Forces miss the cones for sure by a distance to which the residual is at most this.
+_SURE = 1e-2
+# The best level must be known this well; how well it is known is in the gap.
+_UNSURE = 100 * LEVEL_TOLERANCE
+# A force below this fraction of the largest may be what a solver leaves at a finger that need not push.
+_NOISE = 1e-6
+
+
+def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
+    """The forces of the highest level, from ``forces`` upwards; the gap is to a level proven out of reach.
+
+    Of the states within the tolerance, that of the widest force margin is taken. Raises ``SolverFailed``
+    where the back end cannot tell what the highest level is.
+    """
+    if narrowing.objective == "friction_use":  # four contacts and more often need none
+        straight = _at_level(chooser, narrowing.narrowed(narrowing.top), limits, None).forces
+        forces = forces if straight is None else straight
+    held, lost = narrowing.level(forces), narrowing.top
+    proven, sure, gained, climbs = lost, lost, inf, True
+    while lost - held > LEVEL_TOLERANCE / 2 * (1 + 1e-6):
+        middle = (held + lost) / 2
+        level = min(held + LEVEL_TOLERANCE / 2, middle) if climbs else middle
+        found = _at_level(chooser, narrowing.narrowed(level), limits, forces)
+        if found.forces is None:
+            lost, climbs = level, True
+            proven = level if found.is_proof else proven
+            sure = level if found.is_sure else sure
+        else:
+            reached = max(narrowing.level(found.forces), held)
+            # Steps that do not shrink converge too slowly: halve what is left once, then climb on.
+            climbs = not climbs or reached - held < gained / 2
+            gained, held, forces = reached - held, reached, found.forces
+    if proven > lost:
+        proven = _lowest_proof(chooser, narrowing, limits, lost, proven)
+    if min(sure, proven) - held > _UNSURE:
+        raise SolverFailed(
+            f"{chooser.backend} cannot tell the best {narrowing.objective}: a level of {held:.9g} is "
+            f"reached, one of {min(sure, proven):.9g} is not, and its answers between are not sound"
+        )
+    cones = narrowing.narrowed(max(held - LEVEL_TOLERANCE / 2, 0.0))
+    widest = _at_level(chooser, cones, limits, None).forces
+    if widest is not None:
+        forces = widest
+    forces = _without_noise(chooser, narrowing, forces, limits)
+    return Found(forces, max(proven - narrowing.level(forces), 0.0))
+
+
+def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
+    """The forces with those that are a solver's noise made zero, where that costs nothing."""
+    sizes = abs(forces).max(axis=1)
+    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
+    if len(used) in (0, len(forces)):
+        return forces
+    frictions, bounds = [narrowing.frictions[i] for i in used], [limits[i] for i in used]
+    rest = chooser.of(used).settled(forces[used], frictions, bounds)
+    if rest is None:
+        return forces
+    idle = _whole(chooser.grasp, used, rest)
+    return idle if narrowing.level(idle) >= narrowing.level(forces) - LEVEL_TOLERANCE / 10 else forces
+
+
+def _lowest_proof(
+    chooser: Chooser, narrowing: Narrowing, limits: list[float], above: float, proven: float
+) -> float:
+    """A level proven out of reach, not far above ``above``: nearer the best level rounding hides proofs."""
+    step = LEVEL_TOLERANCE
+    while above + step < proven:
+        cones = narrowing.narrowed(above + step)
+        grasp, bounds = chooser.grasp.subset(cones), [limits[i] for i in cones]
+        if escape_twist(grasp, chooser.load, list(cones.values()), bounds) is not None:
+            return above + step
+        step *= 4
+    return proven
+
+
+class _Level(NamedTuple):
+    """Forces (n, d) of a level, or None; then whether a twist proves it, and whether the answer was sound."""
+
+    forces: Array | None
+    is_proof: bool = False
+    is_sure: bool = False
+
+
+def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], known: Array | None) -> _Level:
+    """Forces inside narrowed cones, other fingers idle.
+
+    The least distance to the edges is widest, measured for each finger by its normal force in ``known``: so
+    the level rises most. Without ``known`` forces it is the force margin.
+    """
+    grasp = chooser.grasp
+    used = chooser if len(cones) == len(grasp) else chooser.of(cones)
+    frictions, bounds = list(cones.values()), [limits[i] for i in cones]
+    weights = None
+    if known is not None:
+        weights = np.maximum(grasp.cones.normal(known), 0.0)[list(cones)] / chooser.unit
+    try:
+        answer = used.solved("force", frictions, bounds, weights)
+    except SolverFailed as failed:
+        answer = failed.solution  # whether it is near enough is seen below
+    if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -FEASIBLE:
+        forces = used.exact(answer, frictions, bounds)
+        if forces is not None:
+            return _Level(_whole(grasp, cones, forces))
+    twist = -answer.duals[: used.load.vector.size]
+    twist[grasp.dimension :] /= used.grasp.size or 1.0
+    is_twist = bool(np.isfinite(twist).all() and twist.any())
+    if is_twist and EscapeTwist(used.grasp, used.load, twist, tuple(frictions), tuple(bounds)).is_proof:
+        return _Level(None, True, True)
+    if escape_twist(used.grasp, used.load, frictions, bounds) is not None:
+        return _Level(None, True, True)
+    if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
+        return _Level(None, False, True)
+    forces = None if known is None else used.nearest(known[list(cones)], frictions, bounds)
+    return _Level(None if forces is None else _whole(grasp, cones, forces))
+
+
+def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
+    """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
+    whole = np.zeros((len(grasp), grasp.width))
+    whole[list(contacts)] = forces
+    return whole

@@ -1,0 +1,167 @@
+"""Forces by a back end: every answer is moved into exact equilibrium inside the cones, or refused."""
+
+from collections.abc import Iterable
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from regrasp.errors import SolverFailed
+from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.program import state_program
+from regrasp.programs import Program, Solution, Status, solve
+
+# Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
+# 1e-10 and less, is inside the reserve and not beyond it.
+SLACK = 1e-9
+# Limits beyond this many loads bind nothing that minimises forces, and spoil the scale of a program.
+LOOSE = 1e6
+# A solver's zero; whether forces exist is decided by finding them.
+FEASIBLE = 1e-7
+# An answer that exact equilibrium moves by more than this fraction of the forces is not the best one.
+_MOVED = 1e-5
+# Forces this many times the unit are better measured by a unit of their own.
+_FAR = 4.0
+
+
+def force_unit(grasp: Grasp, load: Wrench) -> float:
+    """The size of the load as a force [N], torque divided by the grasp's size; 0 without a load."""
+    sizes = [abs(number) for number in load.plain]
+    return max(*sizes[: grasp.dimension], max(sizes[grasp.dimension :]) / (grasp.size or 1.0))
+
+
+class Found(NamedTuple):
+    """Forces (n, d) in exact equilibrium [N] and how much better the best can be, at most."""
+
+    forces: Array
+    gap: float
+
+
+class Chooser:
+    """Chooses forces of one grasp under one load with one back end.
+
+    Forces are (n, w) as the cones measure them (``regrasp.mechanics.cones``).
+    """
+
+    def __init__(
+        self, grasp: Grasp, load: Wrench, backend: str, facets: int | None, limits: list[float]
+    ) -> None:
+        self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
+        self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
+        self.unit = force_unit(grasp, load)
+        if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
+            self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
+        self.loose = LOOSE * self.unit
+
+    def rescale(self, unit: float) -> None:
+        """Another unit of force [N]; every limit counts."""
+        self.unit, self.loose = unit, inf
+
+    def of(self, contacts: Iterable[int]) -> "Chooser":
+        """The same, for some of the contacts."""
+        some = Chooser(self.grasp.subset(contacts), self.load, self.backend, self.facets, [])
+        some.unit, some.loose = self.unit, self.loose
+        return some
+
+    def solved(
+        self,
+        objective: str,
+        frictions: list[float],
+        limits: list[float],
+        weights: Array | None = None,
+        *,
+        slack: float = SLACK,
+    ) -> Solution:
+        """The back end's answer to one of the convex objectives, in units of ``unit``.
+
+        Where it has none and stopped at forces far larger than the load, it is asked again with their size
+        as the unit.
+        """
+        try:
+            return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+        except SolverFailed as failed:
+            size = float(abs(self._wanted(failed.solution)).max())
+            if not _FAR * self.unit < size < inf:
+                raise
+            self.unit = size
+        return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+
+    def _program(
+        self,
+        objective: str,
+        frictions: list[float],
+        limits: list[float],
+        weights: Array | None,
+        slack: float,
+    ) -> Program:
+        kept = 1 - slack
+        return state_program(
+            self.grasp,
+            self.load,
+            objective,
+            [kept * mu for mu in frictions],
+            [kept * limit if limit < self.loose else inf for limit in limits],
+            self.unit,
+            self.facets,
+            weights,
+        )
+
+    def best(self, objective: str, frictions: list[float], limits: list[float]) -> Found | None:
+        """The best forces for a convex objective; None where the back end says there are none."""
+        answer = self.solved(objective, frictions, limits)
+        if answer.status is Status.INFEASIBLE:  # at the limit of what can be held the slack may be missed
+            answer = self.solved(objective, frictions, limits, slack=0.0)
+        if answer.status is Status.INFEASIBLE:
+            return None
+        if answer.status is Status.UNBOUNDED:
+            raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
+        if objective == "force" and answer.value[-1] < -FEASIBLE:
+            return None  # the least distance to the cones' boundaries is negative: some force is outside
+        wanted = self._wanted(answer)
+        forces = self.settled(wanted, frictions, limits)
+        if forces is None:
+            return None
+        moved = float(abs(forces - wanted).max())
+        if moved > _MOVED * self.unit and moved > _MOVED * float(abs(forces).max()):
+            raise SolverFailed(
+                f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
+                answer.program,
+                answer,
+            )
+        squared = objective == "effort"
+        return Found(forces, answer.absolute_gap * (self.unit**2 if squared else self.unit))
+
+    def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
+        """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are."""
+        return self.settled(self._wanted(answer), frictions, limits)
+
+    def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none.
+
+        The least change of all forces does, idle fingers left idle, unless it leaves a cone.
+        """
+        from regrasp.closed_form.compiled.shift import shifted_inside
+
+        mu, limit = np.array(frictions), np.array(limits)
+        given = wanted, self.matrix, self.vector, self.grasp.cones.normals, mu, limit
+        forces, is_answer = shifted_inside(*given, EQUILIBRIUM / 2)
+        if is_answer:
+            found: Array = forces
+            return found
+        return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
+
+    def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """The forces nearest to ``forces`` in equilibrium, inside cones and limits; None if none are."""
+        size, cones = self.grasp.size or 1.0, self.grasp.cones
+        mu, limit = np.array(frictions), np.array(limits)
+        return nearest_equilibrium(forces, cones.matrix, self.load.vector, cones.normals, mu, limit, size)
+
+    def _wanted(self, answer: Solution) -> Array:
+        w = self.grasp.width
+        wanted: Array = answer.value[: w * len(self.grasp)].reshape(-1, w)
+        if w == 4:  # a point contact makes no torque, whatever a solver says of a number that does nothing
+            wanted = self.grasp.cones.measured(self.grasp.cones.forces(wanted))
+        return wanted * self.unit

@@ -1,0 +1,167 @@
+"""The equilibrium locus of two planar contacts as an object to ask."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, isfinite, isnan
+from typing import cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.choice import OBJECTIVES, best_squeeze
+from regrasp.closed_form.locus import pair_frame, squeeze_interval
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.margins import Margins, margins
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.state import GraspState, check_load
+from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.wrench import Wrench, torque
+from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria
+from regrasp.planning.states.escape import infeasible
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EquilibriumLocus(ArrayValue):
+    """LS_B: all forces of two planar contacts that balance a load inside both friction cones (Section III-B).
+
+    They differ by the squeeze x only, the component of f_1 along the unit vector from P_1 to P_2 [N].
+    The locus is judged with the full friction and without force limits; ``best`` keeps a reserve back.
+    Raises ``InvalidInput`` unless the grasp has two planar contacts.
+    """
+
+    grasp: Grasp
+    load: Wrench
+
+    def __post_init__(self) -> None:
+        if len(self.grasp) != 2 or self.grasp.dimension != 2:
+            raise InvalidInput(
+                f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
+                f"{self.grasp.dimension}; use grasp.subset([...]), or a SqueezeLocus"
+            )
+        check_load(self.grasp, self.load)
+
+    @classmethod
+    def given(cls, grasp: Grasp, load: Wrench, contact: str | int, force: ArrayLike) -> "EquilibriumLocus":
+        """LS_A: what two of three contacts can do when the third one's ``force`` (2,) is given (III-B).
+
+        The given wrench acts like a part of the load: the locus is that of the other two contacts under
+        ``load`` plus w = (f, r x f).
+        """
+        f = array(force, "force", (2,))
+        fixed = grasp[contact]
+        wrench = Wrench(f, torque=float(torque(fixed.position, f)[0]))
+        return cls(grasp.without(contact), load + wrench)
+
+    @cached_property
+    def interval(self) -> tuple[float, float]:
+        """(lo, hi) of the squeeze [N]; either may be infinite. An empty locus is (inf, -inf)."""
+        return squeeze_interval(
+            *_plain(self.grasp.contacts[0]), *_plain(self.grasp.contacts[1]), *_load(self.load)
+        )
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no forces inside the cones balance the load."""
+        return self.interval[0] > self.interval[1]
+
+    @property
+    def direction(self) -> Array:
+        """(2,) unit vector from P_1 to P_2."""
+        return np.array(self._frame[:2])
+
+    def forces(self, squeeze: ArrayLike) -> Array:
+        """Forces (2, 2) at a squeeze, (m, 2, 2) at m of them [N]; in equilibrium for any squeeze."""
+        ux, uy, phi, a, b, _ = self._frame
+        x = np.asarray(squeeze, dtype=float)[..., None]
+        u, p = np.array([ux, uy]), np.array([-uy, ux])
+        return np.stack([x * u + a * p, -(x + phi) * u + b * p], axis=-2)
+
+    def wrenches(self, squeeze: ArrayLike) -> Array:
+        """Wrenches (2, 3) at a squeeze, (m, 2, 3) at m of them [N, N m]."""
+        forces = self.forces(squeeze)
+        return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
+
+    def margins(self, squeeze: ArrayLike) -> Margins:
+        """Margins of both contacts at a squeeze, or at m of them."""
+        return margins(self.forces(squeeze), self.grasp.normals, self.grasp.frictions)
+
+    def segment(self, reach: float = inf) -> Array:
+        """(2, 3) ends of LS_B in wrench space, as values of w_1.
+
+        An infinite end is cut off ``reach`` [N] beyond the finite one; beyond zero if both are infinite.
+        """
+        lo, hi = self.interval
+        if self.is_empty:
+            raise Infeasible(f"the equilibrium locus of {', '.join(self.grasp.names)} is empty")
+        start = lo if isfinite(lo) else (hi if isfinite(hi) else 0.0) - reach
+        end = hi if isfinite(hi) else (lo if isfinite(lo) else 0.0) + reach
+        if not (isfinite(start) and isfinite(end)):
+            raise InvalidInput("this locus has no end on one side; give reach, how far [N] to show it")
+        result: Array = self.wrenches(np.array([start, end]))[:, 0]
+        return result
+
+    def state(self, squeeze: float) -> GraspState:
+        """The state at a squeeze inside the interval; ``InvalidInput`` outside it."""
+        lo, hi = self.interval
+        if not lo <= squeeze <= hi:
+            where = "the locus is empty" if self.is_empty else f"the locus is [{lo:.9g}, {hi:.9g}]"
+            raise InvalidInput(f"squeeze {squeeze!r} is not on the locus; {where}")
+        return GraspState(self.grasp, self.load, self.forces(squeeze))
+
+    def squeeze(self, state: GraspState) -> float:
+        """The squeeze of a state of this grasp [N]."""
+        return float(state.forces[0] @ self.direction)
+
+    def best(
+        self,
+        objective: str = "angle",
+        *,
+        max_force: float | None = None,
+        peak_ratio: float = PEAK_RATIO,
+        reserve: float = RESERVE,
+    ) -> ChosenState:
+        """The best state on the locus for an objective, in closed form; see ``choose_state``."""
+        criteria = Criteria(objective, max_force, peak_ratio, reserve)
+        return ChosenState(self.grasp, self.load, criteria, best_forces(self.grasp, self.load, criteria))
+
+    @cached_property
+    def _frame(self) -> tuple[float, float, float, float, float, float]:
+        first, second = self.grasp.contacts
+        return pair_frame(*_plain(first)[:2], *_plain(second)[:2], *_load(self.load))
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.grasp.names)
+        span = "empty" if self.is_empty else f"squeeze in [{self.interval[0]:.6g}, {self.interval[1]:.6g}]"
+        return f"EquilibriumLocus of {names} under {self.load!r}: {span}"
+
+
+def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
+    """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
+    criteria.demand_limit(grasp, load)
+    mu1, mu2 = criteria.frictions(grasp)
+    bound1, bound2 = criteria.limits(grasp)
+    x, (f1x, f1y, f2x, f2y), limits = best_squeeze(
+        *_plain(grasp.contacts[0])[:4],
+        mu1,
+        *_plain(grasp.contacts[1])[:4],
+        mu2,
+        *_load(load),
+        OBJECTIVES.index(criteria.objective),
+        bound1,
+        bound2,
+        criteria.peak_ratio,
+    )
+    if isnan(x):
+        raise infeasible(grasp, load, criteria)
+    return ChosenForces([[f1x, f1y], [f2x, f2y]], limits, "closed-form")
+
+
+def _plain(contact: Contact) -> tuple[float, float, float, float, float]:
+    return cast(tuple[float, float, float, float, float], contact.plain)
+
+
+def _load(load: Wrench) -> tuple[float, float, float]:
+    return cast(tuple[float, float, float], load.plain)

@@ -1,0 +1,1 @@
+"""What a grasp can do, all told: loci, held directions, sensitivities."""

@@ -1,0 +1,97 @@
+"""How the optimum of a state program moves with everything that shapes it: the envelope theorem.
+
+    V(p) = min 1/2 x'Px + q'x  subject to  A(p) x + s = b(p), s in K        P and q do not depend on p
+    dV/dp = z'(dA/dp x - db/dp)                                             z the duals at the optimum x
+
+The data A and b are smooth functions of p written down once, in ``state_program``; they are differenced
+there, the solution is not, so nothing is solved again and the error is that of the duals.
+"""
+
+from dataclasses import dataclass, replace
+from math import cos, inf, sin
+
+import numpy as np
+
+from regrasp.errors import SolverFailed
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.program import state_program
+from regrasp.programs import Program, Status, solve
+
+PARAMETERS = ("friction", "position", "normal", "limit")
+"""What a contact has one number of; rates come in this order, n of each, then the three of the load."""
+
+# Cube root of the rounding unit: rounding and curvature of the data cost 1e-10 each.
+_STEP = 6e-6
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What shapes a program: a planar grasp and its load; friction and limits in place of the contacts' own.
+
+    frictions: (n,) [-]. limits: (n,) [N], infinite for none.
+    """
+
+    grasp: Grasp
+    load: Wrench
+    frictions: Array
+    limits: Array
+
+    def program(self, objective: str, unit: float, weights: Array | None) -> Program:
+        """``state_program`` here."""
+        frictions, limits = self.frictions.tolist(), self.limits.tolist()
+        return state_program(self.grasp, self.load, objective, frictions, limits, unit, weights=weights)
+
+    def moved(self, parameter: str, i: int, by: float) -> "Setting":
+        """The setting with one number changed: of contact i, or component i of the ``load``."""
+        if parameter == "load":
+            return replace(self, load=Wrench.from_vector(self.load.vector + by * np.eye(3)[i]))
+        one = by * np.eye(len(self.grasp))[i]
+        if parameter == "friction":
+            return replace(self, frictions=self.frictions + one)
+        if parameter == "limit":
+            return replace(self, limits=self.limits + one)
+        contact, tangent = self.grasp[i], self.grasp.tangents[i]
+        if parameter == "position":
+            changed = replace(contact, position=contact.position + by * tangent)
+        else:
+            changed = replace(contact, normal=cos(by) * contact.normal + sin(by) * tangent)
+        return replace(self, grasp=self.grasp.replaced(i, changed))
+
+    def steps(self, unit: float) -> dict[str, Array]:
+        """A small change of every parameter, (n,) each, (3,) of the load; 0 where it is no parameter here.
+
+        A contact without friction or limit has none to change.
+        """
+        n, size = len(self.grasp), self.grasp.size
+        return {
+            "friction": np.minimum(_STEP, self.frictions / 2),
+            "position": np.full(n, _STEP * size),
+            "normal": np.full(n, _STEP),
+            "limit": _STEP * np.where(self.limits < inf, self.limits, 0.0),
+            "load": _STEP * unit * np.array([1.0, 1.0, size]),
+        }
+
+
+def optimum_rates(setting: Setting, objective: str, unit: float, weights: Array | None = None) -> Array:
+    """Derivatives (4n + 3,) of the least value of ``state_program``, in the order of ``PARAMETERS``.
+
+    The value is that of the program, in units of ``unit`` [N] and with the sign of a minimum; ``weights`` as
+    there. The parameters are in units of their own. Raises ``SolverFailed`` without a sound optimum.
+    """
+    answer = solve(setting.program(objective, unit, weights), "clarabel")
+    if answer.status is not Status.SOLVED:  # a grasp at the limit of what it can hold
+        raise SolverFailed(f"no duals to differentiate by: {answer}", answer.program, answer)
+    x, z = answer.value, answer.duals
+
+    def rate(parameter: str, i: int, step: float) -> float:
+        if step == 0:
+            return 0.0
+        ahead, behind = (
+            setting.moved(parameter, i, by).program(objective, unit, weights) for by in (step, -step)
+        )
+        return float(z @ ((ahead.A - behind.A) @ x - (ahead.b - behind.b))) / (2 * step)
+
+    steps = setting.steps(unit)
+    return np.array([rate(p, i, step) for p in (*PARAMETERS, "load") for i, step in enumerate(steps[p])])

@@ -1,0 +1,109 @@
+"""What inner pyramids cost against exact friction cones."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, isnan, nan
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from regrasp.errors import Infeasible, InvalidInput
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.choosing import check_facets, choose_state
+from regrasp.planning.states.criteria import PEAK_RATIO, UNBOUNDED
+from regrasp.planning.surveys.sensitivity import UNITS
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True)
+class PyramidLosses:
+    """A value of ``choose_state`` with exact cones, and with inner pyramids of some numbers of facets.
+
+    exact: the objective reached with exact cones, as ``ChosenState.value`` [unit]. values: the same by number
+    of facets, measured at the state chosen inside the pyramids; NaN where these do not hold the load although
+    the cones do. dimension: of the grasp. In the plane two half-planes are the friction cone, so that facets
+    cost nothing there but for force limits and ``peak``, where they stand for the circle |f| = r.
+    """
+
+    objective: str
+    exact: float
+    values: Mapping[int, float]
+    dimension: int
+
+    @property
+    def unit(self) -> str:
+        """Of the values."""
+        return UNITS.get(self.objective, "N")
+
+    @property
+    def losses(self) -> dict[int, float]:
+        """By number of facets, how much worse than the exact value, as a fraction of it; NaN: not held."""
+        better = -1.0 if self.objective in ("angle", "force") else 1.0
+        return {m: _share(better * (v - self.exact), abs(self.exact)) for m, v in self.values.items()}
+
+    @property
+    def lost(self) -> tuple[int, ...]:
+        """The numbers of facets whose pyramids do not hold the load."""
+        return tuple(m for m, value in self.values.items() if isnan(value))
+
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """A table with a row for each pyramid: facets, holds, value and loss."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: pip install 'regrasp[pandas]'") from None
+        rows = [(m, not isnan(v), v, self.losses[m]) for m, v in self.values.items()]
+        return pandas.DataFrame(rows, columns=["facets", "holds", "value", "loss"])
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        lines = [f"{self.objective} {self.exact:.6g}{unit} with exact cones; with inner pyramids:"]
+        for m, loss in self.losses.items():
+            held = "does not hold" if isnan(loss) else f"{self.values[m]:<12.6g} {loss:.3%} worse"
+            lines.append(f"{m:>6} facets  {held}")
+        if self.dimension == 2:
+            lines.append("in the plane two half-planes are the cone: facets stand for |f| = r only")
+        return "\n".join(lines)
+
+
+def pyramid_losses(
+    grasp: Grasp,
+    load: Wrench,
+    objective: str = "peak",
+    facets: Sequence[int] = (4, 8, 16, 32),
+    *,
+    max_force: float | None = None,
+    peak_ratio: float = PEAK_RATIO,
+    reserve: float = RESERVE,
+) -> PyramidLosses:
+    """The value of ``choose_state`` with exact cones and with inner pyramids of each number of ``facets``.
+
+    All are chosen under the same force limits, those of the exact choice. A pyramid's first vertex lies along
+    the first tangent, so that its loss depends on the frame; the exact value does not.
+    Raises ``Infeasible`` where exact cones do not hold the load, ``InvalidInput`` as ``choose_state`` does.
+    """
+    if not isinstance(facets, Sequence) or isinstance(facets, str) or not facets:
+        raise InvalidInput(f"facets must be whole numbers, such as (4, 8, 16), got {facets!r}")
+    for m in facets:
+        check_facets(m)
+        if m is None:
+            raise InvalidInput("facets must be whole numbers of at least 3, got None")
+    exact = choose_state(grasp, load, objective, max_force=max_force, peak_ratio=peak_ratio, reserve=reserve)
+    if objective in UNBOUNDED:  # pyramids have a larger least peak force, which would loosen the limits
+        max_force = max(exact.force_limits)
+    values = {}
+    for m in facets:
+        try:
+            values[m] = choose_state(
+                grasp, load, objective, facets=m, max_force=max_force, reserve=reserve
+            ).value
+        except Infeasible:
+            values[m] = nan
+    return PyramidLosses(objective, exact.value, MappingProxyType(values), grasp.dimension)
+
+
+def _share(amount: float, whole: float) -> float:
+    return amount / whole if whole else (0.0 if amount == 0 else nan if isnan(amount) else inf)

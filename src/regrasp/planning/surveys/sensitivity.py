@@ -1,0 +1,206 @@
+"""What the best forces of a grasp are sensitive to."""
+
+from dataclasses import dataclass, replace
+from math import nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from regrasp.display import Pictured
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, number, read_only
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.state import GraspState, check_load
+from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.criteria import PEAK_RATIO, ChosenState, objective_value
+
+if TYPE_CHECKING:
+    import pandas
+
+UNITS = {"angle": "rad", "effort": "N^2", "friction_use": "-"}
+"""Units of the objectives' values; the others are forces [N]."""
+
+# What is less than this fraction of the largest effect prints as 0.
+_ROUNDING = 1e-6
+_PER = {"friction": "", "position": "m", "normal": "rad", "limit": "N"}
+_LOAD = {"force x": "N", "force y": "N", "torque": "(N m)"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sensitivity(ArrayValue, Pictured):
+    """How the best value of ``choose_state`` changes, per unit of each number of the grasp and the load.
+
+    state: the best state. value: its objective, margins measured within the friction that planning may use.
+    friction: (n,) per unit of mu_i; NaN where mu_i = 0, which can change to one side only.
+    position: (n,) per metre along the contact's tangent, the normal turned left by a right angle. The normal
+    stays as it is: along a boundary of curvature kappa, positive where convex, the value changes by
+    ``position`` - kappa ``normal`` (1 / R on a disc).
+    normal: (n,) per radian that the normal turns counter-clockwise.
+    limit: (n,) per newton of the contact's force limit, its own or ``max_force``; 0 where it does not bind,
+    NaN where none is given.
+    load: (3,) per newton, newton and newton metre of the load.
+
+    Each is the value's unit (``angle`` [rad], ``effort`` [N^2], ``friction_use`` [-], others [N]) per the
+    parameter's.
+    """
+
+    state: ChosenState
+    value: float
+    friction: Array
+    position: Array
+    normal: Array
+    limit: Array
+    load: Array
+
+    _drawn_by = "regrasp.plots.surveys.sensitivity:sensitivity_png"
+
+    @property
+    def grasp(self) -> Grasp:
+        """The contacts."""
+        return self.state.grasp
+
+    @property
+    def objective(self) -> str:
+        """What the state was chosen for."""
+        return self.state.criteria.objective
+
+    @property
+    def unit(self) -> str:
+        """Of the value."""
+        return UNITS.get(self.objective, "N")
+
+    @property
+    def larger_is_better(self) -> bool:
+        """Whether the value is a margin; effort, forces and friction use are better small."""
+        return self.objective in ("angle", "force")
+
+    def steps(self, fraction: float = 0.01) -> dict[str, Array]:
+        """Comparable changes of all parameters, (n,) for contacts and (3,) for the load, whatever the units.
+
+        That fraction of the friction, the force limit and the magnitude of the load's force (of the
+        largest finger force if it is zero); of the grasp's size along the tangent; of a radian. The load's
+        torque changes as if its force moved by the grasp's size.
+        """
+        share = number(fraction, "fraction", above=0)
+        n, size, criteria = len(self.grasp), self.grasp.size, self.state.criteria
+        force = float(np.hypot(*self.state.load.force)) or float(self.state.magnitudes.max())
+        limits = np.array(criteria.limits(self.grasp))
+        return {
+            "friction": share * self.grasp.frictions,
+            "position": np.full(n, share * size),
+            "normal": np.full(n, share),
+            "limit": share * np.where(np.isfinite(limits), limits, nan),
+            "load": share * force * np.array([1.0, 1.0, size]),
+        }
+
+    def effects(self, fraction: float = 0.01) -> dict[str, Array]:
+        """The change of the value, to first order, by each of ``steps(fraction)``; in the value's unit."""
+        return {name: step * getattr(self, name) for name, step in self.steps(fraction).items()}
+
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """A table with a row for each number: of (a contact's name or ``load``), parameter, rate and unit."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: pip install 'regrasp[pandas]'") from None
+        rows = [
+            (name, parameter, getattr(self, parameter)[i], self._unit_per(per))
+            for i, name in enumerate(self.grasp.names)
+            for parameter, per in _PER.items()
+        ]
+        rows += [
+            ("load", parameter, rate, self._unit_per(per))
+            for (parameter, per), rate in zip(_LOAD.items(), self.load, strict=True)
+        ]
+        return pandas.DataFrame(rows, columns=["of", "parameter", "rate", "unit"])
+
+    def _unit_per(self, per: str) -> str:
+        unit = "1" if self.unit == "-" and per else self.unit
+        return f"{unit}/{per}" if per else unit
+
+    def __str__(self) -> str:
+        shown = [parameter for parameter in _PER if not np.isnan(getattr(self, parameter)).all()]
+        width = max(8, *(len(name) for name in self.grasp.names))
+        lines = [
+            f"{self.objective} {self.value:.5g} {self.unit} under {self.state.load!r}; it changes by",
+            f"{'':{width}}" + "".join(f"{parameter:>14}" for parameter in shown),
+            f"{'':{width}}" + "".join(f"{'[' + self._unit_per(_PER[p]) + ']':>14}" for p in shown),
+        ]
+        cells = self._cells()
+        for i, name in enumerate(self.grasp.names):
+            lines.append(f"{name:{width}}" + "".join(cells[p][i] for p in shown))
+        lines.append(f"{'load':{width}}" + "".join(f"{name:>14}" for name in _LOAD))
+        lines.append(
+            f"{'':{width}}" + "".join(f"{'[' + self._unit_per(p) + ']':>14}" for p in _LOAD.values())
+        )
+        lines.append(f"{'':{width}}" + "".join(cells["load"]))
+        return "\n".join(lines)
+
+    def _cells(self) -> dict[str, list[str]]:
+        """The rates, 14 characters each; a dash where there is none, 0 where the effect is rounding."""
+        effects = self.effects()
+        rounding = _ROUNDING * max(float(np.nanmax(abs(e), initial=0.0)) for e in effects.values())
+        return {
+            name: [
+                f"{'-':>14}" if np.isnan(effect) else f"{rate if abs(effect) > rounding else 0.0:14.4g}"
+                for effect, rate in zip(effect_of, getattr(self, name), strict=True)
+            ]
+            for name, effect_of in effects.items()
+        }
+
+    __repr__ = __str__
+
+
+def sensitivity(
+    grasp: Grasp,
+    load: Wrench,
+    objective: str = "angle",
+    *,
+    max_force: float | None = None,
+    peak_ratio: float = PEAK_RATIO,
+    reserve: float = RESERVE,
+) -> Sensitivity:
+    """How much the best margin or the least effort changes per unit of friction, position, normal and load.
+
+    The arguments are those of ``choose_state``, for planar grasps of two contacts or more. By the envelope
+    theorem, from the duals of the programs that Clarabel solves (docs/sensitivity.md); a force limit set by
+    ``peak_ratio`` moves with the least peak force.
+
+    Rates hold to first order. Where the constraints that decide change (two fingers equally near their limit
+    by symmetry, say) the value has a kink: its rates differ to the two sides, the duals are not unique, and
+    what is returned is a mixture. Nothing warns of it: where it matters, choose again after a small change.
+
+    Raises ``Infeasible`` when no forces hold the load, and ``InvalidInput`` for a grasp in space, a state
+    without forces and a ``peak_ratio`` of 1, which leaves nothing to choose; ``SolverFailed`` where there are
+    no duals, at the very limit of what can be held.
+    """
+    check_load(grasp, load)
+    if grasp.dimension != 2:
+        raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
+    if number(peak_ratio, "peak_ratio", least=1) == 1:
+        raise InvalidInput("peak_ratio must be greater than 1 for a sensitivity: 1 leaves nothing to choose")
+    state = choose_state(grasp, load, objective, max_force=max_force, peak_ratio=peak_ratio, reserve=reserve)
+    if not state.forces.any():
+        raise InvalidInput(
+            f"no finger pushes in the state best for {objective!r}, so its value has no rates; give a load"
+        )
+    from regrasp.planning.surveys.value_rates import value_rates
+
+    frictions, limits = state.criteria.frictions(grasp), np.array(state.criteria.limits(grasp))
+    kept = Grasp(replace(c, friction=mu) for c, mu in zip(grasp, frictions, strict=True))
+    best = GraspState(kept, load, state.forces)
+    rates = value_rates(best, state.criteria, np.array(state.force_limits)) + 0.0  # no -0.0
+    n = len(grasp)
+    friction, position, normal, limit = rates[: 4 * n].reshape(4, n)
+    return Sensitivity(
+        state,
+        objective_value(best, objective),
+        read_only(np.where(grasp.frictions > 0, (1 - reserve) * friction, nan)),
+        read_only(position),
+        read_only(normal),
+        read_only(np.where(np.isfinite(limits), limit, nan)),
+        read_only(rates[4 * n :]),
+    )

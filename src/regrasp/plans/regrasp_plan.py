@@ -1,0 +1,123 @@
+"""A whole regrasp: transitions one after the other, and the finger that moves between them."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from regrasp.display import Pictured
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.transition import Transition
+
+
+@dataclass(frozen=True, eq=False)
+class FingerMove(ArrayValue):
+    """A finger without force that moves before a step.
+
+    step: the step before which it moves. finger: its number, from 0. origin, target: (d,) contact points in
+    the object frame, relative to the centre of mass [m]; their names in the plan.
+    """
+
+    step: int
+    finger: int
+    origin: Array
+    target: Array
+    origin_name: str
+    target_name: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RegraspPlan(ArrayValue, Pictured):
+    """Transitions that carry an object from one three-finger grasp to another.
+
+    steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most three.
+    orientations: (len(steps) + 1,) the object's angle before the first step, and after each [rad].
+    margin: the least angle margin of the holds on the way [rad].
+    """
+
+    steps: tuple[Transition, ...]
+    orientations: tuple[float, ...]
+    margin: float
+
+    _drawn_by = "regrasp.plots.regrasps.steps:regrasp_png"
+
+    @property
+    def duration(self) -> float:
+        """Of all steps [s]; the fingers' own moves between contact points are not timed."""
+        return sum(step.duration for step in self.steps)
+
+    def orientation(self, t: ArrayLike) -> Array:
+        """The object's angle [rad] at times in [0, duration] [s], of the shape of t."""
+        k, local = self._place(t)
+        result = np.empty(local.shape)
+        for step in range(len(self.steps)):
+            here = k == step
+            result[here] = self.orientations[step] + self.steps[step].orientation(local[here])
+        return result
+
+    def _place(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
+        """The step of each time and the time from its start [s]."""
+        times = np.asarray(t, dtype=float)
+        if not ((times >= 0) & (times <= self.duration * (1 + 1e-12))).all():
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+        lengths = np.array([step.duration for step in self.steps])
+        ends = np.cumsum(lengths)
+        k = np.minimum(np.searchsorted(ends, times, side="right"), len(self.steps) - 1)
+        return k, np.clip(times - (ends - lengths)[k], 0, lengths[k])
+
+    @property
+    def moves(self) -> tuple[FingerMove, ...]:
+        """Every move of a finger without force, in order."""
+        return tuple(self._moves_and_fingers()[0])
+
+    @property
+    def fingers(self) -> tuple[tuple[str | None, ...], ...]:
+        """For each step the contact that each finger makes during it; None for one that is in the air."""
+        return tuple(self._moves_and_fingers()[1])
+
+    def _moves_and_fingers(self) -> tuple[list[FingerMove], list[tuple[str | None, ...]]]:
+        first = self.steps[0].grasp
+        places: list[str | None] = list(first.names)
+        where = {name: first[name].position for name in first.names}
+        moves, fingers = [], []
+        for k, step in enumerate(self.steps):
+            grasp = step.grasp
+            for name in grasp.names:
+                if name in places:
+                    continue
+                idle = next((i for i, at in enumerate(places) if at not in grasp.names), None)
+                if idle is None:
+                    raise InvalidInput(f"step {k + 1} has more contacts than there are fingers: {name}")
+                origin = str(places[idle])
+                moves.append(FingerMove(k, idle, where[origin], grasp[name].position, origin, name))
+                places[idle] = name
+                where[name] = grasp[name].position
+            fingers.append(tuple(at if at in grasp.names else None for at in places))
+        return moves, fingers
+
+    def reversed(self) -> "RegraspPlan":
+        """The same regrasp run backwards."""
+        return RegraspPlan(
+            tuple(step.reversed() for step in reversed(self.steps)), self.orientations[::-1], self.margin
+        )
+
+    def __str__(self) -> str:
+        lines = [
+            f"regrasp in {len(self.steps)} steps and {len(self.moves)} finger moves, {self.duration:g} s, "
+            f"holds by {round(float(np.degrees(self.margin)), 2) + 0.0:.2f} deg or more"
+        ]
+        for k, (step, (a, b)) in enumerate(zip(self.steps, pairwise(self.orientations), strict=True), 1):
+            turn = self._turn_in_words(step, a, b)
+            held = ", ".join(step.grasp.names)
+            what = step.kind if step.contact is None else f"{step.kind} of {step.contact}"
+            what += f" for {step.arrival}" if step.arrival else ""
+            lines.append(f"{k:2}. {what} with {held}{turn}")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+    def _turn_in_words(self, step: Transition, before: float, after: float) -> str:
+        return f", turning from {np.degrees(before):.4g} to {np.degrees(after):.4g} deg" if step.turn else ""

@@ -1,0 +1,165 @@
+"""The time function T(t) of a transition, falling smoothly from 1 to 0 (Fig. 8)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regrasp.closed_form.straight_path import fastest_duration
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.value import ArrayValue, numbers
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
+
+# Three tenths of a second added up are 0.30000000000000004 s.
+_ROUNDING = 2.0**-50
+
+PAPER_CONTROL = (1.0, 1.0, 0.5, 0.0, 0.0)
+"""Five control values with zero slope at both ends, as in Section V (values reconstructed)."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TimeScaling(ArrayValue):
+    """A clamped B-spline on [0, duration] given by its control values.
+
+    The first control value is 1, the last 0 and none rises. A B-spline stays within its control values and
+    falls where they fall, so 0 <= T <= 1 and T' <= 0 hold at every t, not only at samples.
+
+    duration: [s], greater than 0.
+    control: (k,) control values. degree: of the polynomial pieces, at most k - 1.
+    Raises ``InvalidInput`` otherwise.
+    """
+
+    duration: float
+    control: tuple[float, ...]
+    degree: int
+
+    def __post_init__(self) -> None:
+        duration = number(self.duration, "duration", above=0)
+        values = tuple(number(c, "control value") for c in self.control)
+        falls = all(a >= b for a, b in pairwise(values))
+        if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
+            raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
+        if not 1 <= self.degree < len(values):
+            raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {self.degree!r}")
+        object.__setattr__(self, "duration", duration)
+        object.__setattr__(self, "control", values)
+
+    @classmethod
+    def spline(cls, duration: float, control: Sequence[float] = PAPER_CONTROL) -> "TimeScaling":
+        """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default."""
+        return cls(duration, tuple(control), min(3, len(control) - 1))
+
+    @classmethod
+    def minimum_jerk(cls, duration: float) -> "TimeScaling":
+        """1 - 10 s^3 + 15 s^4 - 6 s^5 with s = t / duration: zero velocity and acceleration at both ends."""
+        return cls(duration, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), 5)
+
+    @classmethod
+    def linear(cls, duration: float) -> "TimeScaling":
+        """1 - t / duration: the fastest shape under rate limits, with a jump of rate at both ends."""
+        return cls(duration, (1.0, 0.0), 1)
+
+    @classmethod
+    def fastest(
+        cls, change: ArrayLike, rate_limit: ArrayLike, shape: "TimeScaling | None" = None
+    ) -> "TimeScaling":
+        """The shortest scaling of a shape under force-rate limits (docs/facts.md, 4).
+
+        change: (n, d) forces at one end less those at the other [N].
+        rate_limit: |f_i'(t)| allowed [N/s], one number or (n,), infinite for no limit.
+        shape: whose control values to use; the paper's spline by default.
+        Raises ``InvalidInput`` where nothing changes or nothing is limited: no duration follows.
+        """
+        shape = cls.spline(1.0) if shape is None else shape
+        moved = np.linalg.norm(array(change, "change", (None, None)), axis=1)
+        try:
+            rates = np.broadcast_to(np.asarray(rate_limit, dtype=float), moved.shape)
+        except (TypeError, ValueError):
+            raise InvalidInput(
+                f"rate_limit must be a number or have shape {moved.shape}, got {rate_limit!r}"
+            ) from None
+        if not (rates > 0).all():
+            raise InvalidInput(f"rate_limit must be greater than 0, got {rate_limit!r}")
+        duration = fastest_duration(moved.tolist(), rates.tolist(), shape.steepest * shape.duration)
+        if duration == 0:
+            raise InvalidInput("no force that changes has a rate limit, so no shortest duration follows")
+        return shape.lasting(duration)
+
+    def lasting(self, duration: float) -> "TimeScaling":
+        """The same shape over another duration."""
+        return TimeScaling(duration, self.control, self.degree)
+
+    def reversed(self) -> "TimeScaling":
+        """1 - T(duration - t): the scaling of the motion run backwards."""
+        return TimeScaling(self.duration, tuple(1 - c for c in reversed(self.control)), self.degree)
+
+    def __call__(self, t: ArrayLike) -> Array:
+        """T(t), of the shape of t; ``InvalidInput`` for times outside [0, duration]."""
+        return self._evaluate(0, t)
+
+    def velocity(self, t: ArrayLike) -> Array:
+        """T'(t) [1/s]."""
+        return self._evaluate(1, t)
+
+    def acceleration(self, t: ArrayLike) -> Array:
+        """T''(t) [1/s^2]; zero everywhere for a linear scaling, whose jumps at the ends it does not see."""
+        return self._evaluate(2, t)
+
+    @property
+    def abscissae(self) -> Array:
+        """(k,) times [s] at which the control values stand: means of ``degree`` knots (Greville)."""
+        means = [self._knots[i + 1 : i + self.degree + 1].mean() for i in range(len(self.control))]
+        return self.duration * np.array(means)
+
+    @cached_property
+    def steepest(self) -> float:
+        """Max |T'(t)| [1/s], exact to rounding: at a knot or where T'' = 0."""
+        from scipy.interpolate import PPoly
+
+        slope = self._splines[1]
+        knots = np.unique(slope.t)
+        candidates = knots
+        if self.degree >= 2:
+            roots = PPoly.from_spline(self._splines[2]).roots(extrapolate=False)
+            candidates = np.concatenate([knots, roots[np.isfinite(roots)]])
+        inside = candidates[(candidates >= 0) & (candidates <= 1)]
+        return float(abs(slope(inside)).max()) / self.duration
+
+    @property
+    def _knots(self) -> Array:
+        """Clamped, uniform, over s = t / duration in [0, 1]."""
+        k = self.degree
+        inner = np.linspace(0, 1, len(self.control) - k + 1)
+        return np.concatenate([np.zeros(k), inner, np.ones(k)])
+
+    @cached_property
+    def _splines(self) -> tuple["BSpline", ...]:
+        """T and its first two derivatives over s = t / duration in [0, 1]."""
+        from scipy.interpolate import BSpline
+
+        k, knots = self.degree, self._knots
+        spline = BSpline(knots, np.array(self.control), k, extrapolate=False)
+        first = spline.derivative()
+        second = first.derivative() if k >= 2 else BSpline(knots[1:-1], np.zeros(len(self.control)), 0)
+        return spline, first, second
+
+    def _evaluate(self, derivative: int, t: ArrayLike) -> Array:
+        try:
+            times = np.asarray(t, dtype=float)
+        except (TypeError, ValueError):
+            raise InvalidInput(f"t must be numbers, got {t!r}") from None
+        if not ((times >= 0) & (times <= self.duration * (1 + _ROUNDING))).all():
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+        times = np.minimum(times, self.duration)
+        values: Array = self._splines[derivative](times / self.duration)
+        return values / self.duration**derivative if derivative else values
+
+    def __repr__(self) -> str:
+        return f"TimeScaling({self.duration:g} s, control={numbers(self.control)}, degree {self.degree})"

@@ -1,0 +1,1 @@
+"""How an object escapes from a grasp that cannot hold it."""

@@ -1,0 +1,1 @@
+"""A grasp, a state, an outline."""

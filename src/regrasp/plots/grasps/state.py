@@ -1,0 +1,207 @@
+"""The object with its contacts, friction cones and forces (Fig. 1 and 10)."""
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.font_manager import FontProperties
+from matplotlib.lines import Line2D
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.plans.transition import Transition
+from regrasp.plots.grasps.body import draw_body, extent
+from regrasp.plots.grasps.load import draw_load
+from regrasp.plots.grasps.space_state import draw_state, draw_transition
+from regrasp.plots.look.arrows import arrow
+from regrasp.plots.look.solids import Triangles, triangles_of
+from regrasp.plots.look.style import (
+    INK,
+    SMALL,
+    Colours,
+    axes_or_new,
+    contact_colours,
+    label_axis,
+    legend,
+    quantity,
+    round_below,
+)
+from regrasp.plots.look.units import SI, Units
+
+# Lengths of the longest force and of the friction cones, as fractions of the object's extent.
+_LONGEST, _CONE = 0.45, 0.36
+
+
+def plot_state(
+    state: GraspState,
+    ax: Axes | None = None,
+    *,
+    force_scale: float | None = None,
+    colours: Colours | None = None,
+    absent: Collection[str] = (),
+    mesh: Any = None,
+    units: Units = SI,
+) -> Axes:
+    """The object with the finger forces and the load of one state (Fig. 1).
+
+    Forces are those of the fingers on the object, drawn with their tails at the contacts, so that a force
+    in equilibrium stands inside its friction cone; the load starts at the centre of mass, and a load torque
+    is a turning arrow around it. The grey body only suggests the object: its surface is known at the
+    contacts, where its tangents are drawn, and nowhere else.
+
+    In space the axes are 3-D, at one scale along x, y and z, and the object is its ``mesh``, translucent, for
+    the arrows lie inside it.
+
+    force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's extent.
+    colours: of the contacts by name; by their place in the grasp if not given.
+    absent: names of contacts whose finger is not there in this state: an open circle marks the place.
+    mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the object
+    frame with the centre of mass at the origin.
+    Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
+    """
+    triangles = surface_of(mesh, state.grasp)
+    colours = contact_colours(state.grasp) if colours is None else colours
+    scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
+    if state.grasp.dimension == 3:
+        drawn: Axes = draw_state(
+            state,
+            ax,
+            size=_size(state.grasp, triangles),
+            scale=scale,
+            colours=colours,
+            absent=absent,
+            mesh=triangles,
+            units=units,
+        )
+        return drawn
+    ax = axes_or_new(ax, height=3.4)
+    _scene(ax, state, scale, colours, units, absent)
+    _forces(ax, state, scale, colours, "force")
+    return ax
+
+
+def plot_transition(
+    transition: Transition,
+    ax: Axes | None = None,
+    *,
+    force_scale: float | None = None,
+    mesh: Any = None,
+    units: Units = SI,
+) -> Axes:
+    """The forces at both states of a transition and the path of each force head between them (Fig. 10).
+
+    Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
+    """
+    triangles = surface_of(mesh, transition.grasp)
+    colours = contact_colours(transition.grasp)
+    scale = force_scale
+    if scale is None:
+        scale = force_scale_of(transition.start, transition.end, mesh=triangles)
+    if transition.grasp.dimension == 3:
+        size = _size(transition.grasp, triangles)
+        drawn: Axes = draw_transition(
+            transition, ax, size=size, scale=scale, colours=colours, mesh=triangles, units=units
+        )
+        legend(drawn, _key(), loc="upper left", bbox_to_anchor=(0, 1.08))
+        return drawn
+    ax = axes_or_new(ax, height=3.4)
+    _scene(ax, transition.start, scale, colours, units)
+    _forces(ax, transition.start, scale, colours, "start force")
+    _forces(
+        ax,
+        transition.end,
+        scale,
+        colours,
+        "end force",
+        linestyle=(0, (2, 1)),
+        linewidth=1.0,
+        facecolor="white",
+    )
+    for name, r, a, b in zip(
+        transition.grasp.names,
+        transition.grasp.positions,
+        transition.start.forces,
+        transition.end.forces,
+        strict=True,
+    ):
+        heads = np.array([r + scale * a, r + scale * b])
+        ax.plot(*heads.T, color=colours[name], linewidth=2.6, alpha=0.45, gid=f"path {name}", zorder=3)
+    legend(ax, _key())
+    return ax
+
+
+def force_scale_of(*states: GraspState, mesh: Triangles | None = None) -> float:
+    """Length of a unit force [m/N] at which the longest force of the states spans 0.45 of the extent."""
+    longest = max(max(s.magnitudes.max(), float(np.linalg.norm(s.load.force))) for s in states)
+    return _LONGEST * _size(states[0].grasp, mesh) / (longest or 1.0)
+
+
+def _size(grasp: Grasp, mesh: Triangles | None) -> float:
+    return extent(grasp, None if mesh is None else mesh[0])
+
+
+def surface_of(mesh: Any, grasp: Grasp) -> Triangles | None:
+    """The triangles of a mesh given with a grasp; raises ``InvalidInput`` for a mesh and a planar grasp."""
+    if mesh is not None and grasp.dimension != 3:
+        raise InvalidInput("a mesh is the surface of an object in space, but this grasp is planar")
+    return triangles_of(mesh)
+
+
+def _key() -> list[Line2D]:
+    return [
+        Line2D([], [], color=INK, linewidth=1.4, label="start"),
+        Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (2, 1)), label="end"),
+        Line2D([], [], color=INK, linewidth=2.6, alpha=0.45, label="path"),
+    ]
+
+
+def _scene(
+    ax: Axes, state: GraspState, scale: float, colours: Colours, units: Units, absent: Collection[str] = ()
+) -> None:
+    """Everything but the finger forces."""
+    size = extent(state.grasp)
+    draw_body(ax, state.grasp, colours, _CONE * size, absent)
+    draw_load(ax, state.load, scale, 0.1 * size)
+    _scale_key(ax, scale, size, units)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    label_axis(ax.xaxis, "$x$", units.length, size)
+    label_axis(ax.yaxis, "$y$", units.length, size)
+
+
+def _forces(ax: Axes, state: GraspState, scale: float, colours: Colours, what: str, **look: object) -> None:
+    used = state.in_use
+    for name, r, f in zip(state.grasp.names, state.grasp.positions, state.forces, strict=True):
+        if name in used:
+            arrow(
+                ax,
+                r,
+                r + scale * f,
+                gid=f"{what} {name}",
+                **({"facecolor": colours[name], "edgecolor": colours[name], "zorder": 3} | look),
+            )
+
+
+def _scale_key(ax: Axes, scale: float, size: float, units: Units) -> None:
+    """A bar above the axes, at the right, as long as a round force."""
+    force = round_below(0.3 * size / scale)
+    ax.add_artist(
+        AnchoredSizeBar(
+            ax.transData,
+            scale * force,
+            quantity(force, units.force),
+            "lower right",
+            pad=0,
+            borderpad=0.2,
+            sep=2,
+            label_top=True,
+            frameon=False,
+            color=INK,
+            bbox_to_anchor=(1, 1),
+            bbox_transform=ax.transAxes,
+            fontproperties=FontProperties(size=SMALL),
+        )
+    )

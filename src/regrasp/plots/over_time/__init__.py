@@ -1,0 +1,1 @@
+"""Forces, margins, loads and the time function over time."""

@@ -1,0 +1,89 @@
+"""Magnitudes, angles and margins of the finger forces over time (Fig. 9)."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from regrasp.mechanics.checks import Array, choice
+from regrasp.plans.transition import Transition
+from regrasp.plots.look.style import GREY, INK, axes_or_new, contact_colours, label_axis, legend, literal
+from regrasp.plots.look.units import SI, Units
+
+_SAMPLES = 201
+
+
+def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """|f_i(t)| of every finger (Fig. 9a)."""
+    ax = axes_or_new(ax)
+    t = _times(transition)
+    magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
+    _lines(ax, transition, t, magnitudes, units)
+    ax.set_ylim(bottom=-0.03 * float(magnitudes.max()))  # a line along zero stays visible
+    label_axis(ax.yaxis, r"$|f_i|$", units.force, float(magnitudes.max()))
+    return ax
+
+
+def plot_angles(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """The angle between f_i(t) and the normal n_i, below the limit atan(mu_i) of its cone (Fig. 9b).
+
+    A limit that all contacts share is one grey line. A finger without force has no angle there.
+    """
+    ax = axes_or_new(ax)
+    t = _times(transition)
+    limits = np.array([contact.half_angle for contact in transition.grasp])
+    _lines(ax, transition, t, np.degrees(limits - transition.margins(t).angle), units)
+    one = len(set(limits)) == 1
+    colours = contact_colours(transition.grasp)
+    for name, limit in zip(transition.grasp.names, np.degrees(limits), strict=True):
+        ax.axhline(
+            limit, color=GREY if one else colours[name], linewidth=0.9, linestyle="--", gid=f"limit {name}"
+        )
+        if one:
+            break
+    where = (0.0, float(np.degrees(limits.max())))
+    ax.annotate(r"$\arctan\mu_i$", where, (3, 2), textcoords="offset points", fontsize=7, color=GREY)
+    ax.set_ylim(-0.03 * where[1], 1.15 * where[1] or 1.0)
+    label_axis(ax.yaxis, "angle to normal", "deg", where[1])
+    return ax
+
+
+def plot_margins(
+    transition: Transition, ax: Axes | None = None, *, objective: str = "angle", units: Units = SI
+) -> Axes:
+    """The ``angle`` margin [deg] or the ``force`` margin [N] of every finger over time.
+
+    The dashed line is the least margin at both ends, or at any instant of a path through instants: no margin
+    falls below it in between (fact 1).
+    """
+    choice(objective, "objective", ("angle", "force"))
+    ax = axes_or_new(ax)
+    t = _times(transition)
+    margins = transition.margins(t)
+    course = transition.course
+    known = transition.margins(np.array([0.0, transition.duration]) if course is None else course.times)
+    if objective == "angle":
+        values, least = np.degrees(margins.angle), np.degrees(known.least_angle)
+    else:
+        values, least = margins.force, known.least_force
+    _lines(ax, transition, t, values, units)
+    ax.axhline(least, color=INK, linewidth=0.9, linestyle="--", gid="least")
+    ax.set_ylim(bottom=min(0.0, 1.1 * float(least)))
+    label_axis(
+        ax.yaxis,
+        f"{objective} margin",
+        "deg" if objective == "angle" else units.force,
+        float(np.nanmax(values)),
+    )
+    return ax
+
+
+def _times(transition: Transition) -> Array:
+    return np.linspace(0, transition.duration, _SAMPLES)
+
+
+def _lines(ax: Axes, transition: Transition, t: Array, values: Array, units: Units) -> None:
+    """A line per contact from (m, n) values, the axis of time and the legend."""
+    for (name, colour), column in zip(contact_colours(transition.grasp).items(), values.T, strict=True):
+        ax.plot(t, column, color=colour, linewidth=1.4, label=literal(name))
+    ax.set_xlim(0, transition.duration)
+    label_axis(ax.xaxis, "$t$", units.time, transition.duration)
+    legend(ax)

@@ -1,0 +1,35 @@
+"""The time function T(t) (Fig. 8)."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from regrasp.plans.timing import TimeScaling
+from regrasp.plots.look.style import GREY, PALETTE, axes_or_new, label_axis, legend
+from regrasp.plots.look.units import SI, Units
+
+_SAMPLES = 201
+
+
+def plot_scaling(
+    scaling: TimeScaling, ax: Axes | None = None, *, control: bool = False, units: Units = SI
+) -> Axes:
+    """T(t) over the duration (Fig. 8), with its control values if ``control``."""
+    ax = axes_or_new(ax)
+    t = np.linspace(0, scaling.duration, _SAMPLES)
+    ax.plot(t, scaling(t), color=PALETTE[0], linewidth=1.4, label="$T(t)$")
+    if control:
+        ax.plot(
+            scaling.abscissae,
+            scaling.control,
+            "o--",
+            color=GREY,
+            linewidth=0.7,
+            markersize=3,
+            clip_on=False,
+            label="control values",
+        )
+        legend(ax)
+    ax.set_xlim(0, scaling.duration)
+    label_axis(ax.xaxis, "$t$", units.time, scaling.duration)
+    label_axis(ax.yaxis, "$T$", "-", 1.0)
+    return ax

@@ -1,0 +1,1 @@
+"""Everything of a plan together: figures at a glance, films, pages."""

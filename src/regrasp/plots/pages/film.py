@@ -1,0 +1,195 @@
+"""A plan as a film: GIF, HTML page or MP4."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import ceil, floor, log10
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.figure import Figure
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, number
+from regrasp.outline.outline import Outline
+from regrasp.plans.regrasp_plan import FingerMove, RegraspPlan
+from regrasp.plans.transition import Transition
+from regrasp.plots.look.solids import triangles_of
+from regrasp.plots.look.space_axes import space_panel
+from regrasp.plots.look.style import SMALL, TEXT, label_axis, new_figure, short, tidy
+from regrasp.plots.look.units import SI, Units
+from regrasp.plots.look.view import shared_view
+from regrasp.plots.regrasps.moments import Moment, Stage, as_regrasp, joined, moment_of
+from regrasp.plots.regrasps.space_moments import SpaceStage, measures
+
+# A finger in the air keeps this far from where it touched, as a fraction of the object's size.
+_LIFT = 0.08
+_DPI = 100
+
+
+def animate(
+    plan: RegraspPlan | Transition,
+    outline: Outline | Any = None,
+    *,
+    path: str | PathLike[str],
+    frames_per_second: float = 20.0,
+    move_time: float = 0.6,
+    units: Units = SI,
+) -> Path:
+    """Write a film of a plan in the world frame, in which gravity keeps its direction and the object turns.
+
+    Forces are those of the fingers on the object, with their tails at the contacts. A dashed ring is a finger
+    in the air; its way between two contact points is only suggested and takes ``move_time`` [s], which no
+    plan says. Time runs as in the plan.
+    outline: in space the solid, as for ``plot_regrasp``. Without it the hull of all contacts stands for the
+    object.
+    path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
+    Raises ``InvalidInput`` for another ending and for MP4 without ffmpeg.
+    """
+    target = Path(path)
+    ending = target.suffix.lower()
+    if ending not in (".gif", ".html", ".mp4"):
+        raise InvalidInput(f"path must end in .gif, .html or .mp4, got {str(target)!r}")
+    if ending == ".mp4" and not FFMpegWriter.isAvailable():
+        raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif or .html instead")
+    rate = number(frames_per_second, "frames_per_second", above=0)
+    whole = as_regrasp(plan)
+    scene = (_SpaceScene if whole.steps[0].grasp.dimension == 3 else _Scene)(whole, outline, units)
+    frames = moments(whole, rate, number(move_time, "move_time", least=0), scene.stage.radius, units)
+    film = _film(scene, frames, rate)
+    if ending == ".html":
+        target.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
+    else:
+        writer = PillowWriter(fps=rate) if ending == ".gif" else FFMpegWriter(fps=rate)  # type: ignore[arg-type]
+        film.save(target, writer=writer, dpi=_DPI)
+    return target
+
+
+def moments(
+    plan: RegraspPlan, rate: float, move_time: float, radius: float, units: Units = SI
+) -> list[tuple[str, Moment]]:
+    """What every frame shows: a title and a moment; fingers move before the step they are needed in.
+
+    radius: of the object [m], around which they move.
+    """
+    normals = joined([step.grasp for step in plan.steps])
+    lift, far = 2 * _LIFT * radius, (1 + 2 * _LIFT) * radius
+    idle: dict[int, Array] = {}
+    frames: list[tuple[str, Moment]] = []
+    elapsed = 0.0
+    for k, step in enumerate(plan.steps):
+        for move in (m for m in plan.moves if m.step == k):
+            ends = [
+                move.origin - lift * normals[move.origin_name],
+                move.target - lift * normals[move.target_name],
+            ]
+            count = max(2, ceil(move_time * rate)) if move_time else 0
+            title = f"{short(_rounded(elapsed, plan))} {units.time}: a finger moves"
+            frames += [
+                (title, _moving(plan, k, idle, move, _way(ends[0], ends[1], far, u)))
+                for u in np.linspace(0, 1, count).tolist()
+            ]
+            idle.pop(move.finger, None)
+        what = step.kind if step.contact is None else f"{step.kind} of {step.contact}"
+        what += f" for {step.arrival}" if step.arrival else ""
+        for t in np.linspace(0, step.duration, max(2, ceil(step.duration * rate) + 1)).tolist():
+            title = f"{short(_rounded(elapsed + t, plan))} {units.time}: {what}".replace("$", r"\$")
+            frames.append((title, moment_of(plan, k, t, idle)))
+        elapsed += step.duration
+        for number_, name in enumerate(plan.fingers[k]):
+            if name is not None and name in step.idle_at_end:
+                idle[number_] = step.grasp[name].position - lift * normals[name]
+    return frames
+
+
+def _rounded(t: float, plan: RegraspPlan) -> float:
+    """A time to show, to a thousandth of the plan's."""
+    step = 10.0 ** floor(log10(plan.duration) - 2)
+    return float(f"{round(t / step) * step:.6g}")
+
+
+def _moving(plan: RegraspPlan, k: int, idle: dict[int, Array], move: FingerMove, at: Array) -> Moment:
+    """The start of a step, with the arriving finger still in the air."""
+    moment = moment_of(plan, k, 0.0, {n: r for n, r in idle.items() if n != move.finger})
+    others = tuple(f for f in moment.fingers if f.number != move.finger)
+    here = next(f for f in moment.fingers if f.number == move.finger)
+    flying = type(here)(here.number, here.name, moment.turn @ at, None, 0.0, np.zeros(at.size))
+    return Moment(moment.turn, moment.load, (*others, flying))
+
+
+def _way(origin: Array, target: Array, far: float, u: float) -> Array:
+    """Away from the centre of mass to a distance ``far`` [m], around it the shorter way, and back."""
+    a, b = (r / (np.linalg.norm(r) or 1.0) for r in (origin, target))
+    across = b - (a @ b) * a
+    if np.linalg.norm(across) < 1e-6:  # to the same side, or to the opposite one by any way around
+        across = np.eye(a.size)[np.argmin(abs(a))]
+        across = across - (across @ a) * a
+    across /= np.linalg.norm(across)
+    turn = float(np.arctan2(across @ b, a @ b))
+    rise, around, fall = (float(np.clip((u - start) / (1 / 3), 0, 1)) for start in (0, 1 / 3, 2 / 3))
+    radii = float(np.linalg.norm(origin)), float(np.linalg.norm(target))
+    start_or_end, share = (radii[1], 1 - fall) if fall else (radii[0], rise)
+    radius = start_or_end + share * max(0.0, far - start_or_end)
+    return np.asarray(radius * (np.cos(around * turn) * a + np.sin(around * turn) * across))
+
+
+class _Scene:
+    """A planar object in axes with numbers."""
+
+    def __init__(self, plan: RegraspPlan, outline: Any, units: Units) -> None:
+        if outline is not None and not isinstance(outline, Outline):
+            raise InvalidInput(f"a plan in the plane is drawn on an Outline, got {type(outline).__name__}")
+        self.stage, self.units = Stage(plan.steps, outline), units
+
+    def axes(self, figure: Figure) -> Any:
+        """New axes for all moments."""
+        return tidy(figure.add_axes((0.16, 0.12, 0.8, 0.8)))
+
+    def show(self, ax: Any, moment: Moment) -> None:
+        """Draw a moment on axes that were cleared."""
+        self.stage.draw(ax, moment)
+        ax.tick_params(labelsize=SMALL)
+        label_axis(ax.xaxis, "$x$ in the world", self.units.length, self.stage.size)
+        label_axis(ax.yaxis, "$y$", self.units.length, self.stage.size)
+
+
+class _SpaceScene:
+    """A solid object seen from one direction, with the world's axes and a bar of a round length."""
+
+    def __init__(self, plan: RegraspPlan, mesh: Any, units: Units) -> None:
+        self.stage, self.units = SpaceStage(plan.steps, triangles_of(mesh)), units
+        shown = [
+            moment_of(plan, k, t)
+            for k, step in enumerate(plan.steps)
+            for t in np.linspace(0, step.duration, 5).tolist()
+        ]
+        window = self.stage.window(shown, shared_view([moment.touching for moment in shown]))
+        # room for fingers in the air
+        self.window = replace(window, side=max(window.side, (1 + 2 * _LIFT) * self.stage.radius))
+
+    def axes(self, figure: Figure) -> Any:
+        """New axes for all moments."""
+        return space_panel(figure, (0.03, 0.0, 0.94, 0.94))
+
+    def show(self, ax: Any, moment: Moment) -> None:
+        """Draw a moment on axes that were cleared."""
+        self.window.show(ax)
+        self.stage.draw(ax, moment)
+        measures(ax, self.stage, self.window, self.units)
+
+
+def _film(scene: _Scene | _SpaceScene, frames: Sequence[tuple[str, Moment]], rate: float) -> FuncAnimation:
+    figure = new_figure(height=3.6)
+    figure.set_layout_engine("none")
+    ax = scene.axes(figure)
+
+    def show(k: int) -> list[Any]:
+        title, moment = frames[k]
+        ax.clear()
+        scene.show(ax, moment)
+        ax.set_title(title, fontsize=TEXT, loc="left")
+        return []
+
+    return FuncAnimation(figure, show, frames=len(frames), interval=1000 / rate, cache_frame_data=False)

@@ -1,0 +1,139 @@
+"""The two-finger map: which two places on an outline hold the load, and how well."""
+
+from math import degrees
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from numpy.typing import NDArray
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.outline.outline import Outline
+from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plots.look.style import INK, PALETTE, SMALL, TEXT, axes_or_new, label_axis, note, short
+from regrasp.plots.look.units import SI, Units
+
+NO_HOLD = "#dddddd"
+PATH = PALETTE[1]
+# Contacts are on an outline within this fraction of its length.
+_ON = 1e-6
+# A place stands for the boundary around it up to this many times half the usual spacing.
+_SPREAD = 1.5
+
+
+def plot_hold_map(
+    graph: HoldGraph,
+    outline: Outline,
+    o: int | None = None,
+    ax: Axes | None = None,
+    *,
+    plan: RegraspPlan | None = None,
+    units: Units = SI,
+) -> Axes:
+    """Margins of all two-finger holds: the place of one finger against that of the other along the outline.
+
+    graph: whose contacts lie on the outline. o: the place of one orientation in ``graph.angles``; by default
+    the best margin over all of them is shown. Grey: no hold; white: not sampled, as near corners.
+    plan: its holds, drawn as a path from the square to the disc. An exchange is a line along one axis:
+    the other finger stays. It moves through the air, so what the line crosses means nothing.
+    """
+    if o is not None and not -len(graph.angles) <= o < len(graph.angles):
+        raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {o!r}")
+    places = np.array([_place(outline, contact) for contact in graph.contacts])
+    margins = graph.margins.max(axis=0) if o is None else graph.margins[o]
+    edges, values = _cells(places, outline.length, _square(graph, margins))
+    ax = axes_or_new(ax, height=3.3)
+    ax.pcolormesh(
+        edges,
+        edges,
+        np.where(values < 0, 0.0, np.nan),
+        cmap=ListedColormap([NO_HOLD]),
+        zorder=1,
+        gid="no hold",
+    )
+    held = np.degrees(np.where(values >= 0, values, np.nan))
+    top = degrees(max(float(margins.max()), 0.0)) or 1.0
+    mesh = ax.pcolormesh(edges, edges, held, cmap="viridis", vmin=0, vmax=top, zorder=1, gid="margins")
+    bar = ax.figure.colorbar(mesh, ax=ax, fraction=0.046, pad=0.03)
+    bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
+    bar.outline.set_linewidth(0.6)
+    bar.set_label("least angle margin [deg]", fontsize=TEXT)
+    if plan is not None:
+        _draw_path(ax, np.array(_path(plan, outline)))
+    ax.set(xlim=(0, outline.length), ylim=(0, outline.length))
+    ax.set_aspect("equal", adjustable="box")
+    label_axis(ax.xaxis, "one finger at arc length", units.length, outline.length)
+    label_axis(ax.yaxis, "the other at", units.length, outline.length)
+    count = len(graph.angles)
+    shown = (
+        f"best of {count} orientations" if o is None else f"object at {short(degrees(graph.angles[o]))} deg"
+    )
+    ax.set_title(shown, fontsize=TEXT, loc="left")
+    return ax
+
+
+def _place(outline: Outline, contact: Contact) -> float:
+    """The arc length of a contact."""
+    s = outline.nearest(contact.position + outline.centre_of_mass)
+    if np.hypot(*(outline.points(s) - contact.position)) > _ON * outline.length:
+        raise InvalidInput(f"contact {contact.name!r} is not on the outline")
+    return s % outline.length
+
+
+def _square(graph: HoldGraph, margins: NDArray[np.float32]) -> Array:
+    """(V, V) symmetric margins; negative on the diagonal."""
+    count = len(graph.contacts)
+    result = np.full((count, count), -1.0)
+    first, second = graph.pairs
+    result[first, second] = result[second, first] = margins
+    return result
+
+
+def _cells(places: Array, length: float, values: Array) -> tuple[Array, Array]:
+    """Edges (k + 1,) and values (k, k) of cells around places: half way to the next, or not that far."""
+    order = np.argsort(places)
+    s = places[order]
+    gaps = np.diff(s, append=s[0] + length)
+    reach = np.minimum(gaps, _SPREAD * float(np.median(gaps))) / 2
+    low, high = s - np.roll(reach, 1), s + reach
+    edges, rows = [low[0]], []
+    for k in range(len(s)):
+        if low[k] - edges[-1] > 1e-9 * length:
+            rows.append(-1)  # a gap
+            edges.append(low[k])
+        rows.append(int(order[k]))
+        edges.append(high[k])
+    index = np.array(rows)
+    cells = np.where((index < 0)[:, None] | (index < 0), np.nan, values[np.ix_(index, index)])
+    return np.array(edges), cells
+
+
+def _path(plan: RegraspPlan, outline: Outline) -> list[tuple[float, float]]:
+    """Places of the two fingers of every hold; one that stays keeps its axis."""
+    path: list[tuple[float, float]] = []
+    for step in plan.steps[:-1]:
+        names = [name for name in step.grasp.names if name not in step.idle_at_end]
+        at = [_place(outline, step.grasp[name]) for name in names]
+        if path:
+            before = path[-1]
+            swaps = min(abs(before[0] - at[0]), abs(before[1] - at[1]))
+            if min(abs(before[0] - at[1]), abs(before[1] - at[0])) < swaps:
+                at.reverse()
+        path.append((at[0], at[1]))
+    return path
+
+
+def _draw_path(ax: Axes, path: Array) -> None:
+    ax.plot(*path.T, color="white", linewidth=2.8, zorder=3, solid_joinstyle="round")
+    ax.plot(*path.T, color=PATH, linewidth=1.4, zorder=4, gid="path", solid_joinstyle="round")
+    ax.plot(*path[1:-1].T, "o", color=PATH, markersize=3, zorder=5)
+    for at, marker in ((path[0], "s"), (path[-1], "o")):
+        ax.plot(*at, marker, color=PATH, markeredgecolor="white", markersize=7, zorder=5)
+    seen: dict[tuple[float, float], list[str]] = {}
+    for k, (x, y) in enumerate(path.tolist(), 1):
+        seen.setdefault((x, y), []).append(str(k))
+    for at_place, numbers in seen.items():
+        note(ax, ", ".join(numbers), at_place, (1, 1), gap=5, color=INK)

@@ -1,0 +1,1 @@
+"""Held directions, sensitivities, comparisons of solvers."""

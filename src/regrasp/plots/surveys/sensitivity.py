@@ -1,0 +1,110 @@
+"""What the best margin or the least effort is most sensitive to."""
+
+from typing import cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from regrasp.mechanics.checks import Array
+from regrasp.planning.surveys.sensitivity import Sensitivity
+from regrasp.plots.look.png import png
+from regrasp.plots.look.style import (
+    GREY,
+    INK,
+    SMALL,
+    TEXT,
+    axes_or_new,
+    contact_colours,
+    label_axis,
+    legend,
+    literal,
+    quantity,
+)
+from regrasp.plots.look.units import SI, Units
+
+_VALUES = {
+    "angle": "least angle margin",
+    "force": "least force margin",
+    "effort": "least effort",
+    "peak": "least peak force",
+    "peak_normal": "least peak normal force",
+    "friction_use": "least friction use",
+}
+_BAR, _GAP = 1.0, 0.8
+_LINE = 36  # letters that fit above the axes
+
+
+def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """The change of the best value, to first order, by a hundredth of everything (``Sensitivity.effects``).
+
+    A bar per contact for its friction, its place along the boundary's tangent, its normal and its force
+    limit, where one is given; below them the load's force and torque. Angles are in degrees.
+    """
+    steps, effects = sensitivity.steps(), sensitivity.effects()
+    degrees = sensitivity.objective == "angle"
+    factor, unit = (np.degrees(1.0), "deg") if degrees else (1.0, _unit(sensitivity, units))
+    rows = _rows(sensitivity, steps, effects, units)
+    height = sum(len(values) * _BAR + _GAP for _, values, _ in rows)
+    names = contact_colours(sensitivity.grasp)
+    columns = max(1, _LINE // (max(map(len, names)) + 4))  # of the legend
+    ax = axes_or_new(ax, height=0.65 + 0.105 * height + 0.14 * -(-len(names) // columns))
+    top, ticks = 0.0, []
+    for label, values, colours in rows:
+        places = top + _BAR * (np.arange(len(values)) + 0.5)
+        ax.barh(places, factor * values, 0.8 * _BAR, color=colours, gid=label)
+        ticks.append((float(places.mean()), label))
+        top += len(values) * _BAR + _GAP
+    ax.axvline(0, color=INK, linewidth=0.8)
+    ax.set_yticks([y for y, _ in ticks], [label for _, label in ticks], fontsize=SMALL)
+    ax.tick_params(axis="y", length=0)
+    ax.set_ylim(top, -_GAP)
+    ax.spines["left"].set_visible(False)
+    largest = factor * max(float(np.nanmax(abs(values), initial=0.0)) for _, values, _ in rows)
+    ax.set_xlim(-1.1 * (largest or 1.0), 1.1 * (largest or 1.0))
+    arrow = "better \N{RIGHTWARDS ARROW}" if sensitivity.larger_is_better else "\N{LEFTWARDS ARROW} better"
+    label_axis(ax.xaxis, f"change ({arrow})", unit, largest)
+    value = quantity(factor * sensitivity.value, "" if unit == "-" else unit).strip()
+    handles = [
+        Line2D([], [], color=colour, linewidth=5, solid_capstyle="butt", label=literal(name))
+        for name, colour in names.items()
+    ]
+    title = f"{_VALUES[sensitivity.objective]} {value}"
+    legend(ax, handles, ncols=columns, title=title, title_fontsize=TEXT, alignment="left")
+    return ax
+
+
+def sensitivity_png(sensitivity: Sensitivity) -> bytes:
+    """``plot_sensitivity`` as a PNG image, for display in notebooks."""
+    return png(cast(Figure, plot_sensitivity(sensitivity).figure))
+
+
+def _rows(
+    sensitivity: Sensitivity, steps: dict[str, Array], effects: dict[str, Array], units: Units
+) -> list[tuple[str, Array, list[str]]]:
+    """Label, bars and colours of each group, from top to bottom."""
+    colours = list(contact_colours(sensitivity.grasp).values())
+    along = quantity(float(steps["position"][0]), units.length, 2)
+    turn = quantity(float(np.degrees(steps["normal"][0])), "deg", 2)
+    labels = {
+        "friction": "friction\n+1%",
+        "position": f"position\n+{along}",
+        "normal": f"normal\n+{turn}",
+        "limit": "force limit\n+1%",
+    }
+    rows = [
+        (label, np.nan_to_num(effects[name]), colours)
+        for name, label in labels.items()
+        if np.isfinite(effects[name]).any()
+    ]
+    names = ("load $f_x$", "load $f_y$", r"load $\tau$")
+    for name, step, effect, of in zip(
+        names, steps["load"], effects["load"], (units.force, units.force, units.torque), strict=True
+    ):
+        rows.append((f"{name} +{quantity(float(step), of, 2)}", np.array([effect]), [GREY]))
+    return rows
+
+
+def _unit(sensitivity: Sensitivity, units: Units) -> str:
+    return {"effort": rf"{units.force}$^2$", "friction_use": "-"}.get(sensitivity.objective, units.force)

@@ -1,0 +1,1 @@
+"""Wrench planes, cones, loops, and the equilibrium locus."""

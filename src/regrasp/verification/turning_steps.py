@@ -1,0 +1,128 @@
+"""Turning paths, decided exactly.
+
+Between two angles apart by Delta the forces are a f + b g with a = sin(Delta - theta) / sin(Delta) and
+b = sin(theta) / sin(Delta), never negative for |Delta| < pi. With f and g in their cones so are they, and
+
+    G (a f + b g) + w(theta) = a (G f + w_f) + b (G g + w_g) + (w(theta) - a w_f - b w_g):
+
+residuals at the ends grow by a + b <= 1 / cos(Delta / 2) at most, and the last term is what w_g differs from
+w_f turned by Delta. The load at each angle is the start's, turned by sines and cosines in rational
+arithmetic. The largest |a f + b g|^2 is bounded by c + |(p, q)|, the crest of its sine wave in 2 theta.
+
+All of the load must turn for that. A load with a still part s, a torque in the plane or what lies along the
+axis in space, needs a middle state m between two angles, under w_m = s + (w(Delta / 2) - s) / cos(Delta / 2):
+then w(theta) = a w_f + c w_m + b w_g with a = sin^2((Delta - theta) / 2) / sin^2(Delta / 2), b the same with
+theta, and c = 1 - a - b = 2 cos(Delta / 2) sin(theta / 2) sin((Delta - theta) / 2) / sin^2(Delta / 2): all at
+least 0 for |Delta| < pi and of sum 1, so that f, m and g decide everything between them, force limits too.
+"""
+
+from fractions import Fraction
+from itertools import pairwise
+from math import inf, sqrt
+
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.state import GraspState
+from regrasp.verification.exact import RESOLUTION, Vector, check_state, dot, exact
+from regrasp.verification.protocols import Plan, Turn
+from regrasp.verification.rotated_loads import TurningLoad, cosine_sine
+from regrasp.verification.setpoints import Checked
+
+# 314159 / 100000 is a little less than pi.
+_BELOW_PI = Fraction(314159, 100000)
+
+
+def check_turn(plan: Plan, turn: Turn) -> Checked:
+    """Check the states at all angles, the load there, the steps between them and the force limits."""
+    start, angles = plan.start, exact(turn.angles.tolist())
+    broken = _check_axis(turn, start.grasp.dimension)
+    if broken:
+        return Checked(broken, inf, 0.0, -inf)
+    turning = TurningLoad(start.load, turn.axis)
+    steps = [b - a for a, b in pairwise(angles)]
+    if angles[0] != 0 or not (all(s > 0 for s in steps) or all(s < 0 for s in steps)):
+        return Checked(["the angles of a turn must go one way from 0"], inf, 0.0, -inf)
+    if max(abs(s) for s in steps) > _BELOW_PI:
+        broken.append("a step of the turn is pi or more: no combination of its ends holds the load between")
+    if turn.middles is None and not turning.turns_whole:
+        broken.append(
+            "a part of the load does not turn with the object, and no states between angles hold it"
+        )
+    ends = ((plan.start, 0), (plan.end, -1))
+    if any((state.forces != turn.forces[k]).any() for state, k in ends):
+        broken.append("start and end are not the first and the last state of the turn")
+    if turning.differs(plan.end.load, angles[-1]):
+        broken.append("end: the load is not the start's, seen from the turned object")
+    residuals, slacks, angle_margins = [0.0], [inf], [inf]
+    states = [
+        (f"angle {float(angle):.6g} rad", turning.at(angle), turn.forces[k]) for k, angle in enumerate(angles)
+    ]
+    if turn.middles is not None:
+        if len(turn.middles) != len(steps):
+            return Checked([f"{len(steps)} steps of a turn need as many middles"], inf, 0.0, -inf)
+        states += [
+            (f"between {float(a):.6g} and {float(b):.6g} rad", turning.between(a, b), turn.middles[k])
+            for k, (a, b) in enumerate(pairwise(angles))
+        ]
+    for label, load, forces in states:
+        state = GraspState(start.grasp, load, forces)
+        residual, slack, violations = check_state(state, label)
+        residuals.append(residual)
+        slacks.append(slack)
+        angle_margins.append(state.margins.least_angle)
+        broken += violations
+    if turn.middles is None:  # convex combinations never exceed the limits of their ends
+        for k, step in enumerate(steps):
+            broken += _check_limits(plan, turn, k, step)
+    return Checked(broken, max(residuals), min(angle_margins), min(slacks))
+
+
+def _check_axis(turn: Turn, dimension: int) -> list[str]:
+    """A turn in space has a unit axis, one in the plane none."""
+    if (turn.axis is None) != (dimension == 2):
+        return ["a turn in space needs its axis, and one in the plane has none"]
+    if turn.axis is not None:
+        axis = exact(turn.axis.tolist())
+        if abs(dot(axis, axis) - 1) > RESOLUTION:
+            return ["the axis of a turn must have length 1"]
+    return []
+
+
+def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
+    """Whether no force exceeds its limit between two angles."""
+    broken = []
+    c, s = cosine_sine(step)
+    for i, contact in enumerate(plan.start.grasp.contacts):
+        if contact.max_force is None:
+            continue
+        limit = Fraction(contact.max_force)
+        f, g = (_measured(contact, turn.forces[at, i].tolist()) for at in (k, k + 1))
+        peak2 = _peak(f, g, c, s)
+        if peak2 > (limit * (1 + RESOLUTION)) ** 2:
+            broken.append(
+                f"force of {contact.name} reaches {sqrt(peak2):.12g} between two angles, above its limit "
+                f"{contact.max_force:.12g}"
+            )
+    return broken
+
+
+def _measured(contact: Contact, force: list[float]) -> Vector:
+    """A force as its limit measures it: a soft finger's torque as the tangential force mu m / e."""
+    measured = exact(force)
+    if contact.torsion is not None:
+        measured[3] *= Fraction(contact.friction) / Fraction(contact.torsion)
+    return measured
+
+
+def _peak(f: Vector, g: Vector, c: Fraction, s: Fraction) -> Fraction:
+    """An upper bound of |a f + b g|^2 over a step with cosine c and sine s, tight to rounding."""
+    aa, ab, bb = dot(f, f), dot(f, g), dot(g, g)
+    # The slope of |.|^2 at both ends, times sin^2: it rises from the first and falls to the second end if the
+    # crest lies between them; else an end is the highest.
+    first, second = 2 * s * (ab - aa * c), 2 * s * (bb * c - ab)
+    sign = 1 if s > 0 else -1
+    if sign * first <= 0 or sign * second >= 0:
+        return max(aa, bb)
+    middle = (aa - 2 * ab * c + bb) / 2
+    p, q = (aa * (c * c - s * s) - 2 * ab * c + bb) / -2, s * (ab - aa * c)
+    swing = Fraction(sqrt(p * p + q * q)) * (1 + RESOLUTION)
+    return max(aa, bb, (middle + swing) / (s * s))

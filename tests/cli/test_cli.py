@@ -1,0 +1,342 @@
+"""End to end: the command line on real files."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import regrasp as rg
+from places import ROOT
+from processes import hear_interrupts
+from regrasp.files import parse_scenario, plan_scenario, read_plan
+from scenarios import PAPER, edited, regrasp
+
+EXAMPLES = ROOT / "examples"
+PLAN = plan_scenario(parse_scenario(PAPER))
+NUMBERS = ["plan.json", "setpoints.csv"]
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """``regrasp ARGUMENTS`` as a person runs it."""
+    command = [sys.executable, "-m", "regrasp", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
+    """The folder in which ``regrasp demo`` ran, and what it said."""
+    folder = tmp_path_factory.mktemp("demo")
+    return folder, run("demo", cwd=folder)
+
+
+# -- the demo -------------------------------------------------------------------------------------------
+
+
+def test_demo_writes_a_verified_plan_and_says_so(
+    demo: tuple[Path, subprocess.CompletedProcess[str]],
+) -> None:
+    folder, done = demo
+    assert (done.returncode, done.stderr) == (0, "")
+    assert str(PLAN) in done.stdout
+    assert str(rg.verify(PLAN)) in done.stdout
+    assert "each of 1001 set-points verified too" in done.stdout
+    assert read_plan(folder / "regrasp-demo" / "plan.json") == PLAN
+
+
+def test_demo_lists_every_file_it_wrote(demo: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    folder, done = demo
+    listed = [Path(line.split()[1]).name for line in done.stdout.splitlines() if line.startswith("wrote ")]
+    assert listed == names(folder / "regrasp-demo")
+    assert {"paper.toml", *NUMBERS, "overview.png"} < set(listed)
+    assert names(folder) == ["regrasp-demo"]
+
+
+def test_demo_figures_are_images(demo: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    pictures = list((demo[0] / "regrasp-demo").glob("*.png"))
+    assert len(pictures) >= 8
+    for picture in pictures:
+        assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_demo_can_be_verified_and_planned_again(
+    demo: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
+    first = demo[0] / "regrasp-demo"
+    again = run("plan", first / "paper.toml", "-o", "again", "--no-figures", cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (0, "")
+    for name in NUMBERS:
+        assert (tmp_path / "again" / name).read_bytes() == (first / name).read_bytes()
+    for target in (first, "again/plan.json"):
+        checked = run("verify", target, cwd=tmp_path)
+        assert (checked.returncode, checked.stderr) == (0, "")
+        table = first / "setpoints.csv" if target == first else Path("again/setpoints.csv")
+        count = f"each of 1001 set-points in {table} verified too"
+        assert checked.stdout == f"{PLAN}\n{rg.verify(PLAN)}\n{count}\n"
+
+
+# -- plan and verify ------------------------------------------------------------------------------------
+
+
+def test_plan_of_an_addition(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = regrasp(
+        capsys, "plan", EXAMPLES / "addition.toml", "-o", tmp_path / "out", "--no-figures"
+    )
+    assert (status, err) == (0, "")
+    assert "addition of B" in out
+    assert names(tmp_path / "out") == NUMBERS
+    assert rg.verify(read_plan(tmp_path / "out" / "plan.json")).ok
+
+
+def test_plan_over_an_older_one_keeps_other_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "slow.toml").write_text(edited(("duration = 1.0", "duration = 2.0")))
+    (tmp_path / "notes.txt").write_text("mine")
+    for scenario in (EXAMPLES / "paper.toml", tmp_path / "slow.toml"):
+        assert regrasp(capsys, "plan", scenario, "-o", tmp_path, "--no-figures")[0] == 0
+    assert names(tmp_path) == sorted(["notes.txt", "slow.toml", *NUMBERS])
+    assert read_plan(tmp_path / "plan.json").duration == 2.0
+    assert (tmp_path / "setpoints.csv").read_text().count("\n") == 2002
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def tampered(folder: Path, change: Callable[[dict[str, list[list[float]]]], None]) -> Path:
+    path = folder / "plan.json"
+    data = json.loads(path.read_text())
+    change(data)
+    path.write_text(json.dumps(data))
+    return path
+
+
+def test_force_changed_by_a_millionth_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "paper.toml").write_text(PAPER)
+    assert run("plan", "paper.toml", "-o", "out", "--no-figures", cwd=tmp_path).returncode == 0
+
+    def nudge(data: dict[str, list[list[float]]]) -> None:
+        data["start"][0][0] += 1e-6
+
+    tampered(tmp_path / "out", nudge)
+    done = run("verify", "out", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith(
+        f"Error: {Path('out') / 'plan.json'}: does not verify:\n  start: not in equilibrium, G f + w_ext is "
+    )
+    assert "Traceback" not in done.stderr
+    assert "verified in exact arithmetic" not in done.stdout
+
+
+def test_plan_that_does_not_verify_is_not_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start = rg.GraspState(PLAN.grasp, PLAN.start.load, -PLAN.start.forces)
+    monkeypatch.setattr("regrasp.files.plan_scenario", lambda scenario: replace(PLAN, start=start))
+    status, out, err = regrasp(capsys, "plan", EXAMPLES / "paper.toml", "-o", tmp_path / "out")
+    assert (status, out) == (1, "")
+    assert "start: force of P1 pulls: normal component -4.8" in err
+    assert names(tmp_path) == []
+
+
+def test_setpoint_outside_its_cone_is_not_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Slipping(rg.Transition):
+        def forces(self, t: object) -> object:
+            return super().forces(t) * [[1, 1], [1, 1], [1, -1]]
+
+    slipping = Slipping(PLAN.kind, PLAN.contact, PLAN.start, PLAN.end, PLAN.scaling, PLAN.record)
+    monkeypatch.setattr("regrasp.files.plan_scenario", lambda scenario: slipping)
+    status, out, err = regrasp(capsys, "plan", EXAMPLES / "paper.toml", "-o", tmp_path / "out")
+    assert (status, out) == (1, "")
+    assert "set-point 0: force of P3 pulls: normal component -3.92\n" in err
+    assert err.splitlines()[-1].endswith("more")
+    assert len(err.splitlines()) == 12
+    assert names(tmp_path) == []
+
+
+class Blank:
+    """A figure that saves nothing, or fails half-way."""
+
+    def __init__(self, error: BaseException | None = None) -> None:
+        self.error = error
+
+    def savefig(self, path: Path) -> None:
+        path.write_bytes(b"half a picture")
+        if self.error is not None:
+            raise self.error
+
+
+def test_progress_is_shown_on_a_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("regrasp.plots.pages.overview.figures", lambda transition: {"overview": Blank()})
+    monkeypatch.setenv("FORCE_COLOR", "1")  # makes rich take any stream for a terminal
+    monkeypatch.setenv("TERM", "xterm")
+    status, out, err = regrasp(capsys, "plan", EXAMPLES / "paper.toml", "-o", tmp_path)
+    assert status == 0
+    assert "drawing figures" in err
+    assert "drawing" not in out
+
+
+@pytest.mark.parametrize("error", [RuntimeError("no ink"), KeyboardInterrupt()])
+@pytest.mark.parametrize("there", [True, False])
+def test_failing_figure_leaves_nothing(
+    error: BaseException,
+    there: bool,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("regrasp.plots.pages.overview.figures", lambda transition: {"overview": Blank(error)})
+    if there:
+        (tmp_path / "out").mkdir()
+        (tmp_path / "out" / "plan.json").write_text("older")
+    arguments = ("plan", EXAMPLES / "paper.toml", "-o", tmp_path / "out")
+    if isinstance(error, KeyboardInterrupt):
+        assert regrasp(capsys, *arguments)[::2] == (130, "\nInterrupted.\n")
+    else:
+        with pytest.raises(RuntimeError, match="no ink"):
+            regrasp(capsys, *arguments)
+    assert names(tmp_path) == (["out"] if there else [])
+    if there:
+        assert names(tmp_path / "out") == ["plan.json"]
+        assert (tmp_path / "out" / "plan.json").read_text() == "older"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends an interrupt as a terminal does")
+def test_interrupt_from_the_terminal_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "long.toml").write_text(edited(("rate = 1000.0", "rate = 1e6")))
+    command = [sys.executable, "-m", "regrasp", "plan", "long.toml", "-o", "out", "--no-figures"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, preexec_fn=hear_interrupts
+    ) as process:
+        deadline = time.monotonic() + 60
+        while not list(tmp_path.glob(".regrasp-*/out/.regrasp-*/setpoints.csv")):  # being written
+            assert process.poll() is None, process.stderr and process.stderr.read()
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err == "\nInterrupted.\n"
+    assert names(tmp_path) == ["long.toml"]
+
+
+# -- what goes wrong ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["plan", "missing.toml", "-o", "out"], "missing.toml: expected a scenario in TOML, "
+                                                "found no such file"),
+        (["plan", "folder", "-o", "out"], "folder: expected a scenario in TOML, found a folder"),
+        (["verify", "missing.json"], "missing.json: expected a plan in JSON, found no such file"),
+        (["verify", "folder"], f"{Path('folder', 'plan.json')}: expected a plan in JSON, found no such file"),
+        (["verify", "paper.toml"], "paper.toml: not JSON, or cut short: "
+                                   "Expecting value: line 1 column 1 (char 0)"),
+    ],
+)  # fmt: skip
+def test_path_that_leads_nowhere(
+    arguments: list[str],
+    message: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    Path("paper.toml").write_text(PAPER)
+    assert regrasp(capsys, *arguments) == (2, "", f"Error: {message}\n")
+    assert names(tmp_path) == ["folder", "paper.toml"]
+
+
+def test_output_that_is_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "out").write_text("mine")
+    status, _, err = regrasp(capsys, "plan", EXAMPLES / "paper.toml", "-o", tmp_path / "out", "--no-figures")
+    assert (status, err) == (
+        2,
+        f"Error: {tmp_path / 'out'}: expected a folder to write into, found a file\n",
+    )
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+def test_infeasible_task_says_how_the_object_escapes(tmp_path: Path) -> None:
+    (tmp_path / "paper.toml").write_text(edited(('contact = "P3"', 'contact = "P1"')))
+    done = run("plan", "paper.toml", "-o", "out", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == (
+        "Error: paper.toml: no forces of P2, P3 inside their friction cones balance "
+        "Wrench(force=(-1.5, -3.5), torque=0): "
+        "the object escapes by turning counter-clockwise about (4.13793, -5.7931)\n"
+    )
+    assert names(tmp_path) == ["paper.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["plan", "paper.toml"], "Missing option '-o' / '--output'"),
+        (["plan", "-o", "out"], "Missing argument 'SCENARIO'"),
+        (["replan"], "No such command 'replan'"),
+        (["verify", "--fast", "x"], "No such option"),
+    ],
+)
+def test_wrong_usage(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = regrasp(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert words in err
+
+
+# -- the rest -------------------------------------------------------------------------------------------
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert regrasp(capsys, "--version") == (0, f"regrasp, version {rg.__version__}\n", "")
+
+
+def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = regrasp(capsys, "--help")
+    assert (status, err) == (0, "")
+    for command in ("demo", "plan", "verify", "schema"):
+        assert f"\n  {command} " in out
+
+
+def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = regrasp(capsys, "schema")
+    assert (status, err) == (0, "")
+    kinds = [json.loads(out)["$defs"][of["$ref"].rpartition("/")[2]] for of in json.loads(out)["anyOf"]]
+    assert [set(kind["required"]) for kind in kinds] == [
+        {"load", "contacts", "task"},
+        {"friction", "load", "outline", "start", "goal", "task"},
+        {"friction", "load", "object", "start", "goal", "task"},
+    ]
+
+
+def test_command_line_starts_light(tmp_path: Path) -> None:
+    heavy = ("clarabel", "matplotlib", "numba", "pandas", "pydantic", "rich", "scipy")
+    code = f"import sys, regrasp.cli; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_installed_command_is_this_one() -> None:
+    from importlib.metadata import entry_points
+
+    (entry,) = entry_points(group="console_scripts", name="regrasp")
+    assert entry.value == "regrasp.cli:main"
+
+
+def test_printed_plan_shows_digits_in_any_unit() -> None:
+    grasp, load = PLAN.grasp, PLAN.start.load
+    micro = rg.plan_removal(rg.GraspState(grasp, load * 1e-6, PLAN.start.forces * 1e-6), "P3")
+    assert "3.790e-06   3.003e-06" in str(micro)
+    assert "3.7897     3.0034" in str(PLAN)

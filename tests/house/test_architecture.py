@@ -1,0 +1,345 @@
+"""The house keeps its import rules (design, section 3), checked by parsing the sources."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator, Set
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import regrasp
+
+ROOT = Path(regrasp.__file__).parent
+
+# Floor (folder or module) -> floors it may import. A new floor needs a line here.
+FLOORS: dict[str, Set[str]] = {
+    "errors": set(),
+    "display": {"errors"},
+    "closed_form": {"closed_form"},
+    "programs": {"errors", "programs"},
+    "mechanics": {"errors", "display", "mechanics"},
+    "plans": {"errors", "display", "mechanics", "closed_form", "plans"},  # values: nothing here plans
+    "planning": {
+        "errors",
+        "display",
+        "mechanics",
+        "closed_form",
+        "outline",
+        "mesh",
+        "programs",
+        "plans",
+        "planning",
+    },
+    "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
+    "outline": {"errors", "mechanics", "outline"},
+    "mesh": {"errors", "mechanics", "outline", "mesh"},
+    "files": {
+        "errors",
+        "mechanics",
+        "outline",
+        "mesh",
+        "closed_form",
+        "programs",
+        "plans",
+        "planning",
+        "verification",
+        "files",
+    },
+    "plots": {"errors", "mechanics", "outline", "mesh", "closed_form", "plans", "planning", "plots"},
+    "bench": {
+        "errors",
+        "mechanics",
+        "closed_form",
+        "plans",
+        "planning",
+        "programs",
+        "files",
+        "plots",
+        "bench",
+    },
+    "cli": {
+        "",
+        "errors",
+        "mechanics",
+        "outline",
+        "mesh",
+        "plans",
+        "planning",
+        "verification",
+        "files",
+        "plots",
+        "bench",
+    },
+    # regrasp/__init__.py: the public names
+    "": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "verification"},
+    "__main__": {"cli"},
+}
+# Room -> rooms of its floor that it may import besides its own; rooms side by side never import each other.
+_HOLDS = {"planning.states"}
+_DRAWN = {"plots.look", "plots.grasps"}
+ROOMS: dict[str, Set[str]] = {
+    "planning.states": set(),
+    "planning.surveys": _HOLDS,
+    "planning.changes": _HOLDS,
+    "planning.holds": _HOLDS,
+    "planning.regrasps": _HOLDS | {"planning.surveys", "planning.changes", "planning.holds"},
+    "plots.look": set(),
+    "plots.grasps": {"plots.look"},
+    "plots.over_time": _DRAWN,
+    "plots.wrench_space": _DRAWN,
+    "plots.escapes": _DRAWN,
+    "plots.regrasps": _DRAWN,
+    "plots.surveys": _DRAWN,
+    "plots.pages": _DRAWN
+    | {"plots.over_time", "plots.wrench_space", "plots.escapes", "plots.regrasps", "plots.surveys"},
+    "files.plans": set(),
+    "files.scenarios": set(),
+    "bench.judging": {"bench.running"},
+    "bench.reporting": {"bench.running", "bench.judging"},
+}
+SOLVERS = {
+    "clarabel", "cvxpy", "qpsolvers", "osqp", "daqp", "quadprog", "piqp", "proxsuite", "scs", "ecos",
+    "highspy", "gurobipy", "mosek", "qpoases", "cvxopt",
+}  # fmt: skip
+HEAVY = {
+    "matplotlib",
+    "cvxpy",
+    "clarabel",
+    "numba",
+    "scipy",
+    "pandas",
+    "pydantic",
+    "qpsolvers",
+    "click",
+    "rich",
+    "shapely",
+    "svgpathtools",
+    "ezdxf",
+    "trimesh",
+    "plotly",
+}
+LINES = 360
+FILES = 15
+"""Files of a room, besides its ``__init__``."""
+
+
+def sources(root: Path = ROOT) -> dict[str, str]:
+    """Module name -> source, for every module of the package at ``root``."""
+    found = {}
+    for path in root.rglob("*.py"):
+        parts = path.relative_to(root).with_suffix("").parts
+        found[".".join((root.name, *parts)).removesuffix(".__init__")] = path.read_text(encoding="utf-8")
+    return found
+
+
+def imported(module: str, modules: dict[str, str]) -> set[str]:
+    """Every module imported anywhere in ``module``: in functions, for types only or by a literal name."""
+    is_package = any(name.startswith(f"{module}.") for name in modules)
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(modules[module])):
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                here = module.split(".") if is_package else module.split(".")[:-1]
+                base = ".".join([*here[: len(here) - node.level + 1], *([base] if base else [])])
+            for alias in node.names:
+                whole = f"{base}.{alias.name}"
+                found.add(whole if whole in modules else base)
+        elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+            called = ast.unparse(node.func).rpartition(".")[2]
+            if called in ("import_module", "__import__"):
+                found.add(str(node.args[0].value))
+    return found
+
+
+def floor(module: str) -> str:
+    return [*module.split("."), ""][1]
+
+
+def room(module: str) -> str:
+    """The two first names below the package, where they are a room with rules of its own."""
+    return ".".join(module.split(".")[1:3])
+
+
+def private(module: str, source: str) -> Iterator[str]:
+    """Private names that a module takes from another room."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("regrasp"):
+            away = str(node.module).rpartition(".")[0] != module.rpartition(".")[0]
+            yield from (
+                a.name for a in node.names if away and a.name.startswith("_") and not a.name.startswith("__")
+            )
+
+
+def violations(module: str, modules: dict[str, str]) -> Iterator[str]:
+    for name in imported(module, modules):
+        package = name.split(".")[0]
+        if package == "regrasp":
+            if floor(name) not in FLOORS[floor(module)] or not open_to(room(module), room(name)):
+                yield f"{module} imports {name}"
+        elif not may_import(module, package):
+            yield f"{module} imports {package}"
+
+
+def open_to(here: str, there: str) -> bool:
+    """Whether a room may import another of its floor."""
+    if here == there or here.split(".")[0] != there.split(".")[0] or here not in ROOMS:
+        return True
+    return there not in ROOMS or there in ROOMS[here]
+
+
+def may_import(module: str, package: str) -> bool:
+    """Whether a module may import a package from outside the project."""
+    here = floor(module)
+    if package in ("matplotlib", "mpl_toolkits"):
+        return here == "plots"
+    if package == "plotly":
+        return module == "regrasp.plots.pages.page"
+    if package == "pydantic":
+        return here == "files"
+    if package == "numba":
+        return room(module) == "closed_form.compiled" or module == "regrasp.programs.audit"
+    if package in SOLVERS:
+        # The benchmark calls solvers with their own defaults, which the back ends do not.
+        return module in (f"regrasp.programs.{package}_backend", f"regrasp.bench.calls.{package}_call")
+    if package in ("click", "rich"):
+        return here == "cli"
+    if package == "shapely":
+        return here in ("outline", "mesh")
+    if package in ("svgpathtools", "ezdxf"):
+        return here == "outline"
+    if package == "trimesh":
+        return here == "mesh"
+    if here in ("errors", "display", "closed_form", "mechanics", "verification"):
+        return package == "numpy" or package in sys.stdlib_module_names
+    return True
+
+
+def cycle(modules: dict[str, str]) -> list[str]:
+    """Modules that import one another in a ring, or nothing."""
+    graph = {module: imported(module, modules) & modules.keys() for module in modules}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def loaded(code: str) -> set[str]:
+    """The top-level packages a fresh interpreter has loaded after ``code``."""
+    show = "import sys; print(*{name.split('.')[0] for name in sys.modules})"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{show}"], capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.split())
+
+
+def test_every_floor_has_its_rule() -> None:
+    modules = sources()
+    assert len(modules) > 40
+    assert {floor(module) for module in modules} <= FLOORS.keys()
+
+
+def test_every_module_keeps_to_its_floor() -> None:
+    modules = sources()
+    assert [broken for module in modules for broken in violations(module, modules)] == []
+
+
+def test_no_import_cycles() -> None:
+    assert cycle(sources()) == []
+
+
+def test_files_read_in_one_sitting() -> None:
+    assert {m: n for m, text in sources().items() if (n := len(text.splitlines())) > LINES} == {}
+
+
+def test_rooms_are_not_crowded() -> None:
+    counts: dict[str, int] = {}
+    for path in ROOT.rglob("*.py"):
+        if path.name != "__init__.py":
+            counts[str(path.parent.relative_to(ROOT))] = counts.get(str(path.parent.relative_to(ROOT)), 0) + 1
+    assert {where: n for where, n in counts.items() if n > FILES} == {}
+
+
+def test_every_folder_says_what_it_is_for() -> None:
+    folders = {path.parent for path in ROOT.rglob("*.py")}
+    assert [f for f in folders if not ast.get_docstring(ast.parse((f / "__init__.py").read_text()))] == []
+
+
+def test_no_private_name_leaves_its_room() -> None:
+    assert {m: names for m, text in sources().items() if (names := list(private(m, text)))} == {}
+    assert list(private("regrasp.plots.look.style", "from regrasp.programs.rows import _Rows")) == ["_Rows"]
+
+
+def test_importing_regrasp_is_light() -> None:
+    assert loaded("import regrasp") & HEAVY == set()
+
+
+def test_what_is_loaded_is_seen() -> None:
+    assert loaded("import regrasp, pydantic") & HEAVY == {"pydantic"}
+
+
+# -- the rules above catch what they are for ------------------------------------------------------------
+
+OFFENCES = [
+    ("regrasp.closed_form.best", "from regrasp.errors import InvalidInput", "regrasp.errors"),
+    ("regrasp.closed_form.best", "import numba", "numba"),
+    ("regrasp.closed_form.best", "from numba.core import types", "numba"),
+    ("regrasp.programs.program", "from regrasp.mechanics import Grasp", "regrasp.mechanics"),
+    ("regrasp.programs.program", "import clarabel", "clarabel"),
+    ("regrasp.programs.clarabel_backend", "import cvxpy as cp", "cvxpy"),
+    ("regrasp.planning.cvxpy_backend", "import cvxpy as cp", "cvxpy"),
+    (
+        "regrasp.mechanics.state",
+        "from regrasp.planning.states.two_fingers import best_state",
+        "regrasp.planning.states.two_fingers",
+    ),
+    ("regrasp.mechanics.state", "import scipy.optimize", "scipy"),
+    ("regrasp.mechanics.state", "def f():\n    import clarabel", "clarabel"),
+    ("regrasp.verification", "from regrasp.closed_form import locus", "regrasp.closed_form.locus"),
+    ("regrasp.verification.plans", "from ..plans import timing", "regrasp.plans.timing"),
+    ("regrasp.plans.timing", "import matplotlib.pyplot as plt", "matplotlib"),
+    ("regrasp.plans.timing", "import_module('matplotlib')", "matplotlib"),
+    ("regrasp.plans.timing", "from .. import plots", "regrasp.plots"),
+    ("regrasp.plans.timing", "import shapely", "shapely"),
+    ("regrasp.plots.pages.page_scene", "from plotly import graph_objects", "plotly"),
+    ("regrasp.outline.svg", "from ..files.source import text_of", "regrasp.files.source"),
+    ("regrasp.outline.outline", "from regrasp.mesh import Mesh", "regrasp.mesh"),
+    ("regrasp.plans.timing", "import trimesh", "trimesh"),
+    ("regrasp.plans.timing", "from pydantic import BaseModel", "pydantic"),
+    ("regrasp.plans.timing", "if TYPE_CHECKING:\n    import regrasp.files", "regrasp.files"),
+    ("regrasp.planning", "from ..plots.look import style", "regrasp.plots.look.style"),
+    ("regrasp", "from regrasp.plots.look import style", "regrasp.plots.look.style"),
+]
+
+
+@pytest.mark.parametrize(("module", "source", "named"), OFFENCES, ids=[f"{o[0]}: {o[1]}" for o in OFFENCES])
+def test_an_offence_is_caught(module: str, source: str, named: str) -> None:
+    assert list(violations(module, sources() | {module: source})) == [f"{module} imports {named}"]
+
+
+@pytest.mark.parametrize(
+    ("module", "source"),
+    [
+        (
+            "regrasp.programs.cvxpy_backend",
+            "import cvxpy as cp\nfrom regrasp.programs.program import Program",
+        ),
+        ("regrasp.closed_form.compiled.two_fingers", "from numba import njit\nfrom . import best"),
+        ("regrasp.plots.look.style", "from mpl_toolkits.mplot3d import Axes3D"),
+        ("regrasp.mechanics.state", "from fractions import Fraction\n'import clarabel'"),
+    ],
+)
+def test_what_is_allowed_passes(module: str, source: str) -> None:
+    assert list(violations(module, sources() | {module: source})) == []
+
+
+def test_a_cycle_is_caught_in_functions_too() -> None:
+    ring = {"regrasp.mechanics.contact": "def f():\n    from .grasp import Grasp"}
+    found = cycle(sources() | ring)
+    assert {"regrasp.mechanics.contact", "regrasp.mechanics.grasp"} <= set(found)
+    assert cycle({"a": "import b", "b": "import c", "c": ""}) == []

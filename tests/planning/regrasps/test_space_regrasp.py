@@ -1,0 +1,261 @@
+"""Regrasps in space: fewest moves against exhaustive search, every instant checked, refusals with reasons."""
+
+from collections import deque
+from itertools import combinations, pairwise
+from math import pi
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from box import BOX, GOAL, MU, START, WEIGHT, on_box
+from regrasp.mechanics.orientation.rotations import rotation_matrix
+from regrasp.mesh import Mesh, parts
+from regrasp.planning.holds.sequences import preferred
+from regrasp.planning.holds.spatial_stances import Quads
+from regrasp.planning.holds.triples import TripleGraph, directions
+from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
+
+
+def fewest_moves(graph, near, start, goal, o, margin):
+    """Fewest finger moves with holds of at least ``margin``, by breadth-first search over every stance."""
+    count = len(graph.contacts)
+
+    def holds(three, at):
+        value = graph.margins[at, graph.triple(*three)]
+        return value >= 0 and value >= margin
+
+    first = tuple(sorted(start))
+    cost = {(first, three, 0): 0 for three in combinations(first, 3) if holds(three, 0)}
+    queue = deque(cost)
+    while queue:
+        node = queue.popleft()
+        quad, three, at = node
+        here = cost[node]
+        if quad == tuple(sorted(goal)) and at == o:
+            return here
+        for other in combinations(quad, 3):
+            for turned in np.flatnonzero(near[at]):
+                new = (quad, other, int(turned))
+                if holds(other, turned) and here < cost.get(new, 99):
+                    cost[new] = here
+                    queue.appendleft(new)
+        for point in set(range(count)) - set(quad):
+            new = (tuple(sorted((*three, point))), three, at)
+            if here + 1 < cost.get(new, 99):
+                cost[new] = here + 1
+                queue.append(new)
+    return None
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("turns", [False, True])
+def test_no_sequence_has_fewer_moves_or_is_safer(seed, turns):
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(9, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    contacts = tuple(
+        rg.Contact(p, -p + 0.3 * rng.normal(size=3), 0.5, name=f"c{i}") for i, p in enumerate(points)
+    )
+    ways = directions(5)[:, :3] if turns else np.array([[0, 0, -1.0]])
+    graph = TripleGraph(contacts, np.pad(ways, ((0, 0), (0, 3))))
+    start, goal = (tuple(rng.choice(9, 4, replace=False).tolist()) for _ in range(2))
+    last, max_turn = (2, 2.0) if turns else (0, 1.0)
+    near = np.arccos(np.clip(ways @ ways.T, -1, 1)) <= max_turn
+    found = preferred(Quads(graph, ways, max_turn), start, goal, last)
+    fewest = fewest_moves(graph, near, start, goal, last, 0.0)
+    if fewest is None:
+        assert found == []
+        return
+    (best,) = found
+    assert best.moves == fewest
+    margins = np.unique(graph.margins[graph.margins >= 0])
+    widest = max(m for m in margins if fewest_moves(graph, near, start, goal, last, m) == fewest)
+    assert best.margin == pytest.approx(widest, abs=2e-6)
+    assert best.margin == pytest.approx(
+        min(graph.margins[o, graph.triple(*three)] for *three, o in best.holds), abs=1e-6
+    )
+    for (*_, a), (*_, b) in pairwise(best.holds):
+        assert near[a, b]
+
+
+def test_searches_find_and_miss():
+    found = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        points = rng.normal(size=(9, 3))
+        points /= np.linalg.norm(points, axis=1)[:, None]
+        contacts = tuple(
+            rg.Contact(p, -p + 0.3 * rng.normal(size=3), 0.5, name=f"c{i}") for i, p in enumerate(points)
+        )
+        down = np.array([[0, 0, -1.0]])
+        graph = TripleGraph(contacts, np.pad(down, ((0, 0), (0, 3))))
+        start, goal = (tuple(rng.choice(9, 4, replace=False).tolist()) for _ in range(2))
+        found.append(bool(preferred(Quads(graph, down, 1.0), start, goal, 0)))
+    assert set(found) == {True, False}
+
+
+def check_all_along(plan, start, goal, load, count=101):
+    """Everything that must hold of a regrasp, from contacts, forces, load and time only."""
+    steps = plan.steps
+    assert set(places(steps[0].grasp)) == set(places(start))
+    assert set(places(steps[-1].grasp)) == set(places(goal))
+    before = None
+    for k, step in enumerate(steps):
+        grasp = step.grasp
+        assert len(grasp) <= 4
+        t = np.linspace(0, step.duration, count)
+        forces, loads = step.forces(t), step.load(t)
+        scale = max(abs(forces).max(), abs(loads).max())
+        assert abs(forces.sum(axis=1) + loads[:, :3]).max() < 1e-12 * scale
+        assert abs(np.cross(grasp.positions, forces).sum(axis=1)).max() < 1e-12 * scale
+        normal = np.einsum("mnd,nd->mn", forces, grasp.normals)
+        tangential = np.linalg.norm(forces - normal[..., None] * grasp.normals, axis=-1)
+        assert (tangential <= grasp.frictions * normal + 1e-12 * scale).all()
+        whole = k * step.duration + t
+        world = np.einsum("tij,tj->ti", plan.rotation(whole), loads[:, :3])
+        assert abs(world - load.force).max() < 1e-12 * scale
+        if before is not None:
+            now = held(grasp, forces[0])
+            assert now.keys() == before.keys()
+            assert all(abs(now[at] - before[at]).max() <= 1e-15 * scale for at in now)
+        before = held(grasp, forces[-1])
+    for a, b in pairwise(steps):
+        shared = set(places(a.grasp)) & set(places(b.grasp))
+        assert len(shared) >= 3
+    for move in plan.moves:  # a finger moves only where it carries nothing
+        step = steps[move.step]
+        if move.target_name in step.grasp.names:
+            assert not step.start.force(move.target_name).any()
+
+
+def places(grasp):
+    return [tuple(c.position.tolist()) for c in grasp]
+
+
+def held(grasp, forces):
+    return {at: f for at, f in zip(places(grasp), forces, strict=True) if f.any()}
+
+
+@pytest.mark.parametrize("states", ["each", "joint"])
+@pytest.mark.parametrize("turn", [None, ([0, 0, 1], 0.7), ([1, 0, 0], 1.2), ([1, 1, -1], 2.8)])
+def test_a_box_is_regrasped(states, turn):
+    goal_rotation = (
+        None if turn is None else rotation_matrix(np.array(turn[0]) / np.linalg.norm(turn[0]), turn[1])
+    )
+    plan = rg.plan_regrasp(
+        BOX, START, GOAL, WEIGHT, friction=MU, orientations=20, candidates=16, states=states,
+        goal_rotation=goal_rotation,
+    )  # fmt: skip
+    check_all_along(plan, START, GOAL, WEIGHT)
+    assert rg.verify(plan).ok
+    assert plan.margin > 0
+    expected = np.eye(3) if goal_rotation is None else goal_rotation
+    assert plan.rotation(plan.duration) == pytest.approx(expected, abs=1e-9)
+    assert plan.rotations[-1] == pytest.approx(expected, abs=1e-9)
+    back = plan.reversed()
+    seen = rg.Wrench(expected.T @ WEIGHT.force)
+    check_all_along(back, GOAL, START, seen)
+    assert rg.verify(back).ok
+    assert "finger moves" in str(plan)
+
+
+def test_more_moves_for_a_wider_margin():
+    plans = rg.plan_regrasps(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, candidates=24, extra=2)
+    assert all(rg.verify(plan).ok for plan in plans)
+    moves = [len(plan.moves) for plan in plans]
+    assert moves == sorted(set(moves))
+    few = plans[0]
+    wide = rg.plan_regrasp(
+        BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, candidates=24, least_margin=0.9 * few.margin
+    )
+    assert wide.margin >= 0.9 * few.margin
+
+
+def test_a_part_is_regrasped_and_every_hold_confirmed_with_exact_cones():
+    mesh = parts.nut()
+    contacts = mesh.contacts(30, friction=0.7)
+    load = rg.Wrench([0, 0, -0.1])
+    problem = None
+    for chosen in combinations(range(12), 4):
+        start = rg.Grasp([contacts[i] for i in chosen])
+        goal = rg.Grasp([contacts[i + 12] for i in chosen])
+        problem = SpaceRegraspProblem(mesh, start, goal, load, 0.7, orientations=1, candidates=30)
+        if problem.sequences():
+            break
+    plan = problem.plans()[0]
+    check_all_along(plan, start, goal, load)
+    assert rg.verify(plan).ok
+    for step in plan.steps[:-1]:
+        assert step.end.margins.least_angle > 0
+
+
+@pytest.mark.parametrize(("length", "force"), [(1e-6, 1e6), (1e6, 1e-6)])
+def test_units_change_nothing(length, force):
+    mesh = Mesh.box(0.06 * length, 0.04 * length, 0.05 * length)
+
+    def scaled(grasp):
+        return rg.Grasp(rg.Contact(length * c.position, c.normal, c.friction, name=c.name) for c in grasp)
+
+    options = {
+        "friction": MU,
+        "orientations": 12,
+        "candidates": 12,
+        "goal_rotation": rotation_matrix([1, 0, 0], 1.0),
+    }
+    plan = rg.plan_regrasp(BOX, START, GOAL, WEIGHT, **options)
+    same = rg.plan_regrasp(mesh, scaled(START), scaled(GOAL), force * WEIGHT, **options)
+    assert [step.grasp.names for step in same.steps] == [step.grasp.names for step in plan.steps]
+    assert same.margin == pytest.approx(plan.margin, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"start": rg.Grasp(list(START)[:3])}, "start must be a Grasp of four contacts in space"),
+        ({"friction": None}, "friction is missing"),
+        ({"weights": None}, "unknown option 'weights'; a regrasp on a mesh takes friction"),
+        ({"goal_rotation": 2 * np.eye(3)}, "goal_rotation must be a rotation matrix"),
+        ({"goal_rotation": np.eye(2)}, "goal_rotation must have shape"),
+        (
+            {"orientations": 1, "goal_rotation": rotation_matrix([1, 0, 0], 1.0)},
+            "orientations=1 forbids turning",
+        ),
+        ({"orientations": 0}, "orientations must be at least 1"),
+        ({"max_turn": pi}, "max_turn must be above 0 and below pi"),
+        ({"load": rg.Wrench([0, 0, -1], [0, 0.1, 0])}, "a force in space through the centre of mass"),
+        ({"facets": 5}, "facets must be an even whole number"),
+        ({"candidates": 0}, "count must be a whole number"),
+        ({"least_margin": -1}, "least_margin must be at least 0"),
+        ({"mesh": 3}, "a regrasp needs an Outline or a Mesh, got 3"),
+    ],
+)
+def test_bad_input(options, words):
+    given = {"mesh": BOX, "start": START, "goal": GOAL, "load": WEIGHT, "friction": MU} | options
+    given = {key: value for key, value in given.items() if key != "friction" or value is not None}
+    mesh, start, goal, load = (given.pop(key) for key in ("mesh", "start", "goal", "load"))
+    with pytest.raises(rg.InvalidInput, match=words):
+        rg.plan_regrasp(mesh, start, goal, load, **given)
+
+
+def test_what_is_impossible_says_why():
+    with pytest.raises(rg.Infeasible, match="no three fingers of the start hold the load"):
+        rg.plan_regrasp(
+            BOX,
+            on_box(*((0.03, y, z) for y in (-0.01, 0.01) for z in (-0.01, 0.01))),
+            GOAL,
+            WEIGHT,
+            friction=MU,
+        )
+    slippery = [rg.Grasp(c.changed(friction=0.01) for c in grasp) for grasp in (START, GOAL)]
+    with pytest.raises(rg.Infeasible, match="more friction"):
+        rg.plan_regrasp(BOX, *slippery, WEIGHT, friction=0.01, orientations=1)
+    for options, words in (
+        ({"keep": lambda a, b, c: np.zeros(len(a), dtype=bool)}, "with keep; without it they do"),
+        ({"min_distance": 1.0}, "with min_distance=1; without it they do"),
+        ({"max_force": 0.1}, "with these force limits; without it they do"),
+    ):
+        with pytest.raises(rg.Infeasible, match=words):
+            rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, **options)
+    with pytest.raises(rg.Infeasible, match="with a margin of 1 rad"):
+        rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, least_margin=1.0)

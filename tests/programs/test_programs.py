@@ -1,0 +1,348 @@
+import logging
+
+import numpy as np
+import pytest
+
+from cones import distance_to_cones, slack
+from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
+from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
+from regrasp.programs import backends as table
+
+QP_ONLY = [name for name in available_backends() if not table.BACKENDS[name].second_order]
+CONIC = [name for name in available_backends() if table.BACKENDS[name].second_order] + [
+    "cvxpy:CLARABEL",
+    "auto",
+]
+
+# Relative to the answer's largest entry: interior-point and active-set methods, then first-order ones.
+ACCURACY = {
+    "auto": 1e-7,
+    "clarabel": 1e-7,
+    "daqp": 1e-9,
+    "quadprog": 1e-9,
+    "highs": 1e-5,
+    "piqp": 1e-5,
+    "proxqp": 1e-6,
+    "cvxpy": 1e-6,
+    "cvxpy:CLARABEL": 1e-6,
+    "qpalm": 1e-4,
+    "osqp": 1e-5,
+    "scs": 1e-5,
+}
+
+
+def projection_on_simplex(point):
+    """min 1/2 |x - p|^2 with sum x = 1, x >= 0: sort and shift."""
+    n = len(point)
+    rows = Rows(n)
+    rows.equal(np.ones((1, n)), -1.0)
+    rows.at_least_zero(np.eye(n))
+    ordered = np.sort(point)[::-1]
+    shifts = (np.cumsum(ordered) - 1) / np.arange(1, n + 1)
+    shift = shifts[np.flatnonzero(ordered > shifts)[-1]]
+    return rows.program(-np.asarray(point), np.eye(n)), np.maximum(point - shift, 0)
+
+
+def nearest_in_ball(point, radius):
+    """min |x - p| as (t, x) with |x| <= radius: p scaled back to the ball."""
+    d = len(point)
+    rows = Rows(d + 1)
+    rows.second_order(np.eye(d + 1), [0.0, *(-np.asarray(point))])  # |x - p| <= t
+    rows.second_order(np.vstack([np.zeros(d + 1), np.eye(d + 1)[1:]]), [radius] + [0.0] * d)
+    size = np.linalg.norm(point)
+    return rows.program([1.0] + [0.0] * d), np.asarray(point) * min(1.0, radius / size)
+
+
+@pytest.mark.parametrize("backend", sorted({*QP_ONLY, *CONIC}))
+@pytest.mark.parametrize("seed", range(5))
+def test_every_back_end_finds_the_known_optimum_of_a_qp(backend, seed):
+    program, best = projection_on_simplex(np.random.default_rng(seed).normal(size=6))
+    solution = solve(program, backend)
+    assert solution.status is Status.SOLVED
+    np.testing.assert_allclose(solution.value, best, atol=ACCURACY[backend] * abs(best).max())
+    assert solution.objective == pytest.approx(0.5 * best @ best + program.q @ best, abs=ACCURACY[backend])
+
+
+@pytest.mark.parametrize("backend", CONIC)
+@pytest.mark.parametrize("radius", [0.5, 2.0, 50.0])
+def test_conic_back_ends_find_the_known_optimum_with_second_order_cones(backend, radius):
+    program, best = nearest_in_ball([3.0, -4.0, 1.0], radius)
+    solution = solve(program, backend)
+    np.testing.assert_allclose(solution.value[1:], best, atol=1e-5)
+    assert solution.value[0] == pytest.approx(np.linalg.norm(best - [3, -4, 1]), abs=1e-6)
+
+
+@pytest.mark.parametrize("backend", sorted({*QP_ONLY, *CONIC}))
+def test_duals_have_one_sign_convention(backend):
+    """min 1/2 x'x - x1 with x2 = 1, x1 <= 1/2: z_equality = -1, z_bound = 1/2 from P x + q + A'z = 0."""
+    rows = Rows(2)
+    rows.equal([[0.0, 1.0]], -1.0)
+    rows.at_least_zero([[-1.0, 0.0]], 0.5)
+    solution = solve(rows.program([-1.0, 0.0], np.eye(2)), backend)
+    np.testing.assert_allclose(solution.value, [0.5, 1.0], atol=1e-4)
+    stationary = (
+        solution.program.P @ solution.value + solution.program.q + solution.program.A.T @ solution.duals
+    )
+    np.testing.assert_allclose(stationary, 0, atol=1e-4)
+    np.testing.assert_allclose(abs(solution.duals), [1.0, 0.5], atol=1e-4)
+    assert solution.duals[1] > 0
+
+
+def contradiction():
+    rows = Rows(2)
+    rows.at_least_zero([[1.0, 1.0], [-1.0, 0.0], [0.0, -1.0]], [-3.0, 1.0, 1.0])  # x + y >= 3, x, y <= 1
+    return rows.program([0.0, 0.0], np.eye(2))
+
+
+def falling():
+    rows = Rows(2)
+    rows.at_least_zero(np.eye(2))
+    return rows.program([-1.0, 0.0])
+
+
+def test_clarabel_proves_infeasibility_and_unboundedness():
+    infeasible, unbounded = solve(contradiction(), "clarabel"), solve(falling(), "clarabel")
+    assert infeasible.status is Status.INFEASIBLE
+    assert infeasible.infeasibility_residual < 1e-6
+    z = infeasible.duals / infeasible.duals.sum()
+    np.testing.assert_allclose(z, 1 / 3, atol=1e-6)
+    assert unbounded.status is Status.UNBOUNDED
+    assert unbounded.unboundedness_residual < 1e-6
+    assert unbounded.value[0] > 0
+
+
+def test_a_back_end_that_refuses_a_program_is_no_verdict():
+    pytest.importorskip("quadprog")
+    rows = Rows(2)
+    rows.at_least_zero(np.eye(2))
+    with pytest.raises(SolverFailed, match="P is not positive definite"):
+        solve(rows.program([1.0, 1.0], np.ones((2, 2))), "quadprog")
+
+
+def cheapest_corner():
+    """min -x - 2 y on the triangle x + y <= 30, x, y >= 0: the corner (0, 30)."""
+    rows = Rows(2)
+    rows.at_least_zero([[1.0, 0.0], [0.0, 1.0], [-1.0, -1.0]], [0.0, 0.0, 30.0])
+    return rows.program([-1.0, -2.0])
+
+
+@pytest.mark.parametrize("backend", sorted({*QP_ONLY, *CONIC}))
+def test_every_back_end_answers_a_linear_program(backend):
+    solution = solve(cheapest_corner(), backend)
+    np.testing.assert_allclose(solution.value, [0.0, 30.0], atol=30 * ACCURACY[backend])
+    np.testing.assert_allclose(solution.duals, [1.0, 0.0, 2.0], atol=2e-4)
+
+
+@pytest.mark.parametrize("backend", QP_ONLY)
+def test_a_linear_program_that_falls_for_ever_has_no_answer(backend):
+    with pytest.raises(SolverFailed):
+        solve(falling(), backend)
+
+
+@pytest.mark.parametrize("backend", QP_ONLY)
+def test_a_qp_back_end_without_an_answer_gives_no_numbers(backend):
+    solution = solve(contradiction(), backend, throw=False)
+    assert solution.status is Status.NOT_FOUND
+    assert np.isnan(solution.value).all()
+    with pytest.raises(SolverFailed, match="gave no reason") as failed:
+        solve(contradiction(), backend)
+    assert failed.value.program is not None
+    assert failed.value.solution.status is Status.NOT_FOUND
+
+
+@pytest.mark.parametrize("backend", QP_ONLY)
+def test_second_order_cones_on_a_qp_back_end_are_refused(backend):
+    program, _ = nearest_in_ball([1.0, 1.0], 0.5)
+    with pytest.raises(
+        InvalidInput, match=r"solves QPs only .* use linearised cones .* or one of .*clarabel"
+    ):
+        solve(program, backend)
+
+
+class Lying:
+    """A back end that calls a wrong answer solved."""
+
+    def __init__(self, wrong):
+        self.wrong = wrong
+
+    def __call__(self, program, name, **options):
+        right = solve(program, "clarabel")
+        from dataclasses import replace
+
+        return replace(right, backend=name, **self.wrong(right))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda s: {"value": s.value + 1e-3},
+        lambda s: {"duals": s.duals * 1.01},
+        lambda s: {"duals": -s.duals},
+        lambda s: {"value": s.value * np.nan},
+        lambda s: {"status": Status.INFEASIBLE},
+        lambda s: {"status": Status.UNBOUNDED},
+    ],
+)
+def test_an_answer_whose_own_residuals_fail_is_an_error_whatever_it_was_called(monkeypatch, wrong):
+    from regrasp.programs import clarabel_backend
+
+    program, _ = projection_on_simplex(np.array([0.3, 0.9, -0.4]))
+    lying, honest = Lying(wrong), clarabel_backend.solve
+    module = type("module", (), {"solve": staticmethod(lying)})
+    monkeypatch.setitem(table.BACKENDS, "liar", table.Backend("numpy", "liar", True, 1e-7))
+    real = table.import_module
+    monkeypatch.setattr(table, "import_module", lambda name: module if name == "liar" else real(name))
+    assert honest(program, "clarabel").residual < 1e-7
+    with pytest.raises(SolverFailed, match="UNSOUND"):
+        solve(program, "liar")
+
+
+def test_auto_goes_on_to_the_next_sound_back_end_and_says_so(monkeypatch, caplog):
+    from regrasp.programs import clarabel_backend
+
+    honest = clarabel_backend.solve
+    program, best = projection_on_simplex(np.array([0.3, 0.9, -0.4]))
+    monkeypatch.setattr(clarabel_backend, "solve", lambda p, name: honest(p, name, max_iter=1))
+    with caplog.at_level(logging.WARNING, logger="regrasp.programs"):
+        solution = solve(program, "auto")
+    assert solution.backend == "daqp"
+    np.testing.assert_allclose(solution.value, best, atol=1e-9)
+    assert "clarabel: STOPPED" in caplog.text
+    assert "trying the next" in caplog.text
+
+
+def test_options_reach_the_solver():
+    program, _ = projection_on_simplex(np.random.default_rng(0).normal(size=8))
+    solution = solve(program, "clarabel", throw=False, max_iter=2)
+    assert solution.status is Status.STOPPED
+    assert solution.iterations == 2
+    with pytest.raises(SolverFailed, match="rescale the data or try another back end"):
+        solve(program, "clarabel", max_iter=2)
+    with pytest.raises(InvalidInput, match="options belong to one solver"):
+        solve(program, "auto", max_iter=2)
+
+
+def test_unknown_and_missing_back_ends(monkeypatch):
+    program, _ = projection_on_simplex(np.array([1.0, 2.0]))
+    with pytest.raises(SolverUnavailable, match=r"no back end 'simplex'; known: auto, clarabel"):
+        solve(program, "simplex")
+    with pytest.raises(SolverUnavailable, match=r"cvxpy has no solver 'NOPE' here; it has .*CLARABEL"):
+        solve(program, "cvxpy:NOPE")
+    monkeypatch.setattr(table, "_has", lambda package: False)
+    assert available_backends() == ()
+    with pytest.raises(SolverUnavailable, match=r"needs the package daqp: pip install 'regrasp\[solvers\]'"):
+        solve(program, "daqp")
+
+
+def test_data_that_do_not_fit_are_refused():
+    rows = Rows(3)
+    with pytest.raises(InvalidInput, match="rows must have 3 columns, got 2"):
+        rows.equal([[1.0, 2.0]])
+    with pytest.raises(InvalidInput, match="4 rows cannot be split into cones of 3"):
+        rows.second_order(np.ones((4, 3)), size=3)
+    with pytest.raises(InvalidInput, match="at least one row"):
+        rows.program([1.0, 2.0, 3.0])
+    rows.equal(np.eye(3))
+    with pytest.raises(InvalidInput, match="q must be finite"):
+        rows.program([1.0, np.nan, 0.0])
+    good = rows.program(np.zeros(3))
+    with pytest.raises(InvalidInput, match="cones must cover the 3 rows"):
+        Program(good.P, good.q, good.A, good.b, (Block(Cone.ZERO, 2),))
+
+
+def test_another_right_side_keeps_the_rest():
+    rows = Rows(2)
+    rows.equal([[1.0, 1.0]], -1.0)
+    rows.second_order([[0.0, 0.0], [1.0, -1.0]], [3.0, 0.0])
+    program = rows.program([1.0, 0.0], np.array([[2.0, 0.5], [0.5, 1.0]]))
+    b = np.array([2.0, 1.0, 0.5])
+    other = program.with_right_side(b)
+    again = Program(program.P, program.q, program.A, b, program.blocks)
+    before, after = solve(program, "clarabel").value, solve(other, "clarabel").value
+    assert after == pytest.approx(solve(again, "clarabel").value, abs=1e-9)
+    assert abs(after - before).max() > 0.1
+    with pytest.raises(InvalidInput, match=r"b must have shape \(3,\), got \(2,\)"):
+        program.with_right_side(b[:2])
+    with pytest.raises(InvalidInput, match="b must be finite"):
+        program.with_right_side(b * np.inf)
+
+
+def test_distance_to_cones_measures_each_kind():
+    rows = Rows(1)
+    rows.equal(np.zeros((1, 1)))
+    rows.at_least_zero(np.zeros((2, 1)))
+    rows.second_order(np.zeros((6, 1)), size=3)
+    program = rows.program([0.0])
+    inside = np.array([0.0, 1.0, 0.0, 5.0, 3.0, 4.0, 0.0, 0.0, 0.0])
+    assert distance_to_cones(program, inside) == 0
+
+    def moved(place, by, dual=False):
+        outside = inside.copy()
+        outside[place] += by
+        return distance_to_cones(program, outside, dual=dual)
+
+    assert moved(0, 0.5) == 0.5
+    assert moved(0, 0.5, dual=True) == 0
+    assert moved(2, -0.25) == 0.25
+    assert moved(3, -1) == 1
+    assert moved([7, 8], [3, 4]) == 5
+
+
+def test_what_programs_share_cannot_be_written_to():
+    from paper import GRASP, LOAD
+    from regrasp.planning.states.program import state_program
+
+    program = state_program(GRASP, LOAD, "effort", [0.3] * 3, [np.inf] * 3, 1.0)
+    for shared in (program.q, program.P.data, program.A.indices, program.A.indptr):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 7
+
+
+def test_an_answer_of_nothing_is_not_the_optimum_because_a_bound_is_far():
+    """min 1/2 x^2 - 0.05 x with x <= 1e6: x = 0 is off by 0.05, whatever the size of the bound."""
+    from dataclasses import replace
+
+    rows = Rows(1)
+    rows.at_least_zero([[-1.0]], 1e6)
+    right = solve(rows.program([-0.05], [[1.0]]), "clarabel")
+    assert right.value[0] == pytest.approx(0.05)
+    assert replace(right, value=np.zeros(1), duals=np.zeros(1)).residual > 0.1
+    assert replace(right, value=np.full(1, 0.0501)).residual > 1e-4
+
+
+def test_matrices_in_another_format_are_refused():
+    from scipy import sparse
+
+    with pytest.raises(InvalidInput, match=r"A must be a scipy.sparse matrix in CSC format"):
+        Program(
+            sparse.csc_matrix((1, 1)),
+            np.zeros(1),
+            sparse.csr_matrix((1, 1)),
+            np.zeros(1),
+            (Block(Cone.ZERO, 1),),
+        )
+    with pytest.raises(InvalidInput, match="Clarabel has no setting 'speed'"):
+        solve(projection_on_simplex(np.ones(2))[0], "clarabel", speed=3)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_compiled_audit_measures_what_numpy_does(seed):
+    from regrasp.programs.audit import audited
+
+    rng = np.random.default_rng(seed)
+    rows = Rows(5)
+    rows.equal(rng.normal(size=(2, 5)), rng.normal(size=2))
+    rows.at_least_zero(rng.normal(size=(3, 5)), rng.normal(size=3))
+    rows.second_order(rng.normal(size=(6, 5)), rng.normal(size=6), size=3)
+    root = rng.normal(size=(5, 5))
+    program = rows.program(rng.normal(size=5), root @ root.T)
+    x, z = rng.normal(size=5), rng.normal(size=11)
+    found = audited(program, x, z)
+    px, az = program.P @ x, program.A.T @ z
+    assert found.slack_violation == pytest.approx(distance_to_cones(program, slack(program, x)))
+    assert found.ray_violation == pytest.approx(distance_to_cones(program, -(program.A @ x)))
+    assert found.dual_violation == pytest.approx(distance_to_cones(program, z, dual=True))
+    assert found.stationarity == pytest.approx(abs(px + program.q + az).max())
+    assert (found.px, found.az) == pytest.approx((abs(px).max(), abs(az).max()))
+    assert (found.xpx, found.qx, found.bz) == pytest.approx((x @ px, program.q @ x, program.b @ z))
+    assert found.z_length == pytest.approx(np.linalg.norm(z))

@@ -1,0 +1,140 @@
+"""What verify finds in regrasps that drop the object, lift limits, or claim what is not so."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from box import BOX, GOAL, MU, START, WEIGHT
+from regrasp.plans.course import Course
+from regrasp.plans.sampled import SampledTransition
+
+OUTLINE = rg.Outline.ellipse(2, 1)
+
+
+def planar():
+    first, last = (
+        rg.Grasp(OUTLINE.contact_at(p * OUTLINE.length, friction=0.5) for p in places)
+        for places in ((0.02, 0.35, 0.7), (0.2, 0.5, 0.85))
+    )
+    return rg.plan_regrasp(OUTLINE, first, last, rg.Wrench([0, -3.0]), friction=0.5)
+
+
+def solid():
+    return rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=12, candidates=12)
+
+
+PLANS = {"plane": planar(), "space": solid()}
+
+
+def broken(plan, **changes):
+    return "; ".join(rg.verify(replace(plan, **changes)).violations)
+
+
+@pytest.fixture(params=PLANS)
+def plan(request):
+    return PLANS[request.param]
+
+
+def test_they_verify_as_planned(plan):
+    assert rg.verify(plan).ok
+    assert rg.verify(plan.reversed()).ok
+
+
+def test_an_object_dropped_within_a_step(plan):
+    step = next(s for s in plan.steps if s.turn is None)
+    k = plan.steps.index(step)
+    first, last, load = step.start.forces, step.end.forces, step.start.load.vector
+    course = Course([0, step.duration / 2, step.duration], [first, 0 * first, last], [load, 0 * load, load])
+    dropped = SampledTransition(
+        step.kind, step.contact, step.start, step.end, step.scaling, step.record,
+        course=course, arrival=step.arrival,
+    )  # fmt: skip
+    steps = (*plan.steps[:k], dropped, *plan.steps[k + 1 :])
+    assert f"step {k + 1}: its load at t = 0.5 s is not the one in the world" in broken(plan, steps=steps)
+
+
+@pytest.mark.parametrize("change", [{"max_force": 1e6}, {"friction": 5.0}, {"name": "another"}])
+def test_a_finger_that_may_do_more_after_a_joint(plan, change):
+    last = plan.steps[-1]
+    grasp = rg.Grasp(
+        c.changed(**{k: f"{c.name}!" if k == "name" else v for k, v in change.items()}) for c in last.grasp
+    )
+    other = replace(
+        last,
+        contact=grasp.names[last.grasp.names.index(last.contact)] if last.contact else None,
+        start=rg.GraspState(grasp, last.start.load, last.start.forces),
+        end=rg.GraspState(grasp, last.end.load, last.end.forces),
+    )
+    assert "the forces jump or a finger moves under force" in broken(plan, steps=(*plan.steps[:-1], other))
+
+
+def test_orientations_and_margins_that_are_not_so(plan):
+    turned = tuple(angle + 2 * np.pi * (k > 1) for k, angle in enumerate(plan.orientations))
+    assert "does not lead from" in broken(plan, orientations=turned)
+    assert "it claims a margin of 99 rad" in broken(plan, margin=99.0)
+
+
+def test_a_regrasp_without_steps():
+    assert "one step or more" in "; ".join(rg.verify(rg.RegraspPlan((), (0.0,), 0.1)).violations)
+
+
+@pytest.mark.parametrize("angle", [120.0, -300.0, 1e4])
+def test_many_whole_turns(angle):
+    ball = rg.Grasp(
+        rg.Contact(p, [-x for x in p], 0.7)
+        for p in ([1, 0, 0], [-0.5, 0.8, 0.1], [-0.5, -0.8, -0.1], [0, 0.1, 1])
+    )
+    if abs(angle) > 1e3:
+        from fractions import Fraction
+
+        from regrasp.verification.rotated_loads import cosine_sine
+
+        assert [float(x) for x in cosine_sine(Fraction(angle))] == pytest.approx(
+            [np.cos(angle), np.sin(angle)]
+        )
+        return
+    assert rg.verify(rg.plan_rotation(ball, angle, axis=[0, 0, 1], load=rg.Wrench([0.2, 0.3, 0]))).ok
+
+
+@pytest.mark.parametrize("angle", [1e-15, 1e-12, 1e-9, 1e-8, 1e-7, 1e-5, 1e-3])
+def test_small_turns(angle):
+    grasp = rg.Grasp(
+        rg.Contact(p, [-x for x in p], 0.7, max_force=m)
+        for p, m in (([1, 0.1], 0.5), ([-0.6, 0.8], 0.5), ([-0.6, -0.8], 5.0))
+    )
+    plan = rg.plan_rotation(grasp, angle, load=rg.Wrench([0.2, -0.3]), objective="force")
+    assert rg.verify(plan).ok
+    assert plan.peaks == pytest.approx(plan.start.magnitudes, rel=1e-3)
+    fast = plan.fastest(1.0)
+    t = np.linspace(0, fast.duration, 501)
+    assert np.linalg.norm(fast.rates(t), axis=-1).max() <= 1 + 1e-9
+
+
+def test_limits_of_soft_fingers_are_one_thing_everywhere():
+    grasp = rg.Grasp(
+        rg.Contact(p, n, 0.5, torsion=0.05, max_force=0.65)
+        for p, n in (([-1, 0, 0], [1, 0, 0]), ([1, 0, 0], [-1, 0, 0]))
+    )
+    load = rg.Wrench([0, 0, 0], [0.06, 0, 0])
+    state = rg.GraspState(grasp, load, [[0.62, 0, 0, -0.03], [-0.62, 0, 0, 0.03]])  # |(f, g)| = 0.689
+    with pytest.raises(rg.Infeasible) as caught:
+        rg.choose_state(grasp, load, "effort")
+    assert caught.value.certificate.is_proof
+    turn = rg.plan_rotation(
+        rg.Grasp(c.changed(max_force=None) for c in grasp), 0.5, axis=[1, 0, 0], load=load, objective="effort"
+    )
+    wide = rg.GraspState(turn.grasp, load, state.forces)
+    assert wide.is_balanced()
+    assert not state.is_balanced()
+    claimed = replace(turn, start=state, end=rg.GraspState(grasp, turn.end.load, turn.end.forces))
+    assert "above its limit" in "; ".join(rg.verify(claimed).violations)
+
+
+def test_load_functions_are_for_point_contacts():
+    from space import soft_random
+
+    grasp, load = soft_random(np.random.default_rng(0), 5), rg.Wrench([0, 0, -1.0], [0.01, 0.02, 0])
+    with pytest.raises(rg.InvalidInput, match="a load function is checked for point contacts"):
+        rg.verify(rg.plan_removal(grasp, 1, load=load), lambda t: load)
