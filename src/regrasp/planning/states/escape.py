@@ -4,6 +4,7 @@ The finger wrenches nearest to balancing the load leave the gap rho = -w_ext - G
 add points along rho, or it would bring them nearer; so -rho is the twist sought (separating hyperplane).
 """
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -33,7 +34,7 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             f"load has a torque; the object escapes by {loose}",
             loose,
         )
-    full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
+    full = replace(criteria, reserve=0.0)
     frictions, limits = full.frictions(grasp), full.limits(grasp)
     twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
     if twist is not None:

@@ -13,6 +13,7 @@ from regrasp.planning.states.escape import infeasible
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
+from regrasp.planning.states.objectives import FORCE, PEAK, ConvexObjective, LevelObjective
 from regrasp.planning.states.solving import LOOSE, Chooser
 
 
@@ -24,7 +25,8 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
-    if not criteria.unbounded and not any(load.plain):  # nothing to hold: the least of everything is zero
+    objective = criteria.objective
+    if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
     try:
         return _solved(grasp, load, criteria, backend, facets)
@@ -42,17 +44,17 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
     if criteria.unbounded and inf in limits:
-        least = chooser.best("peak", frictions, limits)
+        least = chooser.best(PEAK, frictions, limits)
         if least is None:
             raise infeasible(grasp, load, criteria)
         peak = _radius(grasp, frictions, least.forces, facets)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
-    narrows = criteria.objective in ("angle", "friction_use")
-    found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
+    objective = criteria.objective
+    found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
     if found is None:
         raise infeasible(grasp, load, criteria)
-    if narrows:
-        found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), found.forces, limits)
+    if isinstance(objective, LevelObjective):
+        found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 

@@ -2,15 +2,15 @@
 
 import sys
 from math import inf, nan
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import regrasp as rg
 from paper import GRASP, STATE
+from places import ROOT
 
-sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+sys.path.append(str(ROOT / "benchmarks"))
 
 from answer_plans import PLANS
 from answer_states import STATES
