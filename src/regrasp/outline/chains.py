@@ -72,7 +72,7 @@ def chains(pieces: list[Array], tolerance: float) -> list[Chain]:
 def _neighbours(
     ends: Array, tolerance: float, used: np.ndarray
 ) -> Callable[[tuple[int, int]], tuple[float, int, int]]:
-    """A function from an end, as piece and 0 or 1, to the distance, piece and end of the nearest that is unused."""
+    """A function from an end (piece, 0 or 1) to the distance, piece and end of the nearest unused one."""
     from scipy.spatial import cKDTree
 
     flat = ends.reshape(-1, 2)
