@@ -179,7 +179,7 @@ def nested(doc, rng: np.random.Generator) -> tuple[float, int]:
         )
         place.add_blockref(inner, rng.uniform(-50, 50, 2), attributes)
         expected, inner = expected * factor, f"B{depth}"
-    if "B2" != inner:
+    if inner != "B2":
         attributes, factor = reference(rng)
         doc.modelspace().add_blockref(inner, (0, 0), attributes)
         expected *= factor

@@ -1,11 +1,13 @@
 """Outlines from plain coordinates: CSV, TXT, DAT."""
 
 import re
+from io import StringIO
 
 import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
+from regrasp.outline.drawing import Budget
 from regrasp.outline.opening import decoded
 
 _SEPARATOR = re.compile(r"[\s,;]+")
@@ -19,20 +21,21 @@ def coordinate_rings(data: bytes) -> list[Array]:
     text = decoded(data)
     if "\0" in text:
         raise InvalidInput("the file cannot be read as text: it has bytes of 0")
-    lines = text.splitlines()
     rings: list[list[tuple[float, float]]] = [[]]
-    begun = False
-    for count, line in enumerate(lines, start=1):
+    begun, budget = False, Budget()
+    for count, line in enumerate(StringIO(text, newline=None), start=1):
         words = line.partition("#")[0].strip()
         if words:
             point = _point(words)
             if point:
                 rings[-1].append(point)
+                budget.spend(points=1)
             elif begun:
                 raise InvalidInput(f"line {count} must be two numbers, x and y; got {line.strip()[:60]!r}")
             begun = True
         elif not line.strip() and rings[-1]:
             rings.append([])
+            budget.spend(pieces=1)
     found = [np.array(ring) for ring in rings if ring]
     if not found:
         raise InvalidInput("the file is empty: it has no lines of two numbers, x and y")

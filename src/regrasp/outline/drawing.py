@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from regrasp.errors import InvalidInput
 from regrasp.outline.flatten import Curve
 
-MOST_CURVES, _MOST_POINTS = 50_000, 1_000_000
+MOST_PIECES, _MOST_POINTS = 60_000, 1_000_000
 UNITS = {
     "um": 1e-6,
     "mm": 1e-3,
@@ -58,23 +58,23 @@ class Budget:
     """How much of a file may be looked at: a small file can stand for a drawing without end."""
 
     def __init__(self) -> None:
-        self._curves, self._points = MOST_CURVES, _MOST_POINTS
+        self._pieces, self._points = MOST_PIECES, _MOST_POINTS
 
-    def spend(self, curves: int = 1, points: int = 0) -> None:
+    def spend(self, pieces: int = 0, points: int = 0) -> None:
         """Raise ``InvalidInput`` when all is spent."""
-        self._curves -= curves
+        self._pieces -= pieces
         self._points -= points
-        if self._curves < 0:
-            raise InvalidInput(f"the drawing has more than {MOST_CURVES} curves, uses and inserts included")
+        if self._pieces < 0:
+            raise InvalidInput(
+                f"there are more than {MOST_PIECES} pieces, uses and inserts counted each time"
+            )
         if self._points < 0:
-            raise InvalidInput(f"the drawing has more than {_MOST_POINTS} points; give a larger tolerance")
+            raise InvalidInput(f"there are more than {_MOST_POINTS} points")
 
     def spend_on(self, piece: Piece) -> None:
-        """What a piece costs: a curve each, or the points of straight ones."""
-        self.spend(
-            sum(not curve.straight for curve in piece.curves),
-            sum(len(curve.inner) + 2 for curve in piece.curves if curve.straight),
-        )
+        """What a piece costs: a curve is flattened, straight lines have points."""
+        curves = sum(not curve.straight for curve in piece.curves)
+        self.spend(1 + 2 * curves, sum(len(curve.inner) + 2 for curve in piece.curves if curve.straight))
 
 
 def counted(names: Iterable[str]) -> str:

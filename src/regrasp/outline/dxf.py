@@ -10,7 +10,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
-from regrasp.outline.drawing import MOST_CURVES, UNITS, Budget, Drawing, Piece, check_known, counted
+from regrasp.outline.drawing import MOST_PIECES, UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.dxf_curves import CURVES, frame, mapped, piece, vector
 from regrasp.outline.dxf_layers import Layers
 from regrasp.outline.opening import reason
@@ -175,12 +175,12 @@ class _Walk:
         )
         for y in rows:
             for x in columns:
-                self._budget.spend()
+                self._budget.spend(pieces=1)
                 yield matrix, axes @ (at + turn @ np.array([x, y, 0.0])) - matrix @ base
 
     def _grid(self, dxf: Any) -> list[tuple[int, float]]:
         found = [(dxf.get(f"{name}_count", 1), dxf.get(f"{name}_spacing", 0.0)) for name in ("column", "row")]
         for count, space in found:
-            if space and count > MOST_CURVES:
-                raise InvalidInput(f"a block is inserted {count} times in a row, more than {MOST_CURVES}")
+            if space and count > MOST_PIECES:
+                raise InvalidInput(f"a block is inserted {count} times in a row, more than {MOST_PIECES}")
         return found

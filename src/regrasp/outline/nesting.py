@@ -7,6 +7,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
+from regrasp.outline.region import meeting
 
 _SAME = 1e-6  # of an area, or of the drawing's size
 
@@ -29,19 +30,27 @@ def check_nested(rings: list[Array], regions: list[Any]) -> None:
                 f"there are several outlines: one at ({x:.6g}, {y:.6g}) is outside the largest; "
                 "keep one object in a file"
             )
-    first, second = shapely.STRtree(regions).query(regions, predicate="intersects")
-    for i, j in zip(first[first < second], second[first < second], strict=True):
-        large, small = regions[i], regions[j]
-        x, y = rings[j][0]
-        if large.area - small.area <= _SAME * large.area and (
-            large.symmetric_difference(small).area <= _SAME * large.area
-        ):
-            raise InvalidInput(f"a closed curve is drawn twice, at ({x:.6g}, {y:.6g}); keep one of the two")
-        if i and large.contains(small):
-            raise InvalidInput(
-                f"there is a closed curve at ({x:.6g}, {y:.6g}) inside a hole: what is inside a hole is "
-                "another object; if the outermost curve is the frame of a sheet, leave it out of the file"
-            )
+    for j, region in enumerate(inner, start=1):
+        if outer.area - region.area > _SAME * outer.area:
+            break
+        _check_apart(rings, regions, 0, j)
+    for i, j in meeting(inner):
+        _check_apart(rings, regions, i + 1, j + 1)
+
+
+def _check_apart(rings: list[Array], regions: list[Any], i: int, j: int) -> None:
+    """Raise ``InvalidInput`` for rings i < j that are the same, or one in the other in the outline."""
+    large, small = regions[i], regions[j]
+    x, y = rings[j][0]
+    if large.area - small.area <= _SAME * large.area and (
+        large.symmetric_difference(small).area <= _SAME * large.area
+    ):
+        raise InvalidInput(f"a closed curve is drawn twice, at ({x:.6g}, {y:.6g}); keep one of the two")
+    if i and large.contains(small):
+        raise InvalidInput(
+            f"there is a closed curve at ({x:.6g}, {y:.6g}) inside a hole: what is inside a hole is "
+            "another object; if the outermost curve is the frame of a sheet, leave it out of the file"
+        )
 
 
 def check_once(pieces: list[Array], size: float) -> None:

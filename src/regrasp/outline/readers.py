@@ -17,8 +17,9 @@ from regrasp.outline.region import checked_region, checked_ring, checked_size, s
 
 _TOLERANCE = 1e-4
 _COORDINATES = (".csv", ".txt", ".dat")
-_MOST = {".svg": 16_000_000, ".dxf": 16_000_000}  # bytes: what is read within seconds
+_MOST = {".svg": 16_000_000, ".dxf": 12_000_000}  # bytes: what is read within seconds
 _MOST_TEXT = 30_000_000
+_MOST_RINGS = 10_000
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class Found:
     notes: tuple[str, ...] = ()
 
 
+@np.errstate(all="ignore")  # numbers too large for floats are found by their results
 def read_rings(
     path: Path,
     tolerance: float | None = None,
@@ -90,16 +92,14 @@ def _advice(drawing: Drawing) -> str:
 
 def _rings(pieces: list[Piece], tolerance: float | None) -> tuple[list[Array], list[str]]:
     """The outline that pieces make, first, and its holes; and words on what was closed or left out."""
-    rough = np.concatenate([curve.rough() for piece in pieces for curve in piece.curves])
-    check_finite(rough)
-    size = checked_size(rough, "the drawing")
+    size = _size(pieces)
     within = _TOLERANCE * size if tolerance is None else tolerance
     budget = Budget()
     drawn = []
     for piece in pieces:
         parts = [flattened(curve, within) for curve in piece.curves]
         points = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]])
-        budget.spend(0, len(points))
+        budget.spend(points=len(points))
         if np.ptp(points, axis=0).any():  # not a dot
             drawn.append((piece, points))
     rings = [points[:-1] if _meets(points, size) else points for piece, points in drawn if piece.closed]
@@ -110,6 +110,13 @@ def _rings(pieces: list[Piece], tolerance: float | None) -> tuple[list[Array], l
     except InvalidInput:
         check_once([points for _, points in opened], size)
         raise
+
+
+def _size(pieces: list[Piece]) -> float:
+    """The larger side of what is drawn, about."""
+    rough = np.concatenate([curve.rough() for piece in pieces for curve in piece.curves])
+    check_finite(rough)
+    return checked_size(rough, "the drawing")
 
 
 def _meets(points: Array, size: float) -> bool:
@@ -136,6 +143,10 @@ def _closed(opened: list[tuple[Piece, Array]], within: float, size: float) -> tu
 
 def nested(rings: list[Array]) -> list[Array]:
     """Checked rings, the outline first, then what is inside it; ``InvalidInput`` where that is no object."""
+    if not rings:
+        raise InvalidInput("the drawing is empty: nothing in it encloses an area")
+    if len(rings) > _MOST_RINGS:
+        raise InvalidInput(f"there are {len(rings)} closed curves, more than {_MOST_RINGS}")
     checked = sorted((checked_ring(ring, "outline") for ring in rings), key=signed_area, reverse=True)
     check_nested(checked, [checked_region(ring, "outline") for ring in checked])
     return checked

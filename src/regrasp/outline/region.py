@@ -1,6 +1,7 @@
 """Checks of rings: simple, with area, holes strictly inside. By shapely."""
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from regrasp.mechanics.value import numbers
 
 # Neighbours nearer than this, as a fraction of the ring's size, are one vertex: a ring closed up to rounding.
 _SAME = 1e-9
+_AT_ONCE = 100
 LARGEST = 1e60
 """Sizes up to this, and down to one over it, have areas and moments that are numbers."""
 
@@ -93,9 +95,17 @@ def check_holes(outer: Array, holes: list[Array]) -> None:
     for i, hole in enumerate(inside):
         if not region.contains_properly(hole):
             raise InvalidInput(f"hole {i} must lie inside the outline without touching it")
-    first, second = shapely.STRtree(inside).query(inside, predicate="intersects")
-    meeting = first[first < second], second[first < second]
-    if meeting[0].size:
-        i = int(meeting[1].min())
-        j = int(meeting[0][meeting[1] == i].min())
-        raise InvalidInput(f"holes {j} and {i} overlap or touch; give their union as one hole")
+    for i, j in meeting(inside):
+        raise InvalidInput(f"holes {i} and {j} overlap or touch; give their union as one hole")
+
+
+def meeting(regions: list[Any]) -> Iterator[tuple[int, int]]:
+    """Pairs i < j of regions that meet, found a few at a time: of many that lie on one another all would."""
+    import shapely
+
+    tree = shapely.STRtree(regions)
+    for begin in range(0, len(regions), _AT_ONCE):
+        first, second = tree.query(regions[begin : begin + _AT_ONCE], predicate="intersects")
+        for i, j in zip(first + begin, second, strict=True):
+            if i < j:
+                yield int(i), int(j)

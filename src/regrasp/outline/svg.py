@@ -92,7 +92,7 @@ class _Walk:
             return
         if len(place.path) > _DEEPEST:
             raise InvalidInput(f"the file has elements nested more than {_DEEPEST} deep, uses included")
-        self._budget.spend(0 if kind in SHAPES else 1)
+        self._budget.spend(pieces=1)
         name = (kind, element.attrib.get("id", ""), frozenset(element.attrib.get("class", "").split()))
         path = (*place.path, name)
         style = self._styles.of(path, element.attrib, place.style)
@@ -153,8 +153,10 @@ class _Walk:
             self._budget.spend_on(piece)
             curves = tuple(curve.mapped(matrix, shift) for curve in piece.curves)
             drawn = Piece(curves, piece.closed, piece.filled and inside)
-            if place.clips and not self._is_seen(kind, drawn, place.clips):
-                continue
+            if place.clips:
+                self._budget.spend(pieces=20)
+                if not self._is_seen(kind, drawn, place.clips):
+                    continue
             (self._seen if inside or edge else self._unpainted).append(drawn)
 
     def _clip(self, link: str, place: _Place) -> Any:

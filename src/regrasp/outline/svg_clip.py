@@ -9,16 +9,21 @@ from regrasp.outline.drawing import Piece
 from regrasp.outline.flatten import flattened
 
 _NEAR = 1e-3  # of a size
+_MOST = 200
 
 
 def region_of(pieces: list[Piece]) -> Any:
-    """The union of the insides of pieces (shapely), a little larger than it is; empty for none."""
+    """The union of the insides of pieces (shapely), a little larger than it is; None for too many."""
     import shapely
 
+    if len(pieces) > _MOST:
+        return None
     rings = [_points(piece) for piece in pieces]
     whole = shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in rings if len(ring) > 2])
     size = max((float(np.ptp(ring, axis=0).max()) for ring in rings), default=0.0)
-    return whole.buffer(_NEAR * size)
+    region = whole.buffer(_NEAR * size)
+    shapely.prepare(region)
+    return region
 
 
 def share_within(piece: Piece, region: Any) -> float:

@@ -8,13 +8,14 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.outline.flatten import Curve, arc, bezier, line
-from regrasp.outline.svg_transform import NUMBER
+from regrasp.outline.svg_transform import NUMBER, number_of
 
 _COMMAND = re.compile(r"[\s,]*([MmZzLlHhVvCcSsQqTtAa])")
 _NUMBER = re.compile(rf"[\s,]*({NUMBER})")
 _FLAG = re.compile(r"[\s,]*([01])")
 _COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 _FLAGS = (3, 4)  # of the seven numbers of an arc
+_MOST = 300_000
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,9 @@ def subpaths(data: str) -> list[Subpath]:
     start = at = np.zeros(2)
     handle: Array | None = None  # the last control point of a curve that S or T goes on from
     before = ""
-    for command, values in _commands(data):
+    for count, (command, values) in enumerate(_commands(data)):
+        if count > _MOST:
+            raise ValueError(f"the path has more than {_MOST} commands")
         kind = command.upper()
         base = np.zeros(2) if command.isupper() else at
         to = at
@@ -132,7 +135,7 @@ def _commands(data: str) -> Iterator[tuple[str, Array]]:
             number = (_FLAG if kind == "A" and k in _FLAGS else _NUMBER).match(data, place)
             if not number:
                 raise ValueError(f"the path has {_near(data, place)} where a number of {command} is expected")
-            values.append(float(number[1]))
+            values.append(number_of(number[1]))
             place = number.end()
         yield command, np.array(values)
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from math import isfinite
 
 import numpy as np
 
@@ -23,8 +24,8 @@ def length(text: str, whole: float = 0.0) -> float:
     """A length in user units; ``whole`` is what per cent are of. Raises ``ValueError``."""
     found = _LENGTH.match(text)
     if not found:
-        return float(text)
-    value, unit = float(found[1]), (found[2] or "").lower()
+        raise ValueError(f"could not convert string to float: {text[:40]!r}")
+    value, unit = number_of(found[1]), (found[2] or "").lower()
     if unit == "%":
         return value * whole / 100
     if unit not in PX:
@@ -33,8 +34,19 @@ def length(text: str, whole: float = 0.0) -> float:
 
 
 def numbers_of(text: str) -> list[float]:
-    """Numbers apart by commas or spaces, without anything else. Raises ``ValueError``."""
-    return [float(word) for word in re.split(r"[\s,]+", text.strip()) if word]
+    """Numbers apart by commas, spaces or signs, without anything else. Raises ``ValueError``."""
+    rest = re.sub(NUMBER, "", text).strip(" \t\r\n\f,")
+    if rest:
+        raise ValueError(f"numbers are expected in the place of {rest[:40]!r}")
+    return [number_of(word) for word in re.findall(NUMBER, text)]
+
+
+def number_of(word: str) -> float:
+    """A finite number. Raises ``ValueError`` for one beyond what a float holds."""
+    value = float(word)
+    if not isfinite(value):
+        raise ValueError(f"the number {word[:40]} is too large")
+    return value
 
 
 def transform(text: str) -> Array:
@@ -90,7 +102,7 @@ def _values(text: str) -> list[tuple[float, str]]:
         found = _VALUE.match(text, at)
         if not found:
             raise ValueError(f"the transform has {text!r} where numbers are expected")
-        values.append((float(found[1]), (found[2] or "").lower()))
+        values.append((number_of(found[1]), (found[2] or "").lower()))
         at = found.end()
     return values
 
