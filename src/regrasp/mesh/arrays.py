@@ -70,3 +70,14 @@ def merged(vertices: Array, faces: Indices, tolerance: float = 0.0) -> tuple[Arr
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     used, renumbered = np.unique(faces, return_inverse=True)
     return vertices[used], renumbered.reshape(-1, 3)
+
+
+def checked_points(points: ArrayLike) -> Array:
+    """(..., 3) finite floats."""
+    try:
+        result = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"points must be numbers of shape (..., 3), got {points!r}") from None
+    if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
+        raise InvalidInput(f"points must be finite, of shape (..., 3); got shape {result.shape}: {points!r}")
+    return result

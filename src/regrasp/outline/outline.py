@@ -141,6 +141,16 @@ class Outline(ArrayValue):
             shift += area * (centroid - at)
         return read_only(centroid + shift / self.area)
 
+    @cached_property
+    def inertia(self) -> float:
+        """About the centre of mass for a density of 1 [m^4]: times mass / area in kg m^2."""
+
+        def part(region: Boundary) -> float:  # the parallel axis theorem
+            area, centroid = region.moments
+            return region.second_moment + area * float(((centroid - self.centre_of_mass) ** 2).sum())
+
+        return part(self.boundary) - sum(part(hole) for hole in self.holes)
+
     def polygon(self, tolerance: float | None = None) -> Array:
         """(k, 2) a polygon for the outer boundary, relative to the centre of mass; exact if it is one [m].
 
