@@ -17,8 +17,8 @@ def warn_of_unit(file: Path, size: Array) -> None:
     """Where a mesh is so large that its unit is hardly the metre."""
     if size.max() > _LARGE:
         warn(
-            f"{file}: the largest side is {size.max():.6g}, and the file does not say its unit: give scale=1e-3 "
-            "to have millimetres in metres, scale=1 to keep the file's unit",
+            f"{file}: the largest side is {size.max():.6g}, and the file does not say its unit: give "
+            "scale=1e-3 to have millimetres in metres, scale=1 to keep the file's unit",
             stacklevel=3,
         )
 
@@ -34,14 +34,14 @@ def warn_of_distance(point: Array, away: float, size: Array) -> None:
 
 
 def warn_of_walls(point: Array, away: float, opposed: Array) -> None:
-    """Where of the faces ``opposed`` (k, 3, 3) to the one chosen some are less than twice as far from a point."""
+    """Where some of the faces (k, 3, 3) ``opposed`` to the one chosen are not twice as far."""
     if not len(opposed):
         return
     _, faces, weights = touching(point[None], opposed, 1e-9 * away)
     far = float(np.linalg.norm(at(opposed[faces], weights)[0] - point))
     if far < 2 * away:
         warn(
-            f"the point {numbers(point)} is {away:.3g} from the wall that the contact is put on and {far:.3g} from "
-            "one that faces the other way; say which with along= or outside=True",
+            f"the point {numbers(point)} is {away:.3g} from the wall that the contact is put on and "
+            f"{far:.3g} from one that faces the other way; say which with along= or outside=True",
             stacklevel=3,
         )

@@ -5,14 +5,14 @@ import re
 from regrasp.errors import InvalidInput
 from regrasp.outline.opening import decoded
 
-MOST_FACES = 1_000_000
+MOST_FACES = 1_100_000
+_MOST_LINES = 3_000_000
 _FACE = 50  # bytes of a binary STL
 _SIZES = {
     "char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2,
     "float16": 2, "int": 4, "uint": 4, "int32": 4, "uint32": 4, "float": 4, "float32": 4,
     "double": 8, "float64": 8, "int64": 8, "uint64": 8,
 }  # fmt: skip
-_RELATIVE = re.compile(rb"^[ \t]*f[ \t][^\n]*-", re.MULTILINE)
 
 
 def prepared(data: bytes, kind: str) -> bytes:
@@ -42,28 +42,38 @@ def _stl(data: bytes) -> bytes:
 
 
 def _obj(data: bytes) -> bytes:
-    text = decoded(data).encode()
-    return _absolute(text) if _RELATIVE.search(text) else text
+    """Only vertices and faces: groups and materials do not part a body, textures and normals are not used."""
+    text = decoded(data).encode().replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
+    check_count(len(re.findall(rb"^[ \t]*f[ \t]", text, re.MULTILINE)))
+    lines = re.findall(rb"^[ \t]*[vf][ \t][^\r\n#]*", text, re.MULTILINE)
+    if len(lines) > _MOST_LINES:
+        raise InvalidInput(f"there are {len(lines)} vertices and faces, more than {_MOST_LINES}")
+    return re.sub(rb"(?<=\d)/[-+/\d]*", b"", b"\n".join(_absolute(lines)) + b"\n")
 
 
-def _absolute(text: bytes) -> bytes:
-    """Only vertices and faces, these by numbers from the first: -1 is the last vertex so far."""
-    lines, count = [], 0
-    for number, line in enumerate(text.replace(b"\\\n", b" ").splitlines(), start=1):
-        word, *rest = line.split(None, 1) or [b""]
-        if word == b"v":
+def _absolute(lines: list[bytes]) -> list[bytes]:
+    """Faces by numbers from the first vertex: -1 is the last so far."""
+    result, count = [], 0
+    for line in lines:
+        if line.lstrip()[:1] == b"v":
             count += 1
-            lines.append(line)
-        elif word == b"f":
+        elif b"-" in line:
             try:
-                corners = [int(corner.split(b"/", 1)[0]) for corner in rest[0].split()]
-            except (ValueError, IndexError):
-                raise InvalidInput(f"line {number} must be a face, f with numbers of vertices") from None
-            if any(corner == 0 or corner < -count for corner in corners):
-                raise InvalidInput(f"line {number} names a vertex before the first; there are {count} so far")
-            places = (corner if corner > 0 else count + 1 + corner for corner in corners)
-            lines.append(b"f " + b" ".join(b"%d" % place for place in places))
-    return b"\n".join(lines) + b"\n"
+                corners = [int(corner.split(b"/", 1)[0]) for corner in line.split()[1:]]
+            except ValueError:
+                raise InvalidInput(f"a face must be f with numbers of vertices, got {_shown(line)}") from None
+            if any(corner < -count for corner in corners):
+                raise InvalidInput(
+                    f"a face names a vertex before the first, {_shown(line)}; there are {count} so far"
+                )
+            line = b"f " + b" ".join(b"%d" % (c if c >= 0 else count + 1 + c) for c in corners)
+        result.append(line)
+    return result
+
+
+def _shown(line: bytes) -> str:
+    """A line to show."""
+    return ascii(line[:60].decode("utf-8", "replace").strip())
 
 
 def _ply(data: bytes) -> bytes:

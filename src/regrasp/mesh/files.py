@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from regrasp.mesh.encodings import check_count, prepared
 from regrasp.mesh.mending import Mended, one_of, parted, without_holes, without_slivers
 from regrasp.mesh.shading import face_normals
 from regrasp.outline.opening import read_bytes, reason
+from regrasp.outline.region import checked_size
 
 _KINDS = (".stl", ".obj", ".ply")
 _MOST = 64_000_000  # bytes
@@ -43,7 +43,7 @@ def read(path: Path, bodies: str = "one", close_holes: float = 0.0) -> Mended:
 
 
 def _mended(vertices: Array, faces: Indices, bodies: str, close_holes: float) -> Mended:
-    size = float(np.ptp(vertices, axis=0).max())
+    size = checked_size(vertices, "the mesh")
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise InvalidInput(f"a face names a vertex that is not there; there are {len(vertices)}")
     vertices, faces = merged(vertices, faces, _SAME * size)
@@ -72,11 +72,10 @@ def _pieces(data: bytes, kind: str) -> list[tuple[Array, Indices]]:
         import trimesh
     except ImportError:
         raise ImportError(f"reading {kind.upper()} needs trimesh: pip install 'regrasp[meshes]'") from None
-    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
     stream = io.BytesIO(prepared(data, kind))
     try:
         with _quiet():
-            scene = trimesh.load_scene(stream, file_type=kind, process=False, **options)
+            scene = trimesh.load_scene(stream, file_type=kind, process=False)
             dumped = [piece for piece in scene.dump() if isinstance(piece, trimesh.Trimesh)]
         return [(np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int64)) for p in dumped]
     except Exception as error:  # the parsers raise whatever their numbers and strings raise

@@ -14,7 +14,7 @@ BODIES = ("one", "largest", "fuse")
 """What to do with several closed surfaces: refuse them, take the largest, or unite them."""
 
 _ROUNDS = 60
-_MOST_OPEN, _MOST_FUSED = 50_000, 1_000
+_MOST_FLAT, _MOST_OPEN, _MOST_FUSED = 100_000, 50_000, 1_000
 
 Mended = tuple[Array, Indices, list[str]]
 
@@ -61,12 +61,15 @@ def without_slivers(vertices: Array, faces: Indices, flat: float) -> Mended:
     Such a face has its third corner b on its longest side a c. The face on the other side of a c, with the
     corner d, is divided at b instead: a b d and b c d take the place of both.
     """
-    faces, mended = faces.copy(), 0
+    faces, mended, looked_at = faces.copy(), 0, 0
     for _ in range(_ROUNDS):
         corners = vertices[faces]
         sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
         length, longest = sides.max(axis=1), np.argmax(sides, axis=1)
         low = np.flatnonzero(doubled_areas(corners) <= flat * length)
+        looked_at += low.size
+        if looked_at > _MOST_FLAT:
+            break
         turned = _turn_edges(faces, low[np.argsort(-length[low])], longest) if low.size else 0
         mended += turned
         if not turned:

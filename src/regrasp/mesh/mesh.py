@@ -20,6 +20,7 @@ from regrasp.mesh.shading import Shading, face_normals, turns
 from regrasp.mesh.solid import doubled_areas, inertia, moments, solid
 from regrasp.mesh.spread import Surface, spread
 from regrasp.outline import Outline
+from regrasp.outline.region import checked_size
 
 CREASE = float(np.radians(35.0))
 """An edge is sharp where the surface turns there by more than this [rad], if not said otherwise."""
@@ -57,6 +58,8 @@ class Mesh(ArrayValue):
         self, vertices: ArrayLike, faces: ArrayLike, *, smooth: bool = False, crease: float = CREASE
     ) -> None:
         points = checked_vertices(vertices)
+        if len(points):
+            checked_size(points, "the mesh")
         points, triangles = merged(points, checked_faces(faces, len(points)))
         if not triangles.size:
             raise InvalidInput("the mesh is empty: every face has two corners in one place")

@@ -88,24 +88,30 @@ def flattened(curve: Curve, tolerance: float) -> Array:
     """
     breaks = curve.breaks
     if curve.straight:
-        return _finite(curve.at(breaks))
-    pieces = np.interp(np.arange(_FIRST * (breaks.size - 1) + 1) / _FIRST, np.arange(breaks.size), breaks)
-    t = np.unique(pieces) if breaks[-1] > breaks[0] else np.unique(pieces)[::-1]
+        points = curve.at(breaks)
+        check_finite(points)
+        return points
+    t = np.interp(np.arange(_FIRST * (breaks.size - 1) + 1) / _FIRST, np.arange(breaks.size), breaks)
+    points = curve.at(t)
+    check_finite(points)
+    doubtful = np.arange(t.size - 1)  # chords not yet found good
     for _ in range(_HALVINGS):
-        step = np.diff(t)
-        points = _finite(curve.at(t))
-        inside = _finite(curve.at((t[:-1, None] + step[:, None] * _QUARTERS).ravel())).reshape(-1, 3, 2)
-        rough = _rough(points, inside, tolerance)
+        begin, step = t[doubtful], t[doubtful + 1] - t[doubtful]
+        inside = curve.at((begin[:, None] + step[:, None] * _QUARTERS).ravel()).reshape(-1, 3, 2)
+        rough = _rough(points[doubtful], inside, points[doubtful + 1], tolerance)
         if not rough.any():
             break
-        t = np.sort(np.concatenate([t, (t[:-1] + step / 2)[rough]]))
-        t = t if curve.end > curve.start else t[::-1]
-    return _finite(curve.at(t))
+        halved = doubtful[rough] + 1
+        t = np.insert(t, halved, (begin + step / 2)[rough])
+        points = np.insert(points, halved, inside[rough, 1], axis=0)
+        first = halved - 1 + np.arange(halved.size)
+        doubtful = np.stack([first, first + 1], axis=1).ravel()
+    check_finite(points)
+    return points
 
 
-def _rough(points: Array, inside: Array, tolerance: float) -> np.ndarray:
-    """Which chords between points (k, 2) are too far off or turn too much; inside: (k - 1, 3, 2) quarters."""
-    start, end = points[:-1], points[1:]
+def _rough(start: Array, inside: Array, end: Array, tolerance: float) -> np.ndarray:
+    """Which chords (k, 2), (k, 2) are too far off or turn too much; inside: (k, 3, 2) at their quarters."""
     chord = end - start
     length = np.maximum(np.hypot(*chord.T), 1e-300)
     away = inside - start[:, None]
@@ -130,8 +136,3 @@ def check_finite(points: Array) -> None:
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if bad.size:
         raise InvalidInput(f"coordinates must be finite numbers, got {numbers(points[bad[0]])}")
-
-
-def _finite(points: Array) -> Array:
-    check_finite(points)
-    return points

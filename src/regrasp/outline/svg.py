@@ -82,7 +82,7 @@ class _Walk:
             warn(
                 f"the drawing is {notes[-1 - bool(self._styles.unread)]}: look at what was read", stacklevel=6
             )
-        doubts = f"{len(self._unpainted)} curves with neither fill nor stroke" if self._unpainted else ""
+        doubts = counted(["curve with neither fill nor stroke"] * len(self._unpainted))
         return Drawing(self._seen, self._unpainted, doubts, _unit(self._root), tuple(self._known), notes)
 
     def element(self, element: Element, place: _Place, used: bool = False) -> None:
