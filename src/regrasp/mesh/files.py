@@ -1,10 +1,7 @@
 """Meshes from files, by trimesh, and as STL without it."""
 
 import io
-import logging
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +12,7 @@ from regrasp.mesh.arrays import Indices, checked_vertices, merged
 from regrasp.mesh.encodings import check_count, prepared
 from regrasp.mesh.mending import Mended, one_of, parted, without_holes, without_slivers
 from regrasp.mesh.shading import face_normals
-from regrasp.outline.opening import read_bytes, reason
+from regrasp.outline.opening import quiet, read_bytes, reason
 from regrasp.outline.region import checked_size
 
 _KINDS = (".stl", ".obj", ".ply")
@@ -74,26 +71,14 @@ def _pieces(data: bytes, kind: str) -> list[tuple[Array, Indices]]:
         raise ImportError(f"reading {kind.upper()} needs trimesh: pip install 'regrasp[meshes]'") from None
     stream = io.BytesIO(prepared(data, kind))
     try:
-        with _quiet():
+        with quiet("trimesh"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # text that stops being numbers is an error
+            warnings.filterwarnings("error", message="string or file could not be read")
             scene = trimesh.load_scene(stream, file_type=kind, process=False)
             dumped = [piece for piece in scene.dump() if isinstance(piece, trimesh.Trimesh)]
         return [(np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int64)) for p in dumped]
     except Exception as error:  # the parsers raise whatever their numbers and strings raise
         raise InvalidInput(f"the file cannot be read as {kind.upper()}: {reason(error)}") from None
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without words on what is no part of the shape; text that stops being numbers is an error."""
-    log = logging.getLogger("trimesh")
-    before, log.disabled = log.disabled, True
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            warnings.filterwarnings("error", message="string or file could not be read")
-            yield
-    finally:
-        log.disabled = before
 
 
 def stl(vertices: Array, faces: Indices) -> bytes:

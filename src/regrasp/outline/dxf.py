@@ -13,7 +13,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import MOST_PIECES, UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.dxf_curves import CURVES, frame, mapped, piece, vector
 from regrasp.outline.dxf_layers import Layers
-from regrasp.outline.opening import reason
+from regrasp.outline.opening import quiet, reason
 
 _DEEPEST, _LONGEST_RECOVERED = 50, 5_000_000
 _UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 9: "mil", 10: "yd", 13: "um", 14: "dm"}
@@ -39,7 +39,10 @@ def dxf_drawing(path: Path, size: int, layers: tuple[str, ...] | None = None) ->
     layers: read these only, hidden or not. size: of the file [bytes]. Raises ``ImportError`` without ezdxf,
     ``InvalidInput`` for a file that is not DXF.
     """
-    document, notes = _document(path, size)
+    with quiet("ezdxf"):
+        document, notes = _document(path, size)
+    for note in notes:
+        warn(f"{path}: {note}: look at what was read", stacklevel=5)
     walk = _Walk(document, layers)
     try:
         walk.entities(document.modelspace(), _Place(np.eye(3), np.zeros(3)))
@@ -78,7 +81,6 @@ def _document(path: Path, size: int) -> tuple[Any, list[str]]:
     words = (
         f"the file is damaged ({first}); {len(audit.fixes) + len(audit.errors)} faults were mended or passed"
     )
-    warn(f"{path}: {words}: look at what was read", UserWarning, stacklevel=5)
     return document, [words]
 
 

@@ -1,5 +1,6 @@
 """Files opened with care: of a bounded size, and no device that never ends."""
 
+import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -74,3 +75,14 @@ def reason(error: BaseException) -> str:
     words = " ".join(text[: 2 * _LONGEST].split()) or type(error).__name__
     printable = "".join(letter if letter.isprintable() else "?" for letter in words)
     return printable if len(printable) <= _LONGEST else printable[:_LONGEST] + "..."
+
+
+@contextmanager
+def quiet(logger: str) -> Iterator[None]:
+    """Without what another library would log: what matters of it is an error or a note here."""
+    log = logging.getLogger(logger)
+    before, log.disabled = log.disabled, True
+    try:
+        yield
+    finally:
+        log.disabled = before
