@@ -1,4 +1,4 @@
-"""The objectives that words name, one value each: every table elsewhere reads them. A new one is a value here."""
+"""The objectives that words name, one value each: tables elsewhere read them. A new one is a value here."""
 
 from collections.abc import Mapping, Sequence
 from math import atan, tan
