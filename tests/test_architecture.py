@@ -142,11 +142,12 @@ def may_import(module: str, package: str) -> bool:
             "regrasp.closed_form.compiled_shift",
             "regrasp.closed_form.compiled_stances",
             "regrasp.closed_form.compiled_triples",
-            "regrasp.programs.audit",
+            "regrasp.programs.compiled_audit",
         )
     if package in SOLVERS:
-        # The benchmark calls solvers with their own defaults, which the back ends do not.
-        return module in (f"regrasp.programs.{package}_backend", f"regrasp.bench.calls.{package}_call")
+        # The benchmark calls solvers through others with their own defaults, which the back ends do not.
+        places = ("programs.{}_backend", "programs.calls.{}_call", "bench.calls.{}_call")
+        return module in [f"regrasp.{place.format(package)}" for place in places]
     if package in ("click", "rich"):
         return here == "cli"
     if package == "shapely":

@@ -27,8 +27,8 @@ from time import perf_counter
 from typing import Any
 
 from regrasp.bench.answer import Answer, printable, understood
-from regrasp.bench.calls.form import Call
 from regrasp.bench.solvers import Solver
+from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
 Once = Callable[[], tuple[Answer, float]]

@@ -107,7 +107,7 @@ def _new_rows(
         shares = cosines[form.limited]
     A = form.pattern.filled(np.concatenate(numbers))
     A.data.setflags(write=False)  # programs of other loads share it
-    return _Rows(form, Program(form.P, form.q, A, np.zeros(form.rows), form.blocks), shares)
+    return _Rows(form, Program(form.P, form.q, A, np.zeros(form.rows), form.blocks, size=1.0), shares)
 
 
 # Loads change more often than grasps.

@@ -1,0 +1,129 @@
+"""Answers that are nearly right, made right: noise becomes zero, and Newton's steps do the rest.
+
+With the rows and cones that are touched taken as equations, an optimum solves
+
+    P dx + A_t'dz = -(P x + q + A'z),   A_t dx = s_t
+
+A second-order cone is touched at its apex, with all of its rows, or along its boundary, with one: there
+z is a multiple of (1, -v/|v|). The step taken is the shortest where many serve. What is touched and what is
+noise are guesses; what comes of them is measured like any other answer.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from regrasp.programs.audit import audited
+from regrasp.programs.program import Array, Program
+from regrasp.programs.terms import reciprocal
+
+# Fractions of the largest entry below which entries are guessed to be noise.
+_NOISE = (0.0, 1e-9, 1e-7, 1e-5, 1e-3)
+_STEPS = 3
+# What moves by more than this fraction of the largest entry was no answer.
+_NEAR = 1e-4
+_LARGEST = 1_000
+"""Unknowns and rows up to which an answer is polished."""
+
+
+def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Array, Array] | None:
+    """An answer near (x, z) whose relative measures are at most ``allowed``; None if none was found."""
+    if not np.isfinite(x).all():
+        return None
+    duals = program.cones.dual(np.where(np.isfinite(z), z, 0.0))
+    if not program.q.any() and not program.P.nnz:
+        duals = np.zeros(z.size)  # without an objective nothing pulls
+    largest = np.abs(x).max(initial=0.0)
+    guesses = [(noise, np.where(np.abs(x) > noise * largest, x, 0.0)) for noise in _NOISE]
+    if not program.b.any() and not program.P.nnz:
+        guesses.append((1.0, np.zeros(x.size)))  # rows and objective grow with x: zero is as good as any
+    with np.errstate(all="ignore"):
+        for _, point in guesses:
+            if _is_sound(program, point, duals, allowed):
+                return point, duals
+        if sum(program.A.shape) > _LARGEST or not program.terms.is_dense:
+            return None
+        for noise, point in guesses:
+            answer: tuple[Array, Array] | None = (point, duals)
+            for _ in range(_STEPS):
+                assert answer is not None
+                answer = _step(program, *answer, noise)
+                if answer is None or not (_is_near(answer[0], point) and _is_near(answer[1], duals)):
+                    break
+                if _is_sound(program, *answer, allowed):
+                    return answer
+    return None
+
+
+def _is_near(values: Array, given: Array) -> bool:
+    return bool(np.abs(values - given).max(initial=0.0) <= _NEAR * np.abs(given).max(initial=0.0))
+
+
+def _is_sound(program: Program, x: Array, z: Array, allowed: float) -> bool:
+    return all(measure <= allowed for measure in audited(program, x, z)[:4])
+
+
+def _step(program: Program, x: Array, z: Array, noise: float) -> tuple[Array, Array] | None:
+    """The answer one step on; entries of x that are zero stay so."""
+    terms, cones = program.terms, program.cones
+    A = terms.A
+    s = program.b - A @ x
+    units = cones.units(terms.abs_A @ np.abs(x) + np.abs(program.b))
+    of_columns = terms.abs_P @ np.abs(x) + np.abs(program.q) + terms.abs_A.T @ np.abs(z)
+    pull = cones.units(np.abs(z)) * cones.units(terms.abs_A @ reciprocal(of_columns))  # without unit
+    near = cones.units(np.abs(s)) * reciprocal(units)
+    pulled = pull > np.maximum(noise, near)
+    duals = z.copy()
+    tight: list[Array] = []  # rows of equations A_t dx = s_t
+    short: list[float] = []
+    lifts: list[Array] = []  # columns of z = duals + lifts y
+    identity = np.eye(z.size)
+    for i in np.flatnonzero(cones.zero | cones.nonnegative):
+        if cones.zero[i] or pulled[i]:
+            lifts.append(identity[i])
+        elif cones.nonnegative[i]:
+            duals[i] = 0.0
+        if cones.zero[i] or pulled[i] or s[i] < noise * units[i]:
+            tight.append(A[i])
+            short.append(float(s[i]))
+    for part in cones.round:
+        first, v = part.start, s[part][1:]
+        length = float(np.linalg.norm(v))
+        if near[first] <= max(noise, 1e-9):  # the apex
+            tight += list(A[part])
+            short += s[part].tolist()
+            if pulled[first] or np.abs(z[part]).any():
+                lifts += list(identity[part])
+        elif length - s[first] > 0 or pull[first] > max(noise, abs(s[first] - length) / units[first]):
+            face = np.r_[1.0, -v / length]
+            tight.append(face @ A[part])
+            short.append(float(s[first]) - length)
+            duals[part] = z[first] * face
+            lifts.append(face @ identity[part])
+        else:
+            duals[part] = 0.0
+    free = x != 0 if noise else np.ones(x.size, dtype=bool)
+    return _solved(program, x, duals, free, tight, short, lifts)
+
+
+def _solved(
+    program: Program,
+    x: Array,
+    z: Array,
+    free: Array,
+    tight: list[Array],
+    short: list[float],
+    lifts: list[Array],
+) -> tuple[Array, Array] | None:
+    P, A, n = program.terms.P, program.terms.A, x.size
+    T = np.array(tight).reshape(len(tight), n)
+    L = np.array(lifts).reshape(len(lifts), z.size).T
+    matrix: Any = np.block([[P[:, free], A.T @ L], [T[:, free], np.zeros((len(tight), L.shape[1]))]])
+    target = np.r_[-(P @ x + program.q + A.T @ z), short]
+    if not (np.isfinite(matrix).all() and np.isfinite(target).all()):
+        return None
+    rows = reciprocal(np.abs(matrix).max(axis=1, initial=0.0))
+    moved = np.linalg.lstsq(matrix * rows[:, None], target * rows, rcond=1e-12)[0]
+    point = x.copy()
+    point[free] += moved[: int(free.sum())]
+    return point, program.cones.dual(z + L @ moved[int(free.sum()) :])

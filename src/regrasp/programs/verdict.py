@@ -1,0 +1,77 @@
+"""What a back end's claim is worth: measured, made right where it is nearly so, or called unsound."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from regrasp.programs.program import Program
+from regrasp.programs.solution import Solution, Status
+
+PROVEN = 1e-9
+"""Largest residual of a certificate: the terms of a feasible point would be a billion times those of b."""
+
+
+def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:
+    """The claim with the status that it deserves.
+
+    allowed: largest measure of a solution. feasibility: finds a point of a program, or proves that none is.
+    """
+    if solution.status is Status.SOLVED or solution.status is Status.STOPPED:
+        return _solution(solution, allowed)
+    if solution.status is Status.INFEASIBLE:
+        return _infeasible(solution)
+    if solution.status is Status.UNBOUNDED:
+        return _unbounded(solution, feasibility)
+    return solution
+
+
+def _solution(solution: Solution, allowed: float) -> Solution:
+    if not solution.residual <= allowed:
+        from regrasp.programs.polish import polished
+
+        better = polished(solution.program, solution.value, solution.duals, allowed)
+        if better is None:
+            stopped = solution.status is Status.STOPPED
+            return solution if stopped else _unsound(solution, solution.residual, allowed)
+        x, z = better
+        solution = replace(solution, value=x, duals=z, said=f"{solution.said}, polished")
+    # It may have stopped short of its own, tighter tolerances; value and duals prove each other good enough.
+    return solution if solution.status is Status.SOLVED else replace(solution, status=Status.SOLVED)
+
+
+def _infeasible(solution: Solution) -> Solution:
+    if not solution.infeasibility_residual <= PROVEN and np.isfinite(solution.duals).all():
+        from regrasp.programs.cleaning import cleaned_duals
+
+        z = cleaned_duals(solution.program, solution.duals, PROVEN)
+        solution = replace(solution, duals=z)
+    residual = solution.infeasibility_residual
+    return solution if residual <= PROVEN else _unsound(solution, residual, PROVEN)
+
+
+def _unbounded(solution: Solution, feasibility: Callable[[Program], Solution]) -> Solution:
+    if not solution.unboundedness_residual <= PROVEN and np.isfinite(solution.value).all():
+        from regrasp.programs.cleaning import cleaned_direction
+
+        d = cleaned_direction(solution.program, solution.value, PROVEN)
+        solution = replace(solution, value=d)
+    residual = solution.unboundedness_residual
+    if not residual <= PROVEN:
+        return _unsound(solution, residual, PROVEN)
+    program = solution.program
+    if not program.cones.excess(program.b).any():
+        return solution  # zero is a point
+    point = feasibility(program)
+    if point.status is Status.SOLVED:
+        return solution
+    if point.status is Status.INFEASIBLE:
+        said = f"{solution.said}, but no point satisfies the constraints"
+        nothing = np.full(program.q.size, np.nan)
+        return replace(solution, status=Status.INFEASIBLE, value=nothing, duals=point.duals, said=said)
+    return replace(solution, status=Status.UNBOUNDED_OR_INFEASIBLE)
+
+
+def _unsound(solution: Solution, residual: float, allowed: float) -> Solution:
+    said = f"{solution.said}, but residual {residual:.1e} of {allowed:g} allowed"
+    return replace(solution, status=Status.UNSOUND, said=said)
