@@ -3,7 +3,7 @@ import logging
 import numpy as np
 import pytest
 
-from cones import distance_to_cones, slack
+from cones import distance_to_cones
 from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
 from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
 from regrasp.programs import backends as table

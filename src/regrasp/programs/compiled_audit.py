@@ -5,6 +5,7 @@ from math import inf, sqrt
 import numpy as np
 from numba import njit
 
+from regrasp.programs.terms import ROUNDING
 from regrasp.programs.units import PASSES
 
 
@@ -54,14 +55,14 @@ def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _passed_on(ap, ai, ad, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
+def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
     """Inverse units of columns, or of rows, passed on through rows, or columns, that have none: ``units``."""
     fixed = rows > 0 if of_rows else columns > 0
     for _ in range(PASSES):
         for j in range(ap.size - 1):  # where none is fixed, the largest that comes back
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
-                if entry != 0:
+                if entry > noise[i]:
                     if of_rows and not fixed[i]:
                         rows[i] = max(rows[i], columns[j] / entry)
                     elif not of_rows and not fixed[j]:
@@ -83,7 +84,7 @@ def _passed_on(ap, ai, ad, codes, rows, columns, of_rows):  # type: ignore[no-un
 
 
 @njit(cache=True)
-def _inverse_units(pp, pi, pd, q, ap, ai, ad, b, codes):  # type: ignore[no-untyped-def]
+def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[no-untyped-def]
     rows, columns = _inverse(_of_cones(codes, np.abs(b), True)), np.zeros(q.size)
     for j in range(q.size):
         for k in range(pp[j], pp[j + 1]):
@@ -91,18 +92,18 @@ def _inverse_units(pp, pi, pd, q, ap, ai, ad, b, codes):  # type: ignore[no-unty
                 columns[j] += pd[k] / abs(q[j])
         for k in range(ap[j], ap[j + 1]):
             columns[j] = max(columns[j], abs(ad[k]) * rows[ai[k]])
-    _passed_on(ap, ai, ad, codes, rows, columns, True)
+    _passed_on(ap, ai, ad, noise, codes, rows, columns, True)
     return columns
 
 
 @njit(cache=True)
-def _inverse_units_of_duals(ap, ai, ad, pulls, codes, m):  # type: ignore[no-untyped-def]
+def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore[no-untyped-def]
     rows, columns = np.zeros(m), _inverse(pulls)
     for j in range(pulls.size):
         for k in range(ap[j], ap[j + 1]):
             rows[ai[k]] = max(rows[ai[k]], abs(ad[k]) * columns[j])
     _of_cones(codes, rows, False)
-    _passed_on(ap, ai, ad, codes, rows, columns, False)
+    _passed_on(ap, ai, ad, noise, codes, rows, columns, False)
     return rows
 
 
@@ -147,16 +148,24 @@ def _into_dual(codes, z):  # type: ignore[no-untyped-def]
 def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ignore[no-untyped-def]
     """The fields of ``Audit``."""
     n, m = q.size, b.size
+    noise = np.zeros(m)
+    for k in range(ad.size):
+        noise[ai[k]] = max(noise[ai[k]], ROUNDING * abs(ad[k]))
     if size_of_x > 0:
         unknowns = np.full(n, 1 / size_of_x)
     else:
-        unknowns = _inverse_units(pp, pi, pd, q, ap, ai, ad, b, codes)
+        unknowns = _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes)
     sizes = np.maximum(np.abs(x), _inverse(unknowns))
     px, pulls = _products(pp, pi, pd, x, sizes, n)
     pulls += np.abs(q)
     ax, of_rows = _products(ap, ai, ad, x, np.abs(x), m)
     inside = _into_dual(codes, z)
-    duals = _inverse_units_of_duals(ap, ai, ad, pulls, codes, m)
+    largest, duals = 0.0, np.zeros(m)
+    if size_of_x > 0:
+        for j in range(n):
+            largest = max(largest, pulls[j])
+    else:
+        duals = _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m)
     s = b - ax
     dual = stationarity = quadratic = linear = value = of_gap = moved = 0.0
     per_dual, floor = np.zeros(m), np.zeros(m)
@@ -166,9 +175,12 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
             i, entry = ai[k], abs(ad[k])
             gradient += ad[k] * inside[i]
             unit += entry * abs(inside[i])
-            if entry != 0:
+            if size_of_x > 0:
+                floor[i] = max(floor[i], entry * size_of_x)
+            elif entry > noise[i]:
                 alone = max(alone, duals[i] / entry)
                 floor[i] = max(floor[i], unknowns[j] / entry)
+        unit += largest
         if alone != 0:
             unit += 1 / alone
         if unit != 0:
@@ -179,7 +191,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
         of_gap += sizes[j] * pulls[j]
-    of_rows += np.abs(b) + _inverse(floor)
+    of_rows += np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
     for i in range(m):
         value += b[i] * inside[i]
         of_gap += abs(b[i] * inside[i])

@@ -10,6 +10,9 @@ from regrasp.programs.blocks import Array
 _SMALL = 10_000
 """Entries up to which a dense matrix is multiplied faster than a sparse one."""
 
+ROUNDING = 1e-12
+"""An entry this small beside the largest of its row was to be zero."""
+
 
 class Terms:
     """P, A, the sizes |P|, |A| and their inverses 1 / |a_ij|: dense for small programs, else sparse."""
@@ -18,12 +21,18 @@ class Terms:
         self.is_dense = (A.shape[0] + P.shape[0]) * A.shape[1] <= _SMALL
         self.P, self.A = (_dense(M) if self.is_dense else M.tocsr() for M in (P, A))
         self.abs_P, self.abs_A = abs(self.P), abs(self.A)
-        if self.is_dense:
-            self.inverse_A = reciprocal(self.abs_A)
-        else:
-            self.inverse_A = self.abs_A.copy()
-            self.inverse_A.data = reciprocal(self.abs_A.data)
+        self.inverse_A = self._inverse()
         self.diagonal = P.diagonal()
+
+    def _inverse(self) -> Any:
+        """1 / |a_ij|, zero where an entry is, or is the rounding of a row's largest."""
+        largest = self.in_rows(np.ones(self.A.shape[1]))
+        if self.is_dense:
+            return np.where(self.abs_A > ROUNDING * largest[:, None], reciprocal(self.abs_A), 0.0)
+        inverse = self.abs_A.copy()
+        rows = np.repeat(np.arange(largest.size), np.diff(inverse.indptr))
+        inverse.data = np.where(inverse.data > ROUNDING * largest[rows], reciprocal(inverse.data), 0.0)
+        return inverse
 
     def in_columns(self, of_rows: Array) -> Array:
         """(n,) the largest |a_ij| of_rows_i of each column; of_rows: (m,)."""

@@ -4,7 +4,8 @@ The unit of an unknown is the least of what alone makes up a right side, |b_i| /
 objective, |q_j| / p_jj: the least, so that no far bound counts. A row whose right side is zero passes units
 on: its own is that of the smallest of its terms, |a_ij| X_j, and X_l is at most that over |a_il|. Duals have
 units likewise, with rows and columns exchanged and the sizes of P x + q in the place of b. Nothing that gives
-a unit leaves it at zero.
+a unit leaves it at zero. Where ``Program.size`` says the unit of all unknowns, rows have that of their largest
+term and columns that of the largest of all: they are in one unit, too.
 
 All here is written for inverses, so that nothing is zero and the least unit is the largest number.
 """
@@ -19,11 +20,11 @@ PASSES = 4
 
 
 def units_of_unknowns(program: Program) -> tuple[Array, Array]:
-    """X (n,), and of each row (m,) the least |a_ij| X_j; ``Program.size`` is X where it is given."""
+    """X (n,), and of each row (m,) the least |a_ij| X_j, or the largest where all X are given."""
     terms, cones = program.terms, program.cones
     if program.size > 0:
-        inverse = np.full(program.q.size, 1 / program.size)
-        return np.full(program.q.size, program.size), reciprocal(terms.back_in_rows(inverse))
+        given = np.full(program.q.size, program.size)
+        return given, terms.in_rows(given)
     sides = reciprocal(cones.units(np.abs(program.b)))
     inverse = np.maximum(terms.in_columns(sides), terms.diagonal * reciprocal(np.abs(program.q)))
     for _ in range(PASSES):
@@ -35,6 +36,8 @@ def units_of_unknowns(program: Program) -> tuple[Array, Array]:
 def units_of_columns(program: Program, pulls: Array) -> Array:
     """(n,) the least |a_ij| Z_i of each column; pulls (n,): the sizes of P x + q."""
     terms, cones = program.terms, program.cones
+    if program.size > 0:
+        return np.full(pulls.size, pulls.max(initial=0.0))
     sides = reciprocal(pulls)
     inverse = cones.largest(terms.in_rows(sides))
     for _ in range(PASSES):

@@ -8,8 +8,8 @@ import numpy as np
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status
 
-PROVEN = 1e-9
-"""Largest residual of a certificate: the terms of a feasible point would be a billion times those of b."""
+PROVEN = 1e-8
+"""Largest residual of a certificate: the terms of a feasible point would be a hundred million times those of b."""
 
 
 def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:
