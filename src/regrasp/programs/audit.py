@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import largest, reciprocal
+from regrasp.programs.terms import largest, reciprocal, total
 from regrasp.programs.units import units_of_columns, units_of_unknowns
 
 
@@ -58,7 +58,7 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
 
 
 def measured(program: Program, x: Array, z: Array) -> Audit:
-    """The same by NumPy alone, which needs nothing compiled."""
+    """The same by NumPy alone, which needs nothing compiled; objective and gap to the last bit."""
     terms, cones, b, q = program.terms, program.cones, program.b, program.q
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         unknowns, floors = units_of_unknowns(program)
@@ -67,14 +67,14 @@ def measured(program: Program, x: Array, z: Array) -> Audit:
         s = b - terms.A @ x
         excess = cones.excess(s)
         inside = cones.dual(z)
-        px, abs_px = terms.P @ x, terms.abs_P @ sizes
+        px, abs_px = program.P @ x, terms.abs_P @ sizes
         pulls = abs_px + np.abs(q)
         gradient = np.abs(px + q + terms.A.T @ inside)
         of_columns = pulls + terms.abs_A.T @ np.abs(inside) + units_of_columns(program, pulls)
         per_dual = cones.units(terms.in_rows(reciprocal(of_columns)))
         both = np.abs(cones.products(s, inside)) * per_dual
-        quadratic, linear = float(x @ px), float(q @ x)
-        gap = abs(quadratic + linear + float(b @ inside))
+        quadratic, linear = total(x * px), total(q * x)
+        gap = abs(quadratic + linear + total(b * inside))
         of_gap = float(sizes @ pulls + np.abs(b) @ np.abs(inside))
         return Audit(
             largest(excess, of_rows),

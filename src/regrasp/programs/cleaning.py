@@ -21,15 +21,18 @@ from regrasp.programs.terms import reciprocal
 
 # Entries below this fraction of the largest are guessed to be noise, one guess after the other.
 _NOISE = (0.0, 1e-9, 1e-6, 1e-4, 1e-2)
-_STEPS = 4
+STEPS = 4
 # Entries up to which least squares are solved by a dense factorisation.
 _DENSE = 1_000_000
 # A cone whose boundary is nearer than this, by its size, is touched.
 _TOUCHED = 1e-3
 
 
-def cleaned_duals(program: Program, z: Array, enough: float) -> Array:
-    """The dual (m,) with the least ``infeasibility_residual`` that was found, ``enough`` ends the search."""
+def cleaned_duals(program: Program, z: Array, enough: float, steps: int = STEPS) -> Array:
+    """The dual (m,) with the least ``infeasibility_residual`` that was found, ``enough`` ends the search.
+
+    Without ``steps`` its noise becomes zero, and the rest stays.
+    """
     A, cones = sparse.csr_matrix(program.A), program.cones
     sizes = _largest_entries(A) * np.abs(z)
 
@@ -50,11 +53,11 @@ def cleaned_duals(program: Program, z: Array, enough: float) -> Array:
         return loud
 
     start = cones.dual(z)
-    return _best(start, kept, moved, lambda y: infeasibility_residual(program, y), enough)
+    return _best(start, kept, moved, lambda y: infeasibility_residual(program, y), enough, steps)
 
 
-def cleaned_direction(program: Program, d: Array, enough: float) -> Array:
-    """The direction (n,) with the least ``unboundedness_residual``, ``enough`` ends the search."""
+def cleaned_direction(program: Program, d: Array, enough: float, steps: int = STEPS) -> Array:
+    """The direction (n,) with the least ``unboundedness_residual``, likewise."""
     A, P, cones = sparse.csr_matrix(program.A), sparse.csr_matrix(program.P), program.cones
 
     def moved(y: Array) -> Array:
@@ -82,7 +85,7 @@ def cleaned_direction(program: Program, d: Array, enough: float) -> Array:
         loud: NDArray[np.bool_] = np.abs(d) > noise * np.abs(d).max(initial=0.0)
         return loud
 
-    return _best(d, kept, moved, lambda y: unboundedness_residual(program, y), enough)
+    return _best(d, kept, moved, lambda y: unboundedness_residual(program, y), enough, steps)
 
 
 def _best(
@@ -91,13 +94,14 @@ def _best(
     moved: Callable[[Array], Array],
     measure: Callable[[Array], float],
     enough: float,
+    steps: int,
 ) -> Array:
     """Of all guesses and steps the one that measures least."""
     best, least = start, measure(start)
     with np.errstate(all="ignore"):
         for noise in _NOISE:
             y = np.where(kept(noise), start, 0.0)
-            for step in range(_STEPS):
+            for step in range(steps + 1):
                 if least <= enough:
                     return best
                 y = y if step == 0 else moved(y)

@@ -89,5 +89,7 @@ class Cones:
 
 
 def _length(rows: Array) -> Array:
-    length: Array = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    if not rows.shape[1]:
+        return np.zeros(rows.shape[0])
+    length: Array = np.sqrt(np.cumsum(rows * rows, axis=1)[:, -1])  # as compiled loops sum
     return length

@@ -12,6 +12,7 @@ noise are guesses; what comes of them is measured like any other answer.
 from typing import Any
 
 import numpy as np
+from scipy import sparse
 
 from regrasp.programs.audit import audited
 from regrasp.programs.program import Array, Program
@@ -22,7 +23,7 @@ _NOISE = (0.0, 1e-9, 1e-7, 1e-5, 1e-3)
 _STEPS = 3
 # What moves by more than this fraction of the largest entry was no answer.
 _NEAR = 1e-4
-_LARGEST = 1_000
+_LARGEST = 600
 """Unknowns and rows up to which an answer is polished."""
 
 
@@ -33,15 +34,15 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
     duals = program.cones.dual(np.where(np.isfinite(z), z, 0.0))
     if not program.q.any() and not program.P.nnz:
         duals = np.zeros(z.size)  # without an objective nothing pulls
-    largest = np.abs(x).max(initial=0.0)
-    guesses = [(noise, np.where(np.abs(x) > noise * largest, x, 0.0)) for noise in _NOISE]
+    guesses = [(noise, _without(x, noise)) for noise in _NOISE]
     if not program.b.any() and not program.P.nnz:
         guesses.append((1.0, np.zeros(x.size)))  # rows and objective grow with x: zero is as good as any
     with np.errstate(all="ignore"):
-        for _, point in guesses:
-            if _is_sound(program, point, duals, allowed):
-                return point, duals
-        if sum(program.A.shape) > _LARGEST or not program.terms.is_dense:
+        for noise, point in guesses:
+            for given in (duals, _without(duals, noise)):
+                if _is_sound(program, point, given, allowed):
+                    return point, given
+        if sum(program.A.shape) > _LARGEST:
             return None
         for noise, point in guesses:
             answer: tuple[Array, Array] | None = (point, duals)
@@ -55,6 +56,10 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
     return None
 
 
+def _without(values: Array, noise: float) -> Array:
+    return np.where(np.abs(values) > noise * np.abs(values).max(initial=0.0), values, 0.0)
+
+
 def _is_near(values: Array, given: Array) -> bool:
     return bool(np.abs(values - given).max(initial=0.0) <= _NEAR * np.abs(given).max(initial=0.0))
 
@@ -66,7 +71,7 @@ def _is_sound(program: Program, x: Array, z: Array, allowed: float) -> bool:
 def _step(program: Program, x: Array, z: Array, noise: float) -> tuple[Array, Array] | None:
     """The answer one step on; entries of x that are zero stay so."""
     terms, cones = program.terms, program.cones
-    A = terms.A
+    A = _dense(terms.A)
     s = program.b - A @ x
     units = cones.units(terms.abs_A @ np.abs(x) + np.abs(program.b))
     of_columns = terms.abs_P @ np.abs(x) + np.abs(program.q) + terms.abs_A.T @ np.abs(z)
@@ -115,7 +120,7 @@ def _solved(
     short: list[float],
     lifts: list[Array],
 ) -> tuple[Array, Array] | None:
-    P, A, n = program.terms.P, program.terms.A, x.size
+    P, A, n = _dense(program.terms.P), _dense(program.terms.A), x.size
     T = np.array(tight).reshape(len(tight), n)
     L = np.array(lifts).reshape(len(lifts), z.size).T
     matrix: Any = np.block([[P[:, free], A.T @ L], [T[:, free], np.zeros((len(tight), L.shape[1]))]])
@@ -127,3 +132,7 @@ def _solved(
     point = x.copy()
     point[free] += moved[: int(free.sum())]
     return point, program.cones.dual(z + L @ moved[int(free.sum()) :])
+
+
+def _dense(matrix: Any) -> Any:
+    return matrix.toarray() if sparse.issparse(matrix) else matrix

@@ -75,3 +75,8 @@ def reciprocal(units: Array) -> Array:
     """1 / units, and zero where a unit is: there all terms are."""
     inverse: Array = np.divide(1.0, units, out=np.zeros_like(units), where=units != 0)
     return inverse
+
+
+def total(values: Array) -> float:
+    """The sum, taken one after the other as compiled loops do, so that both are equal to the last bit."""
+    return float(np.cumsum(values)[-1]) if values.size else 0.0

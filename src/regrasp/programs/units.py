@@ -4,8 +4,8 @@ The unit of an unknown is the least of what alone makes up a right side, |b_i| /
 objective, |q_j| / p_jj: the least, so that no far bound counts. A row whose right side is zero passes units
 on: its own is that of the smallest of its terms, |a_ij| X_j, and X_l is at most that over |a_il|. Duals have
 units likewise, with rows and columns exchanged and the sizes of P x + q in the place of b. Nothing that gives
-a unit leaves it at zero. Where ``Program.size`` says the unit of all unknowns, rows have that of their largest
-term and columns that of the largest of all: they are in one unit, too.
+a unit leaves it at zero. Where ``Program.size`` says the unit of all unknowns, rows have that of their
+largest term and columns that of the largest of all: they are in one unit, too.
 
 All here is written for inverses, so that nothing is zero and the least unit is the largest number.
 """

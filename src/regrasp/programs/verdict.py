@@ -9,7 +9,7 @@ from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status
 
 PROVEN = 1e-8
-"""Largest residual of a certificate: the terms of a feasible point would be a hundred million times those of b."""
+"""Largest residual of a certificate: a feasible point would have terms 1e8 times those of b."""
 
 
 def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:
