@@ -11,15 +11,16 @@ from regrasp.programs.units import units_of_unknowns
 def row_residual(program: Program, x: Array) -> float:
     """The largest violation of a row or second-order cone, relative to its |b_i| + max_j |a_ij x_j|; x: (n,).
 
-    An unknown near zero counts as large as its unit (``regrasp.programs.units``); of a cone the largest row
-    counts. Rows in other units, forces and torques for one, count alike, and what is large elsewhere hides
-    nothing. NaN if x is not finite or so large that the rows are not.
+    An unknown near zero counts as large as its unit (``regrasp.programs.units``), but no larger than the
+    largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count alike,
+    and what is large elsewhere hides nothing. NaN if x is not finite or so large that the rows are not.
     """
     if not np.isfinite(x).all():
         return nan
     with np.errstate(over="ignore", invalid="ignore"):
         slack = program.b - program.A @ x
-        sizes = np.maximum(abs(x), units_of_unknowns(program)[0])
+        units = np.minimum(units_of_unknowns(program)[0], abs(x).max(initial=0.0))
+        sizes = np.maximum(abs(x), units)
         scale = program.terms.in_rows(sizes) + abs(program.b)
     if not (np.isfinite(slack).all() and np.isfinite(scale).all()):
         return nan

@@ -7,7 +7,8 @@ A dual z in K* with A'z = 0 and b'z < 0 proves that no x has b - A x in K: x wou
 
 and the residual is miss / (-b'z / sum_i |z_i b_i|): in a feasible point the terms of x, weighted by z, would
 be 1 / residual times those of b. Likewise a direction d with P d = 0, -A d in K and q'd < 0 along which the
-objective falls for ever from any feasible point, if there is one.
+objective falls for ever from any feasible point, if there is one. Where ``Program.size`` says that all
+unknowns are in one unit, columns are too, and each is measured by the largest.
 """
 
 from math import inf
@@ -26,7 +27,10 @@ def infeasibility_residual(program: Program, z: Array) -> float:
     terms, b = program.terms, program.b
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         inside = program.cones.dual(z)
-        miss = largest(np.abs(terms.A.T @ inside), terms.abs_A.T @ np.abs(inside))
+        of_columns = terms.abs_A.T @ np.abs(inside)
+        if program.size > 0:
+            of_columns = np.full(of_columns.size, of_columns.max(initial=0.0))
+        miss = largest(np.abs(terms.A.T @ inside), of_columns)
         return _per(miss, float(b @ inside), float(np.abs(b) @ np.abs(inside)))
 
 
@@ -35,8 +39,12 @@ def unboundedness_residual(program: Program, d: Array) -> float:
     terms, cones, q = program.terms, program.cones, program.q
     sizes = np.abs(d)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        bent = largest(np.abs(terms.P @ d), terms.abs_P @ sizes)
-        outside = largest(cones.excess(-(terms.A @ d)), cones.units(terms.abs_A @ sizes))
+        of_columns, of_rows = terms.abs_P @ sizes, terms.abs_A @ sizes
+        if program.size > 0:
+            of_columns = np.full(of_columns.size, of_columns.max(initial=0.0))
+            of_rows = terms.in_rows(np.full(sizes.size, sizes.max(initial=0.0)))
+        bent = largest(np.abs(terms.P @ d), of_columns)
+        outside = largest(cones.excess(-(terms.A @ d)), cones.units(of_rows))
         return _per(float(np.maximum(bent, outside)), float(q @ d), float(np.abs(q) @ sizes))
 
 
