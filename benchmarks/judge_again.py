@@ -2,8 +2,8 @@
 
     python benchmarks/judge_again.py [FOLDER [CERTIFICATES]]
 
-FOLDER holds ``rows.jsonl.xz`` and ``run.json``; both the rows and the report are written again. A row keeps no
-point and no certificate, so whether constraints hold stays as it was measured, and so does how far a
+FOLDER holds ``rows.jsonl.xz`` and ``run.json``; both the rows and the report are written again. A row keeps
+no point and no certificate, so whether constraints hold stays as it was measured, and so does how far a
 certificate is off, unless CERTIFICATES is a folder where the same solvers have solved the same problems
 since: then that residual is taken from there, and nothing else. What is judged anew is the distance from the
 known optimum and what a certificate counts for.

@@ -16,12 +16,13 @@ from scipy import sparse
 
 from regrasp.programs.audit import audited
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import reciprocal
+from regrasp.programs.terms import largest, reciprocal
+from regrasp.programs.units import units_of_columns, units_of_unknowns
 
 # Fractions of the largest entry below which entries are guessed to be noise.
 _NOISE = (0.0, 1e-9, 1e-7, 1e-5, 1e-3)
 _STEPS = 3
-# What moves by more than this fraction of the largest entry was no answer.
+# What must move by more than this was no answer.
 _NEAR = 1e-4
 _LARGEST = 600
 """Unknowns and rows up to which an answer is polished."""
@@ -44,12 +45,13 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
                     return point, given
         if sum(program.A.shape) > _LARGEST:
             return None
+        near = _Near(program, x, duals)
         for noise, point in guesses:
             answer: tuple[Array, Array] | None = (point, duals)
             for _ in range(_STEPS):
                 assert answer is not None
                 answer = _step(program, *answer, noise)
-                if answer is None or not (_is_near(answer[0], point) and _is_near(answer[1], duals)):
+                if answer is None or not near.has(*answer):
                     break
                 if _is_sound(program, *answer, allowed):
                     return answer
@@ -60,8 +62,23 @@ def _without(values: Array, noise: float) -> Array:
     return np.where(np.abs(values) > noise * np.abs(values).max(initial=0.0), values, 0.0)
 
 
-def _is_near(values: Array, given: Array) -> bool:
-    return bool(np.abs(values - given).max(initial=0.0) <= _NEAR * np.abs(given).max(initial=0.0))
+class _Near:
+    """Answers that differ from one by little: rows and columns change by ``_NEAR`` of their units at most."""
+
+    def __init__(self, program: Program, x: Array, z: Array) -> None:
+        self._terms, self._x, self._z = program.terms, x, z
+        terms, cones = program.terms, program.cones
+        unknowns, floors = units_of_unknowns(program)
+        self._rows = cones.units(terms.abs_A @ np.abs(x) + np.abs(program.b) + floors)
+        pulls = terms.abs_P @ np.maximum(np.abs(x), unknowns) + np.abs(program.q)
+        self._columns = pulls + terms.abs_A.T @ np.abs(z) + units_of_columns(program, pulls)
+
+    def has(self, x: Array, z: Array) -> bool:
+        """Whether (x, z) is one."""
+        P, A, dx, dz = self._terms.P, self._terms.A, x - self._x, z - self._z
+        changes = (largest(np.abs(A @ dx), self._rows), largest(np.abs(P @ dx), self._columns),
+                   largest(np.abs(A.T @ dz), self._columns))  # fmt: skip
+        return max(changes) <= _NEAR
 
 
 def _is_sound(program: Program, x: Array, z: Array, allowed: float) -> bool:
