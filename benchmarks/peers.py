@@ -69,8 +69,8 @@ def is_right(peer: Peer, answer: Solution) -> bool:
     duals = np.full(z.size, 1 + abs(z).max(initial=0.0))
     gradient = program.P @ x + program.q + program.A.T @ z
     terms = 1 + abs(program.P) @ abs(x) + abs(program.q) + abs(program.A.T) @ abs(z)
-    gap = abs(x @ program.P @ x + program.q @ x + program.b @ z)
-    misses = (outside(program, z, duals, dual=True), (abs(gradient) / terms).max(), gap / size)
+    slack = abs((program.b - program.A @ x) @ z)
+    misses = (outside(program, z, duals, dual=True), (abs(gradient) / terms).max(), slack / size)
     return max(misses) <= TOLERANCE
 
 

@@ -143,8 +143,8 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
             "weigh families by their size. verdict only: the solver says rightly that there is a solution, "
             "or that there is none, whatever its numbers are. wrong: an answer that is not right. not shown: "
             "a claim that nothing proves, such as that there is no solution, without a certificate. "
-            "no answer: it said so, raised an error, crashed or ran out of time or memory. not taken: a kind of "
-            "problem that the solver does not claim to solve.",
+            "no answer: it said so, raised an error, crashed or ran out of time or memory. not taken: a kind "
+            "of problem that the solver does not claim to solve.",
             f"mean time: shifted geometric mean over all problems with a shift of {seconds(SHIFT)}; answers "
             f"that are not right count at the time limit, {seconds(limit)}. mean, shared: over the problems "
             "that every solver of the table answers rightly.",
