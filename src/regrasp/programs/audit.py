@@ -1,15 +1,17 @@
 """Measures of an answer from the data of its program, each row and column by its own unit.
 
-    rows       s = b - A x in K        T_i = |b_i| + sum_j |a_ij x_j| + min_j |a_ij| X_j
-    columns    P x + q + A'z = 0       V_j = sum_k |p_jk x_k| + |q_j| + sum_i |a_ij z_i| + min_i |a_ij| Z_i
+    rows       s = b - A x in K        T_i = |b_i| + min_j |a_ij| X_j + w sum_j |a_ij x_j|
+    columns    P x + q + A'z = 0       V_j = |q_j| + sum_k |p_jk| X_k + min_i |a_ij| Z_i
+                                             + w (sum_k |p_jk x_k| + sum_i |a_ij z_i|)
     both       s_i z_i = 0             T_i times the least z_i with |a_ij| z_i = V_j for some j
     objective  x'P x + q'x + b'z = 0   the same sum with every term positive
 
-A second-order cone is one row: its unit is the length of those of its rows, and s_i z_i its s'z. So each
-measure is the same whatever the units of rows, unknowns and objective, and no number elsewhere makes a miss
-look small. z is taken where it is put inside K*: what that moves shows in the columns.
-
-The ``units`` X of unknowns and Z of duals are the sizes that matter where these are themselves near zero.
+X and Z are the ``units`` of unknowns and duals: sizes that matter where these are themselves near zero. The
+weight w leaves of the terms no more than their rounding: an answer far away, where 1e9 - 1e9 is to be 1, is
+not right because the miss is small beside 1e9. A second-order cone is one row: its unit is the length of
+those of its rows, and s_i z_i its s'z. So each measure is the same whatever the units of rows, unknowns and
+objective, and no number elsewhere makes a miss look small. z is taken where it is put inside K*: what that
+moves shows in the columns.
 """
 
 from itertools import count
@@ -19,7 +21,7 @@ import numpy as np
 
 from regrasp.programs.program import Array, Program
 from regrasp.programs.terms import largest, reciprocal, total
-from regrasp.programs.units import units_of_columns, units_of_unknowns
+from regrasp.programs.units import units_of_columns, units_of_unknowns, weight_of_terms
 
 
 class Audit(NamedTuple):
@@ -61,21 +63,23 @@ def measured(program: Program, x: Array, z: Array) -> Audit:
     """The same by NumPy alone, which needs nothing compiled; objective and gap to the last bit."""
     terms, cones, b, q = program.terms, program.cones, program.b, program.q
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        weight = weight_of_terms(program)
         unknowns, floors = units_of_unknowns(program)
         sizes = np.maximum(np.abs(x), unknowns)
-        of_rows = cones.units(terms.abs_A @ np.abs(x) + np.abs(b) + floors)
+        of_rows = cones.units(np.abs(b) + floors + weight * (terms.abs_A @ np.abs(x)))
         s = b - terms.A @ x
         excess = cones.excess(s)
         inside = cones.dual(z)
-        px, abs_px = program.P @ x, terms.abs_P @ sizes
-        pulls = abs_px + np.abs(q)
+        px, abs_px = program.P @ x, terms.abs_P @ np.abs(x)
+        pulls = terms.abs_P @ unknowns + np.abs(q)
         gradient = np.abs(px + q + terms.A.T @ inside)
-        of_columns = pulls + terms.abs_A.T @ np.abs(inside) + units_of_columns(program, pulls)
+        own = abs_px + terms.abs_A.T @ np.abs(inside)
+        of_columns = pulls + units_of_columns(program, pulls) + weight * own
         per_dual = cones.units(terms.in_rows(reciprocal(of_columns)))
         both = np.abs(cones.products(s, inside)) * per_dual
         quadratic, linear = total(x * px), total(q * x)
         gap = abs(quadratic + linear + total(b * inside))
-        of_gap = float(sizes @ pulls + np.abs(b) @ np.abs(inside))
+        of_gap = float(sizes @ (terms.abs_P @ sizes + np.abs(q)) + np.abs(b) @ np.abs(inside))
         return Audit(
             largest(excess, of_rows),
             largest(gradient, of_columns),

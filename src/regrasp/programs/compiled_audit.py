@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.programs.terms import ROUNDING
-from regrasp.programs.units import PASSES
+from regrasp.programs.units import OWN, PASSES
 
 
 @njit(cache=True)
@@ -155,10 +155,15 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
         unknowns = np.full(n, 1 / size_of_x)
     else:
         unknowns = _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes)
-    sizes = np.maximum(np.abs(x), _inverse(unknowns))
-    px, pulls = _products(pp, pi, pd, x, sizes, n)
+    weight = 1.0 if size_of_x > 0 else OWN
+    least = _inverse(unknowns)
+    sizes = np.maximum(np.abs(x), least)
+    px, abs_px = _products(pp, pi, pd, x, np.abs(x), n)
+    _, of_sizes = _products(pp, pi, pd, x, sizes, n)
+    _, pulls = _products(pp, pi, pd, x, least, n)
     pulls += np.abs(q)
     ax, of_rows = _products(ap, ai, ad, x, np.abs(x), m)
+    of_rows *= weight
     inside = _into_dual(codes, z)
     largest, duals = 0.0, np.zeros(m)
     if size_of_x > 0:
@@ -170,17 +175,17 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
     dual = stationarity = quadratic = linear = value = of_gap = moved = 0.0
     per_dual, floor = np.zeros(m), np.zeros(m)
     for j in range(n):
-        gradient, unit, alone = px[j] + q[j], pulls[j], 0.0
+        gradient, own, alone = px[j] + q[j], abs_px[j], 0.0
         for k in range(ap[j], ap[j + 1]):
             i, entry = ai[k], abs(ad[k])
             gradient += ad[k] * inside[i]
-            unit += entry * abs(inside[i])
+            own += entry * abs(inside[i])
             if size_of_x > 0:
                 floor[i] = max(floor[i], entry * size_of_x)
             elif entry > noise[i]:
                 alone = max(alone, duals[i] / entry)
                 floor[i] = max(floor[i], unknowns[j] / entry)
-        unit += largest
+        unit = pulls[j] + largest + weight * own
         if alone != 0:
             unit += 1 / alone
         if unit != 0:
@@ -190,7 +195,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
         stationarity = _worse(stationarity, abs(gradient))
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
-        of_gap += sizes[j] * pulls[j]
+        of_gap += sizes[j] * (of_sizes[j] + abs(q[j]))
     of_rows += np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
     for i in range(m):
         value += b[i] * inside[i]

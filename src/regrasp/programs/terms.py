@@ -15,18 +15,22 @@ ROUNDING = 1e-12
 
 
 class Terms:
-    """P, A, the sizes |P|, |A| and their inverses 1 / |a_ij|: dense for small programs, else sparse."""
+    """P, A, the sizes |P|, |A| and their inverses 1 / |a_ij|: dense for small programs, else sparse.
+
+    of_rows: (m,) the largest entry of each row of |A|. diagonal: (n,) of P.
+    """
 
     def __init__(self, P: sparse.csc_matrix, A: sparse.csc_matrix) -> None:
         self.is_dense = (A.shape[0] + P.shape[0]) * A.shape[1] <= _SMALL
         self.P, self.A = (_dense(M) if self.is_dense else M.tocsr() for M in (P, A))
         self.abs_P, self.abs_A = abs(self.P), abs(self.A)
+        self.of_rows = self.in_rows(np.ones(A.shape[1]))
         self.inverse_A = self._inverse()
         self.diagonal = P.diagonal()
 
     def _inverse(self) -> Any:
         """1 / |a_ij|, zero where an entry is, or is the rounding of a row's largest."""
-        largest = self.in_rows(np.ones(self.A.shape[1]))
+        largest = self.of_rows
         if self.is_dense:
             return np.where(self.abs_A > ROUNDING * largest[:, None], reciprocal(self.abs_A), 0.0)
         inverse = self.abs_A.copy()

@@ -17,6 +17,13 @@ from regrasp.programs.terms import reciprocal
 
 PASSES = 4
 """How many rows or columns in turn a unit is passed on through."""
+OWN = 2.0**-26
+"""Part of the terms of a row or column that counts beside its unit: what tolerances make their rounding."""
+
+
+def weight_of_terms(program: Program) -> float:
+    """The part of the terms of rows and columns that counts beside their units; all where units are given."""
+    return 1.0 if program.size > 0 else OWN
 
 
 def units_of_unknowns(program: Program) -> tuple[Array, Array]:

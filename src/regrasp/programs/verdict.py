@@ -18,7 +18,10 @@ def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], 
     allowed: largest measure of a solution. feasibility: finds a point of a program, or proves that none is.
     """
     if solution.status is Status.SOLVED or solution.status is Status.STOPPED:
-        return _solution(solution, allowed)
+        if solution.residual <= allowed:
+            # It may have stopped short of its own, tighter tolerances; value and duals prove each other.
+            return solution if solution.status is Status.SOLVED else replace(solution, status=Status.SOLVED)
+        return _made_right(solution, allowed, feasibility)
     if solution.status is Status.INFEASIBLE:
         return _infeasible(solution)
     if solution.status is Status.UNBOUNDED:
@@ -26,18 +29,28 @@ def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], 
     return solution
 
 
-def _solution(solution: Solution, allowed: float) -> Solution:
-    if not solution.residual <= allowed:
-        from regrasp.programs.polish import polished
+def _made_right(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:
+    """What an answer that is not sound is near to: a solution, or a proof that there is none."""
+    from regrasp.programs.polish import polished
 
+    if solution.status is Status.SOLVED:
         better = polished(solution.program, solution.value, solution.duals, allowed)
-        if better is None:
-            stopped = solution.status is Status.STOPPED
-            return solution if stopped else _unsound(solution, solution.residual, allowed)
-        x, z = better
-        solution = replace(solution, value=x, duals=z, said=f"{solution.said}, polished")
-    # It may have stopped short of its own, tighter tolerances; value and duals prove each other good enough.
-    return solution if solution.status is Status.SOLVED else replace(solution, status=Status.SOLVED)
+        if better is not None:
+            return replace(solution, value=better[0], duals=better[1], said=f"{solution.said}, polished")
+    nothing = solution.value * np.nan, solution.duals * np.nan
+    for claim in (
+        _infeasible(replace(solution, status=Status.INFEASIBLE, value=nothing[0])),
+        _unbounded(replace(solution, status=Status.UNBOUNDED, duals=nothing[1]), feasibility),
+    ):
+        if claim.status in (Status.INFEASIBLE, Status.UNBOUNDED):
+            return claim
+    if solution.status is Status.SOLVED:
+        return _unsound(solution, solution.residual, allowed)
+    better = polished(solution.program, solution.value, solution.duals, allowed)
+    if better is None:
+        return solution
+    said = f"{solution.said}, polished"
+    return replace(solution, status=Status.SOLVED, value=better[0], duals=better[1], said=said)
 
 
 def _infeasible(solution: Solution) -> Solution:
