@@ -7,7 +7,8 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
-from regrasp.verification.exact import RESOLUTION, dot, exact, rounded
+from regrasp.verification.exact import RESOLUTION, dot, exact, root, rounded
+from regrasp.verification.idle import idle_fingers
 from regrasp.verification.protocols import Plan
 
 
@@ -27,7 +28,7 @@ def check_record(plan: Plan) -> list[str]:
     for i, limit in enumerate(record.rate_limits):
         if limit < inf:
             broken += _check_rate(plan, i, names[i], limit)
-    return broken
+    return broken + _check_choices(plan)
 
 
 def deciding_forces(plan: Plan) -> Array:
@@ -62,6 +63,29 @@ def _check_form(plan: Plan) -> list[str]:
             broken.append(f"record: a state was chosen for {choice.end!r}, which is neither start nor end")
         if not all(limit > 0 for limit in limits):
             broken.append(f"record: force limits must be greater than 0, got {', '.join(map(str, limits))}")
+    return broken
+
+
+def _check_choices(plan: Plan) -> list[str]:
+    """Whether the states chosen keep the force limits they were chosen under, one for each finger in use."""
+    grasp, broken = plan.start.grasp, []
+    for choice in plan.record.choices:
+        state, idle = ((plan.start, 0), (plan.end, 1))[choice.end == "end"]
+        used = [i for i, name in enumerate(grasp.names) if name not in idle_fingers(plan)[idle]]
+        if len(choice.force_limits) != len(used):
+            broken.append(
+                f"{choice.end} was chosen for {len(used)} fingers in use, but {len(choice.force_limits)} "
+                f"force limits are on record"
+            )
+            continue
+        forces = grasp.cones.measured(state.forces).tolist()
+        for i, limit in zip(used, choice.force_limits, strict=True):
+            f = exact(forces[i])
+            if limit < inf and dot(f, f) > (Fraction(limit) * (1 + RESOLUTION)) ** 2:
+                broken.append(
+                    f"{choice.end} was chosen with forces of {one_line(grasp.names[i])} up to {limit:.9g}, "
+                    f"it has {root(dot(f, f)):.9g}"
+                )
     return broken
 
 

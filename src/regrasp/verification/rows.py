@@ -78,9 +78,8 @@ def judge_rows(
     residuals = [float((off / size)[settled & (size > 0)].max(initial=0.0))]
     broken = {}
     for row in np.flatnonzero(~settled).tolist():
-        residual, slack, violations = check_forces(
-            grasp, forces[row], exact(loads[row].tolist()), labels.format(first + row)
-        )
+        load, label = exact(loads[row].tolist()), labels.format(first + row)
+        residual, slack, violations = check_forces(grasp, forces[row], load, label)
         if violations:
             broken[first + row] = violations
         slacks.append(slack)
