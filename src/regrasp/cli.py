@@ -1,6 +1,10 @@
 """The command line. Everything but click is imported inside the commands, when they need it."""
 
+import os
 import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,25 +91,30 @@ def plan(scenario: Path, output: Path, no_figures: bool) -> None:
 
 @commands.command()
 @click.argument("path", metavar="PLAN", type=click.Path(path_type=Path))
-def verify(path: Path) -> None:
+@click.option("--rate", type=float, metavar="HZ", help="Set-points per second there must be.  [default: any]")
+def verify(path: Path, rate: float | None) -> None:
     """Check a PLAN in exact arithmetic.
 
-    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too, row by row.
+    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too: every row must
+    hold the object and be the plan's at its time.
     """
+    import numpy as np
+
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
     from regrasp.files.setpoints import checked, read_setpoints
 
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
-    click.echo(planned)
-    click.echo(_verified(verdict_on(planned), path))
-    table = path.with_name("setpoints.csv")
-    if table.exists():
-        steps = read_setpoints(table, planned)
-        for rows in steps:
-            _verified(checked(planned, rows), table)
-        click.echo(f"each of {sum(rows.times.size for rows in steps)} set-points in {table} verified too")
+    with np.errstate(all="ignore"), _one_line_names(_names(planned)) as shown:  # any numbers at all
+        click.echo(shown(planned))
+        click.echo(_verified(verdict_on(planned), path))
+        table = path.with_name("setpoints.csv")
+        if table.exists():
+            steps = read_setpoints(table, planned, rate)
+            for rows in steps:
+                _verified(checked(planned, rows), table)
+            click.echo(f"each of {sum(rows.times.size for rows in steps)} set-points in {table} verified too")
 
 
 @commands.command()
@@ -224,6 +233,9 @@ def bench_export(folder: Path, families: tuple[str, ...]) -> None:
 
 def main() -> None:
     """Run the command line and exit with its status; an error is one message on stderr."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal need not know every letter
     try:
         status = commands(standalone_mode=False, prog_name="regrasp")
     except click.ClickException as error:
@@ -235,6 +247,10 @@ def main() -> None:
     except RegraspError as error:
         click.echo(f"Error: {error}", err=True)
         status = _status(error)
+    except OSError as error:
+        click.echo(f"Error: the output cannot be written: {error.strerror or error}", err=True)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left of it is tried again
+        status = BAD_INPUT
     sys.exit(status)
 
 
@@ -264,10 +280,12 @@ def _work(
     from regrasp.files.setpoints import checked, setpoint_blocks
     from regrasp.files.source import naming
     from regrasp.files.staging import whole_folder
+    from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
 
     rate, count = scenario.task.rate, 0
-    with naming(name), _progress() as progress:
+    given = [contact.name for contact in getattr(scenario, "contacts", ())]
+    with _one_line_names(given), naming(name), _progress() as progress:
         task = progress.add_task("planning", total=None)
         planned = plan_scenario(scenario)
         progress.update(task, description="verifying")
@@ -277,7 +295,8 @@ def _work(
             _verified(checked(planned, rows), name)
             count += rows.times.size
             progress.update(task, completed=count)
-    click.echo(f"{scenario.title}\n\n{planned}" if scenario.title else planned)
+    with _one_line_names(given) as shown:
+        click.echo(f"{one_line(scenario.title)}\n\n{shown(planned)}" if scenario.title else shown(planned))
     click.echo(f"{verdict}\neach of {count} set-points verified too")
 
     with whole_folder(output) as folder:
@@ -291,6 +310,34 @@ def _work(
     click.echo("")
     for file in written:
         click.echo(f"wrote {output / file}")
+
+
+def _names(planned: "Transition | RegraspPlan") -> list[str]:
+    """Of all contacts of a plan."""
+    return [name for step in getattr(planned, "steps", [planned]) for name in step.grasp.names]
+
+
+@contextmanager
+def _one_line_names(names: Iterable[str]) -> Iterator[Callable[[object], str]]:
+    """A function that shows values, the line breaks in names escaped; errors inside are shown the same way.
+
+    A name from a file must not forge a line of what is printed.
+    """
+    from regrasp.mechanics.value import one_line
+
+    odd = sorted({name for name in names if not name.isprintable()}, key=len, reverse=True)
+
+    def shown(value: object) -> str:
+        text = str(value)
+        for name in odd:
+            text = text.replace(name, one_line(name))
+        return text
+
+    try:
+        yield shown
+    except RegraspError as error:
+        error.args = (shown(error), *error.args[1:])
+        raise
 
 
 def _verified(verdict: "Verification", name: str | Path) -> "Verification":
