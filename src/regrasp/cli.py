@@ -2,8 +2,6 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
 from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -103,10 +101,11 @@ def verify(path: Path, rate: float | None) -> None:
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
     from regrasp.files.setpoints import checked, read_setpoints
+    from regrasp.files.source import legible
 
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
-    with np.errstate(all="ignore"), _one_line_names(_names(planned)) as shown:  # any numbers at all
+    with np.errstate(all="ignore"), legible(_names(planned)) as shown:  # any numbers at all
         click.echo(shown(planned))
         click.echo(_verified(verdict_on(planned), path))
         table = path.with_name("setpoints.csv")
@@ -278,14 +277,14 @@ def _work(
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
     from regrasp.files import plan_scenario, write_plan, write_setpoints
     from regrasp.files.setpoints import checked, setpoint_blocks
-    from regrasp.files.source import naming
+    from regrasp.files.source import legible, naming
     from regrasp.files.staging import whole_folder
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
 
     rate, count = scenario.task.rate, 0
     given = [contact.name for contact in getattr(scenario, "contacts", ())]
-    with _one_line_names(given), naming(name), _progress() as progress:
+    with legible(given), naming(name), _progress() as progress:
         task = progress.add_task("planning", total=None)
         planned = plan_scenario(scenario)
         progress.update(task, description="verifying")
@@ -295,7 +294,7 @@ def _work(
             _verified(checked(planned, rows), name)
             count += rows.times.size
             progress.update(task, completed=count)
-    with _one_line_names(given) as shown:
+    with legible(given) as shown:
         click.echo(f"{one_line(scenario.title)}\n\n{shown(planned)}" if scenario.title else shown(planned))
     click.echo(f"{verdict}\neach of {count} set-points verified too")
 
@@ -315,29 +314,6 @@ def _work(
 def _names(planned: "Transition | RegraspPlan") -> list[str]:
     """Of all contacts of a plan."""
     return [name for step in getattr(planned, "steps", [planned]) for name in step.grasp.names]
-
-
-@contextmanager
-def _one_line_names(names: Iterable[str]) -> Iterator[Callable[[object], str]]:
-    """A function that shows values, the line breaks in names escaped; errors inside are shown the same way.
-
-    A name from a file must not forge a line of what is printed.
-    """
-    from regrasp.mechanics.value import one_line
-
-    odd = sorted({name for name in names if not name.isprintable()}, key=len, reverse=True)
-
-    def shown(value: object) -> str:
-        text = str(value)
-        for name in odd:
-            text = text.replace(name, one_line(name))
-        return text
-
-    try:
-        yield shown
-    except RegraspError as error:
-        error.args = (shown(error), *error.args[1:])
-        raise
 
 
 def _verified(verdict: "Verification", name: str | Path) -> "Verification":
