@@ -37,7 +37,7 @@ def naming(file: str | Path) -> Iterator[None]:
 
 @contextmanager
 def legible(names: Iterable[str]) -> Iterator[Callable[[object], str]]:
-    """A function that shows values with line breaks in ``names`` escaped; errors inside are shown the same way.
+    """A function that shows values with line breaks in ``names`` escaped; errors inside are shown so, too.
 
     A name from a file must not forge a line of what is printed.
     """

@@ -92,7 +92,8 @@ def _check_form(turn: Turn, shape: tuple[int, ...]) -> list[str]:
         return [f"a turn has two angles or more, and forces (K, {shape[0]}, {shape[1]})"]
     if middles is not None and middles.shape != (count - 1, *shape):
         return [f"{count - 1} steps of a turn need as many middles"]
-    if not (np.isfinite(turn.angles).all() and np.isfinite(turn.forces).all()):
+    numbers = (turn.angles, turn.forces, *(() if middles is None else (middles,)))
+    if not all(np.isfinite(values).all() for values in numbers):
         return ["angles and forces of a turn must be finite numbers"]
     return []
 
