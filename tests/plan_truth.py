@@ -1,7 +1,8 @@
 """Whether a plan file tells the truth, decided from its JSON alone: the rules of docs/facts.md written anew.
 
 Rational arithmetic on the file's own doubles; sines, cosines and square roots are doubles. No name of
-regrasp is imported. ``truth`` is True, False, or None where a number lies so near to a tolerance that rounding decides.
+regrasp is imported. ``truth`` is True, False, or None where a number lies so near to a tolerance that
+rounding decides.
 """
 
 from fractions import Fraction

@@ -1,9 +1,9 @@
-"""How many single changes of the source the tests notice: ``make mutants``, or ``python benchmarks/mutants AREA``.
+"""Single changes of the source, and how many tests notice: ``python benchmarks/mutants [AREA ...]``.
 
 Every change of the modules of an area is tried against the tests nearest to them. What was tried is kept in
 ``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, and a module that
-changed is tried anew. Survivors are listed in ``survivors.txt``, with the reason where one is written there:
-a change that no input can tell from the original is no slip. JOBS sets the processes.
+changed is tried anew. Survivors and the reasons for them stand in ``survivors.txt``: a change that no input can
+tell from the original is no slip, and does not count. JOBS sets the number of processes.
 """
 
 import hashlib
@@ -25,8 +25,10 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "path": (["planning/**/path.py", "planning/**/path_program.py"], ["**/test_paths.py"], 0.85),
     "rotation": (["planning/**/rotation.py"], ["**/test_rotation.py"], 0.85),
     "files": (
-        ["files/**/plan_file.py", "files/**/*rows.py", "files/**/setpoints.py", "files/**/regrasp_table.py"]
-        + ["files/**/strict.py", "files/source.py"],
+        [
+            f"files/**/{name}.py"
+            for name in ("plan_file", "*rows", "setpoints", "regrasp_table", "strict", "source")
+        ],
         ["files/test_*.py", "**/test_files.py", "**/test_regrasp_files.py", "**/test_space_regrasp_files.py"],
         0.85,
     ),
@@ -55,7 +57,6 @@ def main() -> int:
 
 def _run(area: str, fresh: bool) -> int:
     import pytest
-
     from engine import NONE, NOTICED, Engine
 
     sources, tests, least = AREAS[area]
@@ -92,14 +93,14 @@ def _summed_up(area: str, rows: list[dict], reasons: dict[str, str], least: floa
     share = noticed / max(len(judged), 1)
     equal = sum(reasons.get(row["key"], "?")[:1] == "=" for row in rows)
     print(
-        f"{area}: {noticed} of {len(judged)} changes noticed, {100 * share:.1f} % (wanted {100 * least:.0f} %); "
-        f"{equal} more are no slips"
+        f"{area}: {noticed} of {len(judged)} changes noticed, {100 * share:.1f} % (wanted {100 * least:.0f} %)"
+        f"; {equal} more are no slips"
     )
     return 0 if share >= least else 1
 
 
 def _reasons() -> dict[str, str]:
-    """Key -> reason, of ``survivors.txt``; a reason that starts with ``=`` says that nothing can tell them apart."""
+    """Key -> reason, of ``survivors.txt``; one that starts with ``=`` says that nothing tells them apart."""
     text = SURVIVORS.read_text(encoding="utf-8") if SURVIVORS.exists() else ""
     entries = [line for line in text.splitlines() if line and not line.startswith("#")]
     return {key.strip(): reason.strip() for key, _, reason in (entry.rpartition(" | ") for entry in entries)}

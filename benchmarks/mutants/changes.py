@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 _COMPARED = {
-    ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt), ast.Gt: (ast.GtE, ast.LtE), ast.GtE: (ast.Gt, ast.Lt),
+    ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt),
+    ast.Gt: (ast.GtE, ast.LtE), ast.GtE: (ast.Gt, ast.Lt),
     ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,), ast.Is: (ast.IsNot,), ast.IsNot: (ast.Is,),
     ast.In: (ast.NotIn,), ast.NotIn: (ast.In,),
 }  # fmt: skip
@@ -18,6 +19,7 @@ _CALLED = {
     "min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum", "any": "all", "all": "any",
     "argmin": "argmax", "argmax": "argmin", "fmin": "fmax", "fmax": "fmin", "sin": "cos", "cos": "sin",
 }  # fmt: skip
+_SKIPPED = ("annotation", "returns", "decorator_list", "type_comment", "args", "bases", "target")
 _DROPPED = ("abs", "sqrt", "root")  # f(x) becomes x
 
 
@@ -61,6 +63,8 @@ def _places(tree: ast.AST) -> Iterator[tuple[Path, str]]:
     def walk(node: ast.AST, path: Path, function: str) -> Iterator[tuple[Path, str]]:
         if isinstance(node, (ast.Import, ast.ImportFrom, ast.JoinedStr, ast.Raise)):
             return
+        if isinstance(node, ast.keyword) and node.arg == "strict":  # lengths of zip that are equal anyway
+            return
         if isinstance(node, ast.ClassDef) and any("Protocol" in ast.unparse(b) for b in node.bases):
             return
         if path:
@@ -69,10 +73,7 @@ def _places(tree: ast.AST) -> Iterator[tuple[Path, str]]:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
             inside = f"{function}.{node.name}".lstrip(".")
         for field, value in ast.iter_fields(node):
-            if field in ("annotation", "returns", "decorator_list", "type_comment", "args", "bases"):
-                if not (field == "args" and isinstance(value, list)):
-                    continue
-            if isinstance(node, (ast.AnnAssign,)) and field == "target":
+            if field in _SKIPPED and not (field == "args" and isinstance(value, list)):
                 continue
             for k, child in enumerate(value) if isinstance(value, list) else [(None, value)]:
                 if isinstance(child, ast.AST):
@@ -143,8 +144,10 @@ def _calls(node: ast.Call) -> Iterator[ast.AST]:
     if name in ("min", "max") and len(node.args) > 1:
         for k in range(len(node.args)):
             rest = [*node.args[:k], *node.args[k + 1 :]]
-            yield rest[0] if len(rest) == 1 and not isinstance(rest[0], ast.Starred) else ast.Call(
-                node.func, rest, node.keywords
+            yield (
+                rest[0]
+                if len(rest) == 1 and not isinstance(rest[0], ast.Starred)
+                else ast.Call(node.func, rest, node.keywords)
             )
 
 

@@ -16,7 +16,6 @@ from types import CodeType, FrameType, FunctionType, ModuleType
 from typing import Any
 
 import pytest
-
 from changes import Change, changes
 
 NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
@@ -25,12 +24,15 @@ NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
 class Engine:
     """A pytest plugin whose run of the tests is the run of the changes."""
 
-    def __init__(self, modules: list[Path], known: dict[str, str], told: Callable[[str, Change, str], None]) -> None:
+    def __init__(
+        self, modules: list[Path], known: dict[str, str], told: Callable[[str, Change, str], None]
+    ) -> None:
         self.modules, self.known, self.told = modules, known, told
         self.jobs = int(os.environ.get("JOBS", "2"))
         self.killers: dict[str, list[int]] = {}
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Run the tests once, then the changes."""
         import hypothesis.internal.conjecture.engine as hypothesis_engine
 
         hypothesis_engine.MAX_SHRINKS = 0  # that it fails is enough
