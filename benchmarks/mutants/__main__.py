@@ -2,8 +2,8 @@
 
 Every change of the modules of an area is tried against the tests nearest to them. What was tried is kept in
 ``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, and a module that
-changed is tried anew. Survivors and the reasons for them stand in ``survivors.txt``: a change that no input can
-tell from the original is no slip, and does not count. JOBS sets the number of processes.
+changed is tried anew. Survivors and the reasons for them stand in ``survivors.txt``: a change that no input
+can tell from the original is no slip, and does not count. JOBS sets the number of processes.
 """
 
 import hashlib
@@ -100,7 +100,7 @@ def _summed_up(area: str, rows: list[dict], reasons: dict[str, str], least: floa
 
 
 def _reasons() -> dict[str, str]:
-    """Key -> reason, of ``survivors.txt``; one that starts with ``=`` says that nothing tells them apart."""
+    """Key -> reason, of ``survivors.txt``; ``=`` at its start says that nothing tells the two apart."""
     text = SURVIVORS.read_text(encoding="utf-8") if SURVIVORS.exists() else ""
     entries = [line for line in text.splitlines() if line and not line.startswith("#")]
     return {key.strip(): reason.strip() for key, _, reason in (entry.rpartition(" | ") for entry in entries)}
