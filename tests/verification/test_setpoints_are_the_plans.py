@@ -159,20 +159,63 @@ def test_a_finger_without_force_throughout_has_none_in_any_row() -> None:
     assert "force of P4 is not the plan's" in told(plan, t, rows)[0]
 
 
-def test_ends_are_the_states_that_were_proven() -> None:
-    """A plan whose own forces(t) is not what its ends say."""
-    grasp, forces = cross((0.75,) * 4)
-    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+def test_a_plan_that_answers_otherwise_than_was_proven(plan) -> None:
+    """Rows as its own forces(t) says, which is not the path between its ends, instants or angles."""
 
-    class Liar(Plan):
+    class Liar:
+        def __init__(self, by) -> None:
+            self.by = by
+
+        def __getattr__(self, name):
+            return getattr(plan, name)
+
         def forces(self, t):
-            return 2 * super().forces(t)
+            return self.by(np.asarray(t))
 
-    plan = Liar("rotation", None, state, state)
-    assert rg.verify(plan).ok
-    t = np.linspace(0, 1, 5)
-    found = told(plan, t, plan.forces(t))
-    assert {v.split(":")[0] for v in found} == {"set-point 0", "set-point 4"}
+    t = np.linspace(0, plan.duration, 9)
+    angles = None if plan.turn is None else plan.orientation(t)
+    late = Liar(lambda t: plan.forces(t**2 / plan.duration))
+    assert rg.verify(late).ok
+    assert verify_setpoints(late, late.forces(t), t, angles).violations
+    for k in range(9):
+        spoilt = Liar(
+            lambda t, k=k: plan.forces(t) * np.where(np.arange(t.size) == k, 1 + 1e-9, 1)[:, None, None]
+        )
+        assert verify_setpoints(spoilt, spoilt.forces(t), t, angles).violations
+        assert verify_setpoints(spoilt, plan.forces(t), t, angles).violations
+    assert verify_setpoints(Liar(plan.forces), plan.forces(t), t, angles).ok
+
+
+@pytest.mark.parametrize(
+    "scaling",
+    [
+        rg.TimeScaling.linear(2.0),
+        rg.TimeScaling.minimum_jerk(0.1),
+        rg.TimeScaling.spline(1e-3, (1, 0.5, 0)),
+        rg.TimeScaling.spline(1e3, (1, 1, 0.9, 0.2, 0.2, 0.1, 0, 0, 0)),
+        rg.TimeScaling(1.0, (1, 1, 0.5, 0.5, 0, 0), 2),
+        rg.TimeScaling(1.0, (1, 1, 1, 0.7, 0.5, 0.3, 0, 0, 0), 7),
+        rg.TimeScaling(1.0, (1, 1, 0.4, 0, 0), 1),
+    ],
+)
+def test_any_time_function_is_retraced(scaling) -> None:
+    for name in ("removal", "turn", "turn with torque", "turn in space"):
+        plan = PLANS[name].retimed(scaling)
+        t = np.linspace(0, plan.duration, 201)
+        assert told(plan, t, plan.forces(t)) == ()
+
+
+def test_turns_in_many_steps_are_retraced() -> None:
+    two = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.8, name="A"), rg.Contact([1, 0.1], [-1, 0], 0.8, name="B")])
+    for angle, load in (
+        (7.0, rg.Wrench([0, -3.0])),
+        (-7.0, rg.Wrench([0, -3.0])),
+        (-5.0, rg.Wrench([0, -3.0], 0.2)),
+    ):
+        plan = rg.plan_rotation(two, angle, load=load)
+        assert plan.turn.angles.size > 3
+        t = np.linspace(0, plan.duration, 101)
+        assert told(plan, t, plan.forces(t)) == ()
 
 
 @pytest.mark.parametrize("make", CROSSES.values(), ids=CROSSES)

@@ -1,9 +1,9 @@
 """Set-points: each row in equilibrium, inside cones and limits, and the plan's at its time.
 
 Rows are compared with ``plan.forces(t)``, contact by contact, to 2^-40 of the largest force of that contact
-on the way: the rounding of a path is that of its forces. At the ends they are compared with the states that
-``verify`` decides, and a finger that carries no force there carries none to the last bit. An angle of theta
-rounds to 2^-53 theta, so a turn by theta is compared to 2^-40 (1 + theta).
+on the way: the rounding of a path is that of its forces. So are they with the path that ``verify`` decides,
+retraced, and a finger that carries no force at an end carries none to the last bit. An angle of theta rounds
+to 2^-53 theta, so a turn by theta is compared to 2^-40 (1 + theta).
 """
 
 from collections.abc import Iterator
@@ -18,6 +18,7 @@ from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.idle import idle_fingers
 from regrasp.verification.protocols import Plan
 from regrasp.verification.records import deciding_forces
+from regrasp.verification.retraced import retraced
 from regrasp.verification.rows import judge_rows
 from regrasp.verification.verdict import Verification
 
@@ -77,14 +78,10 @@ def _compared(plan: Plan, forces: Array, times: Array, rows: slice) -> Iterator[
     forces, times, first = forces[rows], times[rows], rows.start
     grasp, d, record = plan.start.grasp, plan.start.grasp.dimension, plan.record
     names, deciding = list(map(one_line, grasp.names)), deciding_forces(plan)
-    planned = np.array(plan.forces(times))
-    ends = ((0, 0.0, plan.start.forces), (times.size - 1, plan.scaling.duration, plan.end.forces))
-    for k, at, state in ends:
-        if times[k] == at:
-            planned[k] = state
+    planned = (plan.forces(times), retraced(plan, times))
     for part, unit in ((slice(0, d), "N"), (slice(d, None), "N m")):
         size = abs(deciding[..., part]).max(axis=(0, 2), initial=0.0)
-        off = abs(forces[..., part] - planned[..., part]).max(axis=2, initial=0.0)
+        off = np.maximum(*(abs(forces[..., part] - f[..., part]).max(axis=2, initial=0.0) for f in planned))
         for row, i in np.argwhere(~(off <= _DOUBT * _growth(plan) * size)).tolist():
             yield (
                 first + row,
@@ -93,7 +90,8 @@ def _compared(plan: Plan, forces: Array, times: Array, rows: slice) -> Iterator[
                     f"off by {off[row, i]:.3g} {unit}"
                 ),
             )
-    for (k, at, _), idle in zip(ends, idle_fingers(plan), strict=True):
+    ends = ((0, 0.0), (times.size - 1, plan.scaling.duration))
+    for (k, at), idle in zip(ends, idle_fingers(plan), strict=True):
         for i in (grasp.names.index(name) for name in idle if name in grasp.names):
             if times[k] == at and forces[k, i].any():
                 yield first + k, f"{names[i]} must carry no force there"
