@@ -86,8 +86,7 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
 
     rate: rows per second that the file must have; None for any even one.
     Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
-    to the duration, and angles, steps and finger positions that are not the plan's; forces
-    are for ``checked``.
+    to the duration, and angles, steps and finger positions that are not the plan's. ``checked`` is for forces.
     """
     path = Path(path)
     if rate is not None:

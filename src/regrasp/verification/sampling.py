@@ -83,13 +83,8 @@ def _compared(plan: Plan, forces: Array, times: Array, rows: slice) -> Iterator[
         size = abs(deciding[..., part]).max(axis=(0, 2), initial=0.0)
         off = np.maximum(*(abs(forces[..., part] - f[..., part]).max(axis=2, initial=0.0) for f in planned))
         for row, i in np.argwhere(~(off <= _DOUBT * _growth(plan) * size)).tolist():
-            yield (
-                first + row,
-                (
-                    f"force of {names[i]} is not the plan's at t = {times[row]:.9g} s, "
-                    f"off by {off[row, i]:.3g} {unit}"
-                ),
-            )
+            when, by = f"t = {times[row]:.9g} s", f"off by {off[row, i]:.3g} {unit}"
+            yield first + row, f"force of {names[i]} is not the plan's at {when}, {by}"
     ends = ((0, 0.0), (times.size - 1, plan.scaling.duration))
     for (k, at), idle in zip(ends, idle_fingers(plan), strict=True):
         for i in (grasp.names.index(name) for name in idle if name in grasp.names):
