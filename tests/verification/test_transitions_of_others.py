@@ -538,5 +538,6 @@ def test_verdicts_say_what_is_proven() -> None:
     assert proven.load_gap_is_proven
     assert "(proven)" in str(proven)
     assert (measured.load_gap, proven.load_gap) == (0.0, 0.0)
-    assert str(rg.verify(Plan("swap", "B", WHOLE, UPPER))).startswith("not verified:\n  kind 'swap'")
+    wrong = Plan("removal", "E", WHOLE, UPPER)
+    assert str(rg.verify(wrong)).startswith("not verified:\n  contact 'E' is not one of")
     assert rg.verify(plan).load_gap is None
