@@ -29,6 +29,6 @@ def naming(file: str | Path) -> Iterator[None]:
     try:
         yield
     except InvalidInput as error:
-        raise InvalidInput(f"{file}: {error}") from None
+        raise type(error)(f"{file}: {error}") from None
     except Infeasible as error:
         raise Infeasible(f"{file}: {error}", error.certificate) from None

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number, point
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -51,7 +51,7 @@ class Contact(ArrayValue):
         name: str | None = None,
     ) -> None:
         if name is not None and (not isinstance(name, str) or not name.strip()):
-            raise InvalidInput(f"a contact's name must be a non-empty string, got {name!r}")
+            raise InvalidInput(f"a contact's name must be a non-empty string, got {shown(name)}")
         label = "contact" if name is None else f"contact {name!r}"
         where = point(position, f"{label}: position")
         direction = point(normal, f"{label}: normal")

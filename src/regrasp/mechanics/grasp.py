@@ -7,7 +7,7 @@ from itertools import count
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
@@ -35,7 +35,7 @@ class Grasp(ArrayValue):
             raise InvalidInput("a grasp needs at least one contact, got none")
         for contact in given:
             if not isinstance(contact, Contact):
-                raise InvalidInput(f"a grasp is made of Contacts, got {contact!r}")
+                raise InvalidInput(f"a grasp is made of Contacts, got {shown(contact)}")
             if contact.dimension != given[0].dimension:
                 raise InvalidInput(
                     f"contacts of one grasp must have one dimension, got {given[0].dimension} "
@@ -68,7 +68,7 @@ class Grasp(ArrayValue):
                     return i
             raise InvalidInput(f"no contact {contact!r} in this grasp; it has {', '.join(self.names)}")
         if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
-            raise InvalidInput(f"a contact is addressed by name or index, got {contact!r}")
+            raise InvalidInput(f"a contact is addressed by name or index, got {shown(contact)}")
         if not -len(self) <= contact < len(self):
             raise InvalidInput(f"no contact {contact} in this grasp; it has {len(self)}, counted from 0")
         return int(contact) % len(self)

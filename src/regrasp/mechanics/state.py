@@ -8,7 +8,7 @@ from operator import mul
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array, array, read_only
 from regrasp.mechanics.grasp import Grasp
@@ -38,13 +38,13 @@ class GraspState(ArrayValue):
 
     def __init__(self, grasp: Grasp, load: Wrench, forces: ArrayLike) -> None:
         if not isinstance(grasp, Grasp):
-            raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
+            raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
         check_load(grasp, load)
         object.__setattr__(self, "grasp", grasp)
         object.__setattr__(self, "load", load)
         given = array(forces, "forces", (len(grasp), grasp.width))
         if grasp.torsions is not None and given[grasp.torsions == 0, 3].any():
-            raise InvalidInput(f"forces: point contacts make no torque about their normals, got {forces!r}")
+            raise InvalidInput(f"forces: point contacts make no torque about their normals, got {shown(forces)}")
         object.__setattr__(self, "forces", given)
 
     @cached_property
@@ -164,6 +164,6 @@ class GraspState(ArrayValue):
 def check_load(grasp: Grasp, load: Wrench) -> None:
     """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension."""
     if not isinstance(load, Wrench):
-        raise InvalidInput(f"load must be a Wrench, got {load!r}; write Wrench(force=[...])")
+        raise InvalidInput(f"load must be a Wrench, got {shown(load)}; write Wrench(force=[...])")
     if load.dimension != grasp.dimension:
         raise InvalidInput(f"load must have the grasp's dimension {grasp.dimension}, got {load.dimension}")

@@ -8,7 +8,7 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics import checks
 from regrasp.mechanics.checks import Array, array, number, point
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -93,7 +93,7 @@ class Wrench(ArrayValue):
 
     def _with(self, other: object, combine: Callable[[Array, Array], Array]) -> "Wrench":
         if not isinstance(other, Wrench):
-            raise InvalidInput(f"a wrench combines with a wrench, got {other!r}")
+            raise InvalidInput(f"a wrench combines with a wrench, got {shown(other)}")
         if other.dimension != self.dimension:
             raise InvalidInput("a planar wrench and a wrench in space cannot be combined")
         return Wrench.from_vector(combine(self.vector, other.vector))
