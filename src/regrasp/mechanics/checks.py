@@ -19,7 +19,9 @@ def array(value: ArrayLike, what: str, shape: tuple[int | None, ...]) -> Array:
         result.ndim != len(shape)
         or any(want not in (None, got) for want, got in zip(shape, result.shape, strict=True))
     ):
-        raise InvalidInput(f"{what} must have shape {_shape(shape)}, got {_shape(result.shape)}: {shown(value)}")
+        raise InvalidInput(
+            f"{what} must have shape {_shape(shape)}, got {_shape(result.shape)}: {shown(value)}"
+        )
     if np.count_nonzero(np.isfinite(result)) < result.size:
         raise InvalidInput(f"{what} must be finite, got {shown(value)}")
     return read_only(result)
@@ -90,7 +92,9 @@ def rotation(value: ArrayLike, what: str) -> Array:
     """A (3, 3) rotation matrix: orthonormal, determinant 1."""
     matrix = array(value, what, (3, 3))
     if abs(matrix @ matrix.T - np.eye(3)).max() > 1e-9 or np.linalg.det(matrix) < 0:
-        raise InvalidInput(f"{what} must be a rotation matrix (orthonormal, determinant 1), got {shown(value)}")
+        raise InvalidInput(
+            f"{what} must be a rotation matrix (orthonormal, determinant 1), got {shown(value)}"
+        )
     return matrix
 
 

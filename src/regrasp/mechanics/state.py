@@ -44,7 +44,9 @@ class GraspState(ArrayValue):
         object.__setattr__(self, "load", load)
         given = array(forces, "forces", (len(grasp), grasp.width))
         if grasp.torsions is not None and given[grasp.torsions == 0, 3].any():
-            raise InvalidInput(f"forces: point contacts make no torque about their normals, got {shown(forces)}")
+            raise InvalidInput(
+                f"forces: point contacts make no torque about their normals, got {shown(forces)}"
+            )
         object.__setattr__(self, "forces", given)
 
     @cached_property
