@@ -5,6 +5,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pytest
 
 import regrasp as rg
 from paper import GRASP, LOAD, STATE
@@ -54,12 +55,10 @@ def regrasp() -> rg.RegraspPlan:
 
 @cache
 def escape() -> rg.EscapeTwist:
-    try:
+    with pytest.raises(rg.Infeasible) as caught:
         rg.plan_removal(STATE, "P1")
-    except rg.Infeasible as reason:
-        assert isinstance(reason.certificate, rg.EscapeTwist)
-        return reason.certificate
-    raise AssertionError("P1 holds the object")
+    certificate: rg.EscapeTwist = caught.value.certificate
+    return certificate
 
 
 @cache

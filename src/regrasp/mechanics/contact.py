@@ -1,5 +1,6 @@
 """A frictional point contact."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan, hypot
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number, point
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 # A normal whose length is this near to 1 is taken as it is, so that one normalised before (whose length is
@@ -115,6 +117,22 @@ class Contact(ArrayValue):
         """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``."""
         kept = {"max_force": self.max_force, "torsion": self.torsion, "name": self.name} | fields
         return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The contact as plain data, which JSON can hold; ``from_dict`` gives back the equal contact."""
+        return {
+            "name": self.name,
+            "position": self.position.tolist(),
+            "normal": self.normal.tolist(),
+            "friction": self.friction,
+            "max_force": self.max_force,
+        } | ({} if self.torsion is None else {"torsion": self.torsion})
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Contact":
+        """The contact of plain data. Raises ``InvalidInput`` for other keys and as ``Contact`` does."""
+        optional = ("name", "max_force", "torsion")
+        return cls(**entries(data, "a contact", ("position", "normal", "friction"), optional))
 
     def __repr__(self) -> str:
         limit = "" if self.max_force is None else f", max_force={self.max_force:g}"

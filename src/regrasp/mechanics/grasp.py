@@ -1,9 +1,10 @@
 """A set of contacts and its grasp matrix."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.tangents import tangents_of
+from regrasp.mechanics.plain import entries, listed
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import torque
 
@@ -52,6 +54,16 @@ class Grasp(ArrayValue):
 
     def __hash__(self) -> int:
         return self._hash
+
+    def to_dict(self) -> dict[str, Any]:
+        """The grasp as plain data, which JSON can hold; ``from_dict`` gives back the equal grasp."""
+        return {"contacts": [contact.to_dict() for contact in self.contacts]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Grasp":
+        """The grasp of plain data. Raises ``InvalidInput`` for other keys and as ``Grasp`` does."""
+        contacts = listed(entries(data, "a grasp", ("contacts",))["contacts"], "contacts of a grasp")
+        return cls(map(Contact.from_dict, contacts))
 
     # -- lookup ---------------------------------------------------------------------------------------
 

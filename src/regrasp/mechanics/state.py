@@ -1,9 +1,11 @@
 """Forces of a grasp under a load."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import dist, hypot
 from operator import mul
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +15,7 @@ from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array, array, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import IDLE, Margins, margins
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mechanics.wrench import Wrench
@@ -48,6 +51,23 @@ class GraspState(ArrayValue):
                 f"forces: point contacts make no torque about their normals, got {shown(forces)}"
             )
         object.__setattr__(self, "forces", given)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The state as plain data, which JSON can hold; ``from_dict`` gives back the equal state.
+
+        Of a state that was chosen it is the state, without the record of its choice.
+        """
+        return {
+            "grasp": self.grasp.to_dict(),
+            "load": self.load.to_dict(),
+            "forces": self.forces.tolist(),
+        }
+
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> "GraspState":
+        """The state of plain data. Raises ``InvalidInput`` for other keys and as ``GraspState`` does."""
+        given = entries(data, "a state", ("grasp", "load", "forces"))
+        return GraspState(Grasp.from_dict(given["grasp"]), Wrench.from_dict(given["load"]), given["forces"])
 
     @cached_property
     def wrenches(self) -> Array:

@@ -16,6 +16,7 @@ from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.course import Course
+from regrasp.plans.document import Documented
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.turn import Turn
 
@@ -74,7 +75,7 @@ class Record:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Transition(ArrayValue, Pictured):
+class Transition(ArrayValue, Documented, Pictured):
     """Finger forces that carry a grasp from one equilibrium to another while one finger leaves or arrives.
 
         f(t) = f_end + (f_start - f_end) T(t)
