@@ -17,8 +17,9 @@ ROOT = Path(regrasp.__file__).parent
 FLOORS: dict[str, Set[str]] = {
     "errors": set(),
     "display": {"errors"},
-    "closed_form": {"closed_form"},
-    "programs": {"errors", "programs"},
+    "compilation": set(),
+    "closed_form": {"closed_form", "compilation"},
+    "programs": {"errors", "compilation", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
     "plans": {"errors", "display", "mechanics", "closed_form", "plans"},  # values: nothing here plans
     "planning": {
@@ -202,7 +203,7 @@ def may_import(module: str, package: str) -> bool:
     if package == "pydantic":
         return here == "files"
     if package == "numba":
-        return room(module) == "closed_form.compiled" or module == "regrasp.programs.audit"
+        return room(module) == "closed_form.compiled" or module == "regrasp.compilation"
     if package in SOLVERS:
         # The benchmark calls solvers with their own defaults, which the back ends do not.
         return module in (f"regrasp.programs.{package}_backend", f"regrasp.bench.calls.{package}_call")

@@ -22,7 +22,7 @@ class Documented:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """The plan of plain data. Raises ``InvalidInput`` as ``read_plan`` does, and for another kind of plan.
+        """The plan of plain data. ``InvalidInput`` as of ``read_plan``, and for another kind of plan.
 
         Whatever path the data tells of, the plan has it: a ``Transition`` also where it is asked of one.
         """

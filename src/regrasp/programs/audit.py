@@ -4,8 +4,8 @@ from math import nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from regrasp.compilation import kept
 from regrasp.programs.program import Array, Program
 
 
@@ -50,7 +50,7 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
     return Audit(*_measures(*data, program.codes, x, z))
 
 
-@njit(cache=True)
+@kept()
 def _product(indptr, indices, data, x, rows):  # type: ignore[no-untyped-def]
     result = np.zeros(rows)
     for j in range(x.size):
@@ -59,7 +59,7 @@ def _product(indptr, indices, data, x, rows):  # type: ignore[no-untyped-def]
     return result
 
 
-@njit(cache=True)
+@kept()
 def _largest(values):  # type: ignore[no-untyped-def]
     worst = 0.0
     for value in values:
@@ -67,7 +67,7 @@ def _largest(values):  # type: ignore[no-untyped-def]
     return worst
 
 
-@njit(cache=True)
+@kept()
 def _violation(codes, s, dual):  # type: ignore[no-untyped-def]
     """Distance of s to K, or to K*; the zero cone's dual is everything, the others are their own."""
     worst, row = 0.0, 0
@@ -87,7 +87,7 @@ def _violation(codes, s, dual):  # type: ignore[no-untyped-def]
     return worst
 
 
-@njit(cache=True)
+@kept()
 def _measures(pp, pi, pd, q, ap, ai, ad, b, codes, x, z):  # type: ignore[no-untyped-def]
     if not (np.isfinite(x).all() and np.isfinite(z).all()):
         return _NOTHING
