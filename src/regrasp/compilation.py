@@ -1,8 +1,8 @@
 """Compiling functions with Numba, and keeping the machine code between runs wherever that is possible.
 
-Numba keeps it beside the source or in the user's cache. Where it can do neither it raises, and a file that was
-cut short or spoiled fails every later run. Here, a file that is not what was written is no file, and where
-nothing can be kept, functions are compiled in memory: slower at the start of every run, and said once.
+Numba keeps it beside the source or in the user's cache. Where it can do neither it raises, and a file that
+was cut short or spoiled fails every later run. Here, a file that is not what was written is no file, and
+where nothing can be kept, functions are compiled in memory: slower at the start of every run, and said once.
 """
 
 import logging
@@ -64,6 +64,7 @@ class _Files(IndexDataCacheFile):
     """Numba's files, each behind the digest of what was written; the code names what it is the code of."""
 
     def save(self, key: Any, data: Any) -> None:
+        """Write the code of a key, and the key."""
         super().save(key, (key, data))
 
     def load(self, key: Any) -> Any:

@@ -44,6 +44,7 @@ class Shared:
         self.__doc__ = function.__doc__
 
     def __call__(self, *arguments: Any) -> Any:
+        """Run the loop."""
         return (self._by_one if _alone else self._by_all)(*arguments)
 
     @property
