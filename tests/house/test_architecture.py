@@ -72,6 +72,7 @@ FLOORS: dict[str, Set[str]] = {
         "files",
         "plots",
         "bench",
+        "cli",
     },
     # regrasp/__init__.py: the public names
     "": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "verification"},

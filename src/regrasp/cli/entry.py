@@ -66,7 +66,7 @@ def main() -> None:
 
 
 def _run() -> int:
-    status, message, error = VERIFIED, "", None
+    error: BaseException
     try:
         facts = commands(standalone_mode=False, prog_name="regrasp")
         if isinstance(facts, int):  # of --help and --version

@@ -67,7 +67,8 @@ def _bytes_of(path: Path, expected: str, most: int) -> bytes:
         about = os.fstat(number)
         if stat.S_ISREG(about.st_mode) and about.st_size > most:
             raise _too_much(path, expected, most)
-        parts, size, deadline = [], 0, monotonic() + _PATIENCE
+        parts: list[bytes] = []
+        size, deadline = 0, monotonic() + _PATIENCE
         while size <= most:
             if not stat.S_ISREG(about.st_mode) and not _has_more(number, deadline):
                 raise InvalidInput(f"{path}: expected {expected}, nothing came within {_PATIENCE:g} s")

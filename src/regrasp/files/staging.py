@@ -14,6 +14,7 @@ from tempfile import mkdtemp
 from typing import TextIO
 
 from regrasp.errors import InvalidInput
+from regrasp.files.locks import HAS_LOCKS, lock
 from regrasp.files.source import path_of
 
 _PREFIX = ".regrasp-"
@@ -83,7 +84,7 @@ def _temporary_in(folder: Path) -> Iterator[Path]:
             if left.is_dir() and _is_abandoned(left):
                 shutil.rmtree(left, ignore_errors=True)
         made = Path(mkdtemp(prefix=_PREFIX, dir=folder))
-        mine = _lock(made, wait=False)
+        mine = lock(made, wait=False)
     try:
         yield made
     finally:
@@ -93,59 +94,35 @@ def _temporary_in(folder: Path) -> Iterator[Path]:
 
 
 def _is_abandoned(folder: Path) -> bool:
-    lock = _lock(folder, wait=False)
-    if lock is not None:
-        os.close(lock)
+    """Whether the process whose temporary folder it is has ended; its parent folder is locked by us."""
+    mine = lock(folder, wait=False)
+    if mine is not None:
+        os.close(mine)
         return True
+    if _has_locks(folder.parent):
+        return False
     with suppress(OSError):
-        return not _locks_work(folder.parent) and time.time() - folder.stat().st_mtime > _OLD
+        return time.time() - folder.stat().st_mtime > _OLD
     return False
 
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
     """The only process in a folder, where the system has locks."""
-    lock = _lock(folder, wait=True)
+    held = lock(folder, wait=True)
     try:
         yield
     finally:
-        if lock is not None:
-            os.close(lock)
+        if held is not None:
+            os.close(held)
 
 
-def _lock(folder: Path, *, wait: bool) -> int | None:
-    """A lock on a folder, which ends when it is closed or its process ends; None where there is none."""
-    try:
-        import fcntl
-    except ImportError:
-        return None
-    number = None
-    try:
-        number = os.open(folder, os.O_RDONLY)
-        fcntl.flock(number, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:  # held by another, or the disk knows no locks
-        if number is not None:
-            os.close(number)
-        return None
-    return number
-
-
-def _locks_work(folder: Path) -> bool:
-    """Whether this disk has locks at all; the folder is locked by us at this moment."""
-    try:
-        import fcntl
-    except ImportError:
-        return False
-    number = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(number, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
-    finally:
-        os.close(number)
-    return False
+def _has_locks(folder: Path) -> bool:
+    """Whether this disk knows locks: a folder that we hold cannot be locked once more."""
+    again = lock(folder, wait=False)
+    if again is not None:
+        os.close(again)
+    return HAS_LOCKS and again is None
 
 
 def _exchange(new: Path, path: Path, temporary: Path) -> None:

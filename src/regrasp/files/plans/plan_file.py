@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.source import naming, text_of
+from regrasp.files.source import naming, path_of, text_of
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.checks import array
@@ -128,7 +128,7 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
 
     Raises one ``InvalidInput`` that names the file and what is wrong in it.
     """
-    path = Path(path)
+    path = path_of(path)
     text = text_of(path, "a plan in JSON")
     try:
         data = json.loads(text)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from regrasp.files.scenarios.keys import Control, Method, Name, PeakRatio, Positive, Reserve
+from regrasp.files.scenarios.keys import Control, Method, Name, PeakRatio, PerFinger, Positive, Reserve
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.orientation.rotations import unit_axis
@@ -65,9 +65,10 @@ class Change(Task):
     objective: Objective = Field("angle", description="what the state without the finger is chosen for")
     whole_objective: Objective = Field("force", description="what the state with it is chosen for")
     duration: Positive | None = Field(None, description="[s]; 1 unless rate_limit or the load sets it")
-    rate_limit: Positive | None = Field(
+    rate_limit: PerFinger | None = Field(
         None,
-        description="fastest change of any force [N/s]; without a duration the shortest is used",
+        description="fastest change of any force [N/s], or a list of one for each contact; "
+        "without a duration the shortest is used",
     )
     min_normal: Annotated[float, Field(ge=0)] | None = Field(
         None, description="least normal force of the fingers that stay [N]"
