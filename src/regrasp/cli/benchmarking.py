@@ -23,14 +23,20 @@ _QUICK_UNKNOWNS = 60
     type=click.Choice(["default", "low", "mid", "high"]),
     help="Accuracy asked for; repeatable.  [default: default]",
 )
-@click.option("--repeat", type=click.IntRange(1), default=1, show_default=True, help="Solves of each kind.")
+@click.option(
+    "--repeat", type=click.IntRange(1, 1000), default=1, show_default=True, help="Solves of each kind."
+)
 @click.option(
     "--time-limit", type=float, default=None, metavar="SECONDS", help="Of each solve.  [default: 60, quick 5]"
 )
 @click.option(
-    "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Solves at once; disturbs timing."
+    "--jobs",
+    type=click.IntRange(1, 1000),
+    default=1,
+    show_default=True,
+    help="Solves at once; disturbs timing.",
 )
-@click.option("--most", type=click.IntRange(1), metavar="UNKNOWNS", help="Leave larger problems out.")
+@click.option("--most", type=click.IntRange(1, 10**9), metavar="UNKNOWNS", help="Leave larger problems out.")
 @click.option("--quick", is_flag=True, help="Small problems only: two minutes at most.")
 @click.option("-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Folder of the results.")
 @json_option

@@ -7,6 +7,7 @@ from contextlib import suppress
 from types import FrameType
 
 import click
+from click.utils import PacifyFlushWrapper
 
 from regrasp import __version__
 from regrasp.cli.benchmarking import bench
@@ -74,6 +75,10 @@ def _run() -> int:
         if wants_json() and facts is not None:
             say_json(facts)
         return VERIFIED
+    except SystemExit:
+        if isinstance(sys.stdout, PacifyFlushWrapper):  # click's way out where nobody reads what it prints
+            return PIPE_CLOSED
+        raise
     except click.ClickException as wrong:
         status, message, error = BAD_INPUT, wrong.format_message(), wrong
         wrong.show()
