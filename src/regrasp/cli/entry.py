@@ -7,7 +7,6 @@ from contextlib import suppress
 from types import FrameType
 
 import click
-from click.utils import PacifyFlushWrapper
 
 from regrasp import __version__
 from regrasp.cli.benchmarking import bench
@@ -26,6 +25,8 @@ from regrasp.cli.statuses import (
 )
 from regrasp.cli.verifying import verify
 from regrasp.errors import RegraspError
+
+_COMPLETING = "_REGRASP_COMPLETE"
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -75,8 +76,8 @@ def _run() -> int:
         if wants_json() and facts is not None:
             say_json(facts)
         return VERIFIED
-    except SystemExit:
-        if isinstance(sys.stdout, PacifyFlushWrapper):  # click's way out where nobody reads what it prints
+    except SystemExit as stop:  # click's way out, of completion and where nobody reads what it prints
+        if stop.code == 1 and _COMPLETING not in os.environ:
             return PIPE_CLOSED
         raise
     except click.ClickException as wrong:
