@@ -1,4 +1,4 @@
-"""What is seen in a drawing is read, the rest left out and said so; what is no object is refused, with why."""
+"""What is seen in a drawing is read, the rest left out and said so; what is no object is refused with why."""
 
 from math import pi
 from pathlib import Path

@@ -273,7 +273,7 @@ class Mesh(ArrayValue):
             )
         if along is None and not outside and away > _AT_EDGE * largest:
             warn_of_walls(given, away, self._corners[self._flat @ normals[0] < _OPPOSED])
-        warn_of_distance(given, away, self.size)
+            warn_of_distance(given, away, self.size)
         place = foot - self.centre_of_mass
         return Contact(place, normals[0], friction, max_force=max_force, torsion=torsion, name=name)
 
