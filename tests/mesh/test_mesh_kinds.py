@@ -3,6 +3,7 @@
 import struct
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from regrasp.mesh.files import stl
 from solids import bumpy, seeds
 
 BOX = rg.Mesh.box(1, 2, 3)
+SHEET = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
 
 def text(folder: Path, content: str | bytes, name: str) -> Path:
@@ -88,7 +90,7 @@ def test_any_encoding_without_the_optional_decoder(tmp_path: Path) -> None:
 @settings(max_examples=20, deadline=None)
 @given(seeds)
 def test_relative_indices(tmp_path_factory, seed: int) -> None:
-    """Vertices and faces in turns, faces by numbers from the first vertex, or from the last so far, at random."""
+    """Vertices and faces in turns, faces by numbers from the first vertex or from the last so far."""
     rng = np.random.default_rng(seed)
     mesh, count = bumpy(seed), 0
     lines = []
@@ -158,7 +160,7 @@ def slivered(mesh: rg.Mesh, rng: np.random.Generator, count: int) -> tuple[np.nd
             ends.append(len(vertices) - 1)
         ends.append(b)
         faces[f] = (ends[0], ends[1], c)
-        faces += [(p, q, c) for p, q in zip(ends[1:-1], ends[2:], strict=True)]
+        faces += [(p, q, c) for p, q in pairwise(ends[1:])]
         faces += [(a, ends[k + 1], ends[k]) for k in range(1, len(ends) - 1)]  # without area
     return np.array(vertices), np.array(faces)
 
@@ -187,7 +189,7 @@ def test_slivers_that_close_t_joints(tmp_path: Path, seed: int) -> None:
 def two(apart: float) -> tuple[np.ndarray, np.ndarray]:
     """Cubes of sides 2 and 1 with centres this far apart along x."""
     large, small = rg.Mesh.box(2, 2, 2), rg.Mesh.box(1, 1, 1)
-    return np.vstack([small.vertices + [apart, 0, 0], large.vertices]), np.vstack(
+    return np.vstack([small.vertices + np.array([apart, 0, 0]), large.vertices]), np.vstack(
         [small.faces, large.faces + 8]
     )
 
@@ -266,18 +268,26 @@ def test_what_was_read_is_equal_whatever_was_mended(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 1_200_000, "there are 1200000 faces, more than 1100000"),
+        ("a.obj", SHEET + "f 1 2 3\n" * 1_200_000, "there are 1200000 faces, more than 1100000"),
         ("a.obj", "v 0 0 0\n" * 3_100_000, "there are 3100000 vertices and faces, more than 3000000"),
-        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"usemtl {i}\nf 1 2 3\n" for i in range(20_000)), "more than two"),
-        ("a.obj", "v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "vertices must be finite, vertex 0 is (inf, 0, 0)"),
-        ("a.obj", "v 1e200 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh must be between 1e-60 and 1e+60 in size"),
-        ("a.obj", f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {10**30}\n", "the file cannot be read as OBJ"),
-        ("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "its header does not begin with ply or has no end"),
-        ("a.stl", b"x" * 80 + struct.pack("<I", 2_000_000) + bytes(100), "its header says 2000000 faces, its bytes hold 2"),
+        ("a.obj", SHEET + "".join(f"usemtl {i}\nf 1 2 3\n" for i in range(20_000)), "more than two"),
+        ("a.obj", "v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 0 is (inf, 0, 0)"),
+        ("a.obj", "v 1e200 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh must be between 1e-60 and 1e+60"),
+        ("a.obj", SHEET + f"f 1 2 {10**30}\n", "the file cannot be read as OBJ"),
+        (
+            "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\n",
+            "its header does not begin with ply or has no",
+        ),
+        (
+            "a.stl",
+            b"x" * 80 + struct.pack("<I", 2_000_000) + bytes(100),
+            "says 2000000 faces, its bytes hold 2",
+        ),
         ("a.stl", "solid\nfacet\nvertex a b c\nendsolid", "the file cannot be read as STL"),
     ],
     ids=range(9),
-)  # fmt: skip
+)
 def test_meshes_without_end(tmp_path: Path, name: str, content: str | bytes, says: str) -> None:
     assert says in refusal(rg.Mesh.from_file, text(tmp_path, content, name))
 
