@@ -1,5 +1,6 @@
 """Which wall a finger touches, units that are not what they seem, and moments of inertia."""
 
+import warnings
 from math import pi
 
 import numpy as np
@@ -99,7 +100,8 @@ def test_a_part_in_millimetres_taken_for_metres(tmp_path) -> None:
     assert warned[0].filename == __file__
     for scale in (1, 1e-3):  # who says it is not told
         rg.Mesh.from_file(tmp_path / "part.stl", scale=scale)
-    with pytest.warns(UserWarning) as warned:
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
         mesh.contact_at([0.05, 0.02, 1.1], friction=0.5)
     says = [str(each.message) for each in warned]
     assert (
