@@ -90,7 +90,8 @@ class _Walk:
     def __init__(self, document: Any, layers: tuple[str, ...] | None) -> None:
         self._blocks, self._layers = document.blocks, Layers(document)
         self._asked = None if layers is None else {layer.casefold() for layer in layers}
-        check_known(layers, self._layers.names)
+        drawn = (str(entity.dxf.get("layer", "0")) for entity in document.modelspace())
+        check_known(layers, dict.fromkeys([*self._layers.names, *drawn]))
         self._budget = Budget()
         self._cache: dict[int, Piece | None] = {}
         self._drawing = Drawing()

@@ -17,7 +17,7 @@ from regrasp.outline.boundary import Boundary
 from regrasp.outline.curves import EllipseBoundary, SplineBoundary
 from regrasp.outline.plain import holes_of, outline_data, shape_of
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.outline.region import check_holes, checked_ring
+from regrasp.outline.region import check_holes, checked_ring, checked_size
 
 # Chords of a smooth outline stay this near to it, as a fraction of its length, where a polygon stands for it.
 _FLATNESS = 1e-4
@@ -65,6 +65,7 @@ class Outline(ArrayValue):
     ) -> "Outline":
         """The ellipse of half axes a along x and b along y [m]; a circle where they are equal."""
         axes = np.array([number(a, "a", above=0), number(b, "b", above=0)])
+        checked_size(np.array([-axes, axes]), "outline")
         return cls._of(EllipseBoundary(read_only(axes), array(centre, "centre", (2,))), holes)
 
     @classmethod
