@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
-from regrasp.outline.dxf_curves import turned
+from regrasp.outline.dxf.curves import turned
 
 RECT = '<rect width="20" height="10"/>'
 HOLE = '<circle cx="5" cy="5" r="2"/>'

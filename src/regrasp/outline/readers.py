@@ -50,11 +50,11 @@ def read_rings(
             raise InvalidInput("a file of coordinates does not say its unit: give scale in place of unit")
         return Found(nested(coordinate_rings(data)))
     if kind == ".svg":
-        from regrasp.outline.svg import svg_drawing
+        from regrasp.outline.svg.reader import svg_drawing
 
         drawing = svg_drawing(data, layers)
     else:
-        from regrasp.outline.dxf import dxf_drawing
+        from regrasp.outline.dxf.reader import dxf_drawing
 
         drawing = dxf_drawing(path, len(data), layers)
     rings, notes = _outline(drawing, tolerance)

@@ -11,8 +11,8 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import MOST_PIECES, UNITS, Budget, Drawing, Piece, check_known, counted
-from regrasp.outline.dxf_curves import CURVES, frame, mapped, piece, vector
-from regrasp.outline.dxf_layers import Layers
+from regrasp.outline.dxf.curves import CURVES, frame, mapped, piece, vector
+from regrasp.outline.dxf.layers import Layers
 from regrasp.outline.opening import quiet, reason
 
 _DEEPEST, _LONGEST_RECOVERED = 50, 5_000_000

@@ -12,10 +12,10 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.opening import reason
-from regrasp.outline.svg_clip import region_of, share_within
-from regrasp.outline.svg_shapes import SHAPES, shape
-from regrasp.outline.svg_style import Name, Styles, is_painted
-from regrasp.outline.svg_transform import (
+from regrasp.outline.svg.clip import region_of, share_within
+from regrasp.outline.svg.shapes import SHAPES, shape
+from regrasp.outline.svg.style import Name, Styles, is_painted
+from regrasp.outline.svg.transform import (
     NUMBER,
     length,
     numbers_of,
@@ -24,7 +24,7 @@ from regrasp.outline.svg_transform import (
     turned_about,
     viewport,
 )
-from regrasp.outline.svg_xml import attribute, local, tree_of
+from regrasp.outline.svg.xml import attribute, local, tree_of
 
 _SILENT = {
     "defs", "symbol", "title", "desc", "metadata", "style", "script", "clipPath", "mask", "pattern", "marker",
