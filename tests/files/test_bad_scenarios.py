@@ -223,12 +223,18 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "kind missing": (
         edited(('kind = "removal"', "")),
         2,
-        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', found no such key"],
+        [
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "found no such key"
+        ],
     ),
     "kind not planned yet": (
         edited(('kind = "removal"', 'kind = "juggling"')),
         2,
-        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', got 'juggling'"],
+        [
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "got 'juggling'"
+        ],
     ),
     "unknown contact": (
         edited(('contact = "P3"', 'contact = "P4"')),
