@@ -58,7 +58,15 @@ def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
 def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
     """Inverse units of columns, or of rows, passed on through rows, or columns, that have none: ``units``."""
     fixed = rows > 0 if of_rows else columns > 0
-    for _ in range(PASSES):
+    for number in range(PASSES):
+        if number > 0:  # what has a unit keeps it
+            had_rows, had_columns = rows > 0, columns > 0
+        else:
+            had_rows, had_columns = np.zeros(rows.size, np.bool_), np.zeros(columns.size, np.bool_)
+        if of_rows:
+            rows[:] = np.where(fixed, rows, 0.0)
+        else:
+            columns[:] = np.where(fixed, columns, 0.0)
         for j in range(ap.size - 1):  # where none is fixed, the largest that comes back
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
@@ -73,9 +81,9 @@ def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignor
         for j in range(ap.size - 1):
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
-                if of_rows and columns[j] < entry * rows[i]:
+                if of_rows and not had_columns[j] and columns[j] < entry * rows[i]:
                     columns[j], changed = entry * rows[i], True
-                elif not of_rows and rows[i] < entry * columns[j]:
+                elif not of_rows and not had_rows[i] and rows[i] < entry * columns[j]:
                     rows[i], changed = entry * columns[j], True
         if not of_rows:
             _of_cones(codes, rows, False)
@@ -151,6 +159,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
     noise = np.zeros(m)
     for k in range(ad.size):
         noise[ai[k]] = max(noise[ai[k]], ROUNDING * abs(ad[k]))
+    _of_cones(codes, noise, False)
     if size_of_x > 0:
         unknowns = np.full(n, 1 / size_of_x)
     else:
@@ -185,13 +194,14 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
             elif entry > noise[i]:
                 alone = max(alone, duals[i] / entry)
                 floor[i] = max(floor[i], unknowns[j] / entry)
-        unit = pulls[j] + largest + weight * own
+        unit = pulls[j] + largest
         if alone != 0:
             unit += 1 / alone
-        if unit != 0:
+        whole = unit + own
+        if whole != 0:
             for k in range(ap[j], ap[j + 1]):
-                per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / unit)
-        dual = _worse(dual, _ratio(abs(gradient), unit))
+                per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / whole)
+        dual = _worse(dual, _ratio(abs(gradient), unit + weight * own))
         stationarity = _worse(stationarity, abs(gradient))
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
