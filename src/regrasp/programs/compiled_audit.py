@@ -134,7 +134,7 @@ def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     for kind, size, count in codes:
         if kind == 1:
             for i in range(row, row + size * count):
-                if z[i] < 0:
+                if -inf < z[i] < 0:
                     inside[i] = 0.0
             row += size * count
         elif kind == 2:
