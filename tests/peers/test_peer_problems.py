@@ -20,7 +20,6 @@ from peers import (  # noqa: E402
     is_right,
     outcome,
 )
-
 from regrasp.programs import Status, solve  # noqa: E402
 from regrasp.programs.facts import BACKENDS  # noqa: E402
 
