@@ -228,7 +228,7 @@ def test_an_objective_that_is_not_convex_is_refused_by_every_back_end(backend, P
 @given(st.integers(0, 10_000), st.floats(-5, 5))
 @settings(max_examples=40, deadline=None)
 def test_convexity_is_found_in_any_units(seed, span):
-    """R R' of rank one less is convex in any units; less a millionth of its trace, each in its unit, it is not."""
+    """R R' of rank n - 1 is convex in any units; less a millionth of its trace in its kernel it is not."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(3, 7))
     scale = 10.0 ** rng.uniform(-abs(span), abs(span), n)

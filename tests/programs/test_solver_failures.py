@@ -1,4 +1,4 @@
-"""What a solver does besides answering: errors of its own, crashes, endless work; and programs kept in files."""
+"""What a solver does besides answering: errors of its own, crashes, endless work. Programs in files."""
 
 import sys
 import types
@@ -134,12 +134,14 @@ def test_a_right_side_of_1e30_is_answered_or_a_failure_with_its_program(backend)
         sparse.csc_matrix([[2.0]]), np.array([1.0]), sparse.csc_matrix([[1.0]]), np.array([1e30]),
         (Block(Cone.NONNEGATIVE, 1),),
     )  # fmt: skip
-    try:
-        assert solve(p, backend).objective == pytest.approx(-0.25, abs=1e-6)
-    except SolverFailed as failed:
-        assert failed.program is p
-        assert str(failed).startswith("program of 1 unknowns")
-        assert backend != "auto"
+    answer = solve(p, backend, throw=False)
+    if answer.status is Status.SOLVED:
+        assert answer.objective == pytest.approx(-0.25, abs=1e-6)
+        return
+    assert backend != "auto"
+    with pytest.raises(SolverFailed, match=r"^program of 1 unknowns, rows 1 non-negative: ") as failed:
+        solve(p, backend)
+    assert failed.value.program is p
 
 
 # -- files -------------------------------------------------------------------------------------------------
@@ -175,9 +177,9 @@ def test_files_that_hold_no_program_are_refused(tmp_path):
     whole = path.read_bytes()
     for content in (b"", b"nothing", whole[: len(whole) // 2]):
         path.write_bytes(content)
-        with pytest.raises(InvalidInput, match="p.npz"):
+        with pytest.raises(InvalidInput, match=r"p\.npz"):
             Program.load(path)
-    with pytest.raises(InvalidInput, match="gone.npz"):
+    with pytest.raises(InvalidInput, match=r"gone\.npz"):
         Program.load(tmp_path / "gone.npz")
     parts = {"q": np.zeros(1), "b": np.zeros(1), "size": np.zeros(()), "cones": np.array([[1, 1, 1]])}
     for name in "PA":

@@ -16,8 +16,8 @@ from regrasp.programs.program import Array, Program
 from regrasp.programs.terms import reciprocal
 
 PASSES = 4
-"""Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one:
-rows that go in a circle would make units smaller and smaller."""
+"""Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one
+only: rows that go in a circle would make units smaller and smaller."""
 OWN = 2.0**-26
 """Part of the terms of a row or column that counts beside its unit: what tolerances make their rounding."""
 
