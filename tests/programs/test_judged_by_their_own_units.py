@@ -147,7 +147,7 @@ def test_a_large_price_elsewhere_hides_no_column_and_no_slack():
     assert wrong.status is Status.UNSOUND
     assert wrong.complementarity > 0.01 > wrong.gap
     assert claimed(p, [2, 1], [-1e8, 1.1]).status is Status.UNSOUND
-    assert solve(p).value == pytest.approx([2, 1], rel=1e-6)
+    assert solve(p).value == pytest.approx([2, 1], rel=1e-4)
 
 
 def test_a_cone_is_judged_by_its_own_size():
@@ -262,11 +262,11 @@ def test_tolerances_hold_on_both_sides(allowed, share, sound, unit):
     right = claimed(p, [unit], [0.0], allowed=allowed)
     assert right.residual == 0
     by = np.array([unit * allowed * share])
-    T = unit * (2 + 2.0**-26)  # |b| + X
+    T = unit * (2 + 2.0**-11)  # |b| + X
     moved = audited(p, right.value + by * T / unit, np.zeros(1))
     assert moved.primal == pytest.approx(allowed * share, rel=1e-6)
     assert (moved.primal <= allowed) is sound
-    V = unit * (4 + 2.0**-26)  # |q| + P X + Z, which is as much again
+    V = unit * (4 + 2.0**-11)  # |q| + P X + Z, which is as much again
     pulled = audited(p, right.value, by * V / unit)
     assert pulled.dual == pytest.approx(allowed * share, rel=1e-6)
     assert (pulled.dual <= allowed) is sound

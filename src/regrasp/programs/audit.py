@@ -7,7 +7,7 @@
     objective  x'P x + q'x + b'z = 0   the same sum with every term positive
 
 X and Z are the ``units`` of unknowns and duals: sizes that matter where these are themselves near zero. The
-weight w leaves of the terms no more than their rounding: an answer far away, where 1e9 - 1e9 is to be 1, is
+weight w leaves little of the terms: an answer far away, where 1e9 - 1e9 is to be 1, is
 not right because the miss is small beside 1e9. A second-order cone is one row: its unit is the length of
 those of its rows, and s_i z_i its s'z. So each measure is the same whatever the units of rows, unknowns and
 objective, and no number elsewhere makes a miss look small. z is taken where it is put inside K*: what that
@@ -66,7 +66,9 @@ def measured(program: Program, x: Array, z: Array) -> Audit:
         weight = weight_of_terms(program)
         unknowns, floors = units_of_unknowns(program)
         sizes = np.maximum(np.abs(x), unknowns)
-        of_rows = cones.units(np.abs(b) + floors + weight * (terms.abs_A @ np.abs(x)))
+        own_rows = terms.abs_A @ np.abs(x)
+        of_rows = cones.units(np.abs(b) + floors + weight * own_rows)
+        whole_rows = cones.units(np.abs(b) + floors + own_rows)
         s = b - terms.A @ x
         excess = cones.excess(s)
         inside = cones.dual(z)
@@ -83,7 +85,7 @@ def measured(program: Program, x: Array, z: Array) -> Audit:
         return Audit(
             largest(excess, of_rows),
             largest(gradient, of_columns + weight * own),
-            largest(both, of_rows),
+            largest(both, whole_rows),
             gap / of_gap if gap else 0.0,
             quadratic / 2 + linear,
             float(excess.max(initial=0.0)),

@@ -172,6 +172,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
     _, pulls = _products(pp, pi, pd, x, least, n)
     pulls += np.abs(q)
     ax, of_rows = _products(ap, ai, ad, x, np.abs(x), m)
+    own_rows = of_rows.copy()
     of_rows *= weight
     inside = _into_dual(codes, z)
     largest, duals = 0.0, np.zeros(m)
@@ -206,7 +207,9 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
         of_gap += sizes[j] * (of_sizes[j] + abs(q[j]))
-    of_rows += np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
+    units = np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
+    of_rows += units
+    own_rows += units
     for i in range(m):
         value += b[i] * inside[i]
         of_gap += abs(b[i] * inside[i])
@@ -222,14 +225,14 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
                     product += s[i] * inside[i]
                 excess = excess if excess > 0 or excess != excess else 0.0
                 primal = _worse(primal, _ratio(excess, unit))
-                both = _worse(both, _ratio(abs(product) * per, unit))
+                both = _worse(both, _ratio(abs(product) * per, _length(own_rows, row, row + size)))
                 violation = _worse(violation, excess)
             else:
                 for i in range(row, row + size):
                     excess = abs(s[i]) if kind == 0 else -s[i]
                     excess = excess if excess > 0 or excess != excess else 0.0
                     primal = _worse(primal, _ratio(excess, of_rows[i]))
-                    both = _worse(both, _ratio(abs(s[i] * inside[i]) * per_dual[i], of_rows[i]))
+                    both = _worse(both, _ratio(abs(s[i] * inside[i]) * per_dual[i], own_rows[i]))
                     violation = _worse(violation, excess)
             row += size
     gap = abs(quadratic + linear + value)

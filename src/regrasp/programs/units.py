@@ -18,8 +18,8 @@ from regrasp.programs.terms import reciprocal
 PASSES = 4
 """Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one
 only: rows that go in a circle would make units smaller and smaller."""
-OWN = 2.0**-26
-"""Part of the terms of a row or column that counts beside its unit: what tolerances make their rounding."""
+OWN = 2.0**-11
+"""Part of the terms of a row or column that counts beside its unit."""
 
 
 def weight_of_terms(program: Program) -> float:
