@@ -8,6 +8,8 @@ from numba import njit
 from regrasp.programs.terms import ROUNDING
 from regrasp.programs.units import OWN, PASSES
 
+# Numba keeps what it compiled until this file changes: touch it when one of these numbers does.
+
 
 @njit(cache=True)
 def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped-def]
