@@ -8,6 +8,7 @@ zero, the rest takes Gauss-Newton steps of least length, each entry by its own s
 """
 
 from collections.abc import Callable
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -101,6 +102,7 @@ def _best(
     with np.errstate(all="ignore"):
         for noise in _NOISE:
             y = np.where(kept(noise), start, 0.0)
+            before = inf
             for step in range(steps + 1):
                 if least <= enough:
                     return best
@@ -108,6 +110,9 @@ def _best(
                 there = measure(y)
                 if there < least:
                     best, least = y, there
+                if not there < before / 2 and step > 0:
+                    break  # it leads nowhere
+                before = there
     return best
 
 

@@ -24,7 +24,7 @@ _NOISE = (0.0, 1e-9, 1e-7, 1e-5, 1e-3)
 _STEPS = 3
 # What must move by more than this was no answer.
 _NEAR = 1e-4
-_LARGEST = 600
+_LARGEST = 300
 """Unknowns and rows up to which an answer is polished."""
 
 

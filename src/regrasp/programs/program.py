@@ -120,7 +120,7 @@ class Program:
     @cached_property
     def terms(self) -> Terms:
         """The matrices, for products."""
-        return Terms(self.P, self.A)
+        return Terms(self.P, self.A, self.cones)
 
     @cached_property
     def why_not_convex(self) -> str:

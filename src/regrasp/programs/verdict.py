@@ -6,10 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from regrasp.programs.program import Program
+from regrasp.programs.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.solution import Solution, Status
 
 PROVEN = 1e-8
 """Largest residual of a certificate: a feasible point would have terms 1e8 times those of b."""
+
+_HINT = 0.1
+"""Residual up to which numbers that nobody called a certificate may be on their way to one."""
 
 
 def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:
@@ -37,13 +41,9 @@ def _made_right(solution: Solution, allowed: float, feasibility: Callable[[Progr
         better = polished(solution.program, solution.value, solution.duals, allowed)
         if better is not None:
             return replace(solution, value=better[0], duals=better[1], said=f"{solution.said}, polished")
-    nothing = solution.value * np.nan, solution.duals * np.nan
-    for claim in (
-        _infeasible(replace(solution, status=Status.INFEASIBLE, value=nothing[0])),
-        _unbounded(replace(solution, status=Status.UNBOUNDED, duals=nothing[1]), feasibility),
-    ):
-        if claim.status in (Status.INFEASIBLE, Status.UNBOUNDED):
-            return claim
+    claim = _hint(solution, feasibility)
+    if claim is not None:
+        return claim
     if solution.status is Status.SOLVED:
         return _unsound(solution, solution.residual, allowed)
     better = polished(solution.program, solution.value, solution.duals, allowed)
@@ -51,6 +51,23 @@ def _made_right(solution: Solution, allowed: float, feasibility: Callable[[Progr
         return solution
     said = f"{solution.said}, polished"
     return replace(solution, status=Status.SOLVED, value=better[0], duals=better[1], said=said)
+
+
+def _hint(solution: Solution, feasibility: Callable[[Program], Solution]) -> Solution | None:
+    """What the last iterate proves where it was on its way to a certificate, or None."""
+    from regrasp.programs.cleaning import cleaned_direction, cleaned_duals
+
+    program, x, z = solution.program, solution.value, solution.duals
+    nothing = x * np.nan, z * np.nan
+    if infeasibility_residual(program, cleaned_duals(program, z, 0.0, steps=0)) <= _HINT:
+        claim = _infeasible(replace(solution, status=Status.INFEASIBLE, value=nothing[0]))
+        if claim.status is Status.INFEASIBLE:
+            return claim
+    if unboundedness_residual(program, cleaned_direction(program, x, 0.0, steps=0)) <= _HINT:
+        claim = _unbounded(replace(solution, status=Status.UNBOUNDED, duals=nothing[1]), feasibility)
+        if claim.status in (Status.UNBOUNDED, Status.INFEASIBLE):
+            return claim
+    return None
 
 
 def _infeasible(solution: Solution) -> Solution:
