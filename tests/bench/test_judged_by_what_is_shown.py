@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy import sparse
-
 from regrasp.bench.answer import Answer
 from regrasp.bench.contests import contests
-from regrasp.bench.families import FAMILIES
 from regrasp.bench.judgement import CERTIFICATE, is_near, is_proof, judged
 from regrasp.bench.outcomes import Kind, outcomes
 from regrasp.bench.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
 from regrasp.bench.residual import row_residual
 from regrasp.bench.tables import contest_table, summary_table
-from regrasp.programs import Block, Cone, Program
+from scipy import sparse
 from test_bench_report import LIMIT, WRONG, row, written
+
+from regrasp.bench.families import FAMILIES
+from regrasp.programs import Block, Cone, Program
 
 INFEASIBLE = list(FAMILIES["infeasible"].problems())[::4]
 

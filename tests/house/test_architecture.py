@@ -312,7 +312,7 @@ OFFENCES = [
     ("regrasp.plans.timing", "from .. import plots", "regrasp.plots"),
     ("regrasp.plans.timing", "import shapely", "shapely"),
     ("regrasp.plots.pages.page_scene", "from plotly import graph_objects", "plotly"),
-    ("regrasp.outline.svg.reader", "from ..files.source import text_of", "regrasp.files.source"),
+    ("regrasp.outline.svg.reader", "from ...files.source import text_of", "regrasp.files.source"),
     ("regrasp.outline.outline", "from regrasp.mesh import Mesh", "regrasp.mesh"),
     ("regrasp.plans.timing", "import trimesh", "trimesh"),
     ("regrasp.plans.timing", "from pydantic import BaseModel", "pydantic"),

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
-from regrasp.programs.cleaning import cleaned_direction, cleaned_duals
-from regrasp.programs.proofs import infeasibility_residual, unboundedness_residual
+from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
+from regrasp.programs.judging.verdict import PROVEN, judged
 from regrasp.programs.solution import Solution
-from regrasp.programs.verdict import PROVEN, judged
 
 QP = [name for name in available_backends() if name != "cvxpy"]
 SILENT = ("daqp", "quadprog")  # they hand no certificate of infeasibility out

@@ -11,11 +11,11 @@ from scipy import sparse
 from cones import distance_to_cones, slack
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
-from regrasp.programs.audit import audited, measured
-from regrasp.programs.compiled_audit import measures
 from regrasp.programs.facts import BACKENDS
+from regrasp.programs.judging.audit import audited, measured
+from regrasp.programs.judging.compiled_audit import measures
+from regrasp.programs.judging.verdict import judged
 from regrasp.programs.solution import Solution
-from regrasp.programs.verdict import judged
 
 QP = [name for name in available_backends() if name != "cvxpy"]
 

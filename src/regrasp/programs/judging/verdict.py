@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.program import Program
-from regrasp.programs.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.solution import Solution, Status
 
 PROVEN = 1e-8
@@ -35,7 +35,7 @@ def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], 
 
 def _made_right(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:
     """What an answer that is not sound is near to: a solution, or a proof that there is none."""
-    from regrasp.programs.polish import polished
+    from regrasp.programs.judging.polish import polished
 
     if solution.status is Status.SOLVED:
         better = polished(solution.program, solution.value, solution.duals, allowed)
@@ -55,7 +55,7 @@ def _made_right(solution: Solution, allowed: float, feasibility: Callable[[Progr
 
 def _hint(solution: Solution, feasibility: Callable[[Program], Solution]) -> Solution | None:
     """What the last iterate proves where it was on its way to a certificate, or None."""
-    from regrasp.programs.cleaning import cleaned_direction, cleaned_duals
+    from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 
     program, x, z = solution.program, solution.value, solution.duals
     nothing = x * np.nan, z * np.nan
@@ -72,7 +72,7 @@ def _hint(solution: Solution, feasibility: Callable[[Program], Solution]) -> Sol
 
 def _infeasible(solution: Solution) -> Solution:
     if not solution.infeasibility_residual <= PROVEN and np.isfinite(solution.duals).all():
-        from regrasp.programs.cleaning import cleaned_duals
+        from regrasp.programs.judging.cleaning import cleaned_duals
 
         z = cleaned_duals(solution.program, solution.duals, PROVEN)
         solution = replace(solution, duals=z)
@@ -82,7 +82,7 @@ def _infeasible(solution: Solution) -> Solution:
 
 def _unbounded(solution: Solution, feasibility: Callable[[Program], Solution]) -> Solution:
     if not solution.unboundedness_residual <= PROVEN and np.isfinite(solution.value).all():
-        from regrasp.programs.cleaning import cleaned_direction
+        from regrasp.programs.judging.cleaning import cleaned_direction
 
         d = cleaned_direction(solution.program, solution.value, PROVEN)
         solution = replace(solution, value=d)

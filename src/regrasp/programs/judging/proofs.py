@@ -15,8 +15,8 @@ from math import inf
 
 import numpy as np
 
+from regrasp.programs.judging.terms import largest
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import largest
 
 _ROUNDING = 2.0**-45
 """A sum this small beside its terms has no sign."""

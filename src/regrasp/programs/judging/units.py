@@ -12,8 +12,8 @@ All here is written for inverses, so that nothing is zero and the least unit is 
 
 import numpy as np
 
+from regrasp.programs.judging.terms import reciprocal
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import reciprocal
 
 PASSES = 4
 """Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one

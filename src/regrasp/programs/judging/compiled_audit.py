@@ -5,8 +5,8 @@ from math import inf, sqrt
 import numpy as np
 
 from regrasp.compilation import kept
-from regrasp.programs.terms import ROUNDING
-from regrasp.programs.units import OWN, PASSES
+from regrasp.programs.judging.terms import ROUNDING
+from regrasp.programs.judging.units import OWN, PASSES
 
 # Numba keeps what it compiled until this file changes: touch it when one of these numbers does.
 

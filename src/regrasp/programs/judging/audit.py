@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from regrasp.programs.judging.terms import largest, reciprocal, total
+from regrasp.programs.judging.units import units_of_columns, units_of_unknowns, weight_of_terms
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import largest, reciprocal, total
-from regrasp.programs.units import units_of_columns, units_of_unknowns, weight_of_terms
 
 
 class Audit(NamedTuple):
@@ -52,7 +52,7 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
     """The measures of an answer x (n,), z (m,)."""
     if next(_measured) < _COLD:
         return measured(program, x, z)
-    from regrasp.programs.compiled_audit import measures
+    from regrasp.programs.judging.compiled_audit import measures
 
     P, A = program.P, program.A
     data = P.indptr, P.indices, P.data, program.q, A.indptr, A.indices, A.data, program.b
