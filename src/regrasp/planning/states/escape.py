@@ -14,8 +14,11 @@ from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.separation import cleared, gap_left
+from regrasp.planning.states.refining import proven
+from regrasp.planning.states.separation import edge_of, gap_left
 
+AT_LIMIT = 1e-6
+"""A load within this fraction of the edge of what is held is at its limit: rounding may decide it."""
 # Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
 _REACHES = (1e2, 1e4)
 _NEARER = 0.1
@@ -94,8 +97,6 @@ def escape_twist(
         return None
     if min(limits) < inf or d == 3:
         gaps = [gap_left(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
-        if d == 3:
-            gaps.append(cleared(grasp, gaps[0] * weight, frictions, limits) / weight)
     else:
         gaps = _gaps(_edge_wrenches(grasp, weight, frictions), target / unit)
     twists = [
@@ -104,7 +105,15 @@ def escape_twist(
         if gap.any() and np.isfinite(gap).all()
     ]
     best = max(twists, key=lambda twist: twist.least_force, default=None)
-    return best if best is not None and best.is_proof else None
+    if best is None or best.is_proof:
+        return best
+    near = proven(grasp, load, twists[0].twist, frictions, limits)
+    if near is not None:
+        return near
+    edge = edge_of(grasp, load.vector, frictions, limits)  # a solver's gap is too small to show a direction
+    if edge is None or edge.beyond < -AT_LIMIT:
+        return None
+    return proven(grasp, load, edge.twist, frictions, limits)
 
 
 def _only_in_the_limit(grasp: Grasp, load: Wrench, frictions: list[float]) -> tuple[float, float] | None:
