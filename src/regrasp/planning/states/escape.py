@@ -4,6 +4,7 @@ The finger wrenches nearest to balancing the load leave the gap rho = -w_ext - G
 add points along rho, or it would bring them nearer; so -rho is the twist sought (separating hyperplane).
 """
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -14,7 +15,7 @@ from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.refining import proven
+from regrasp.mechanics.refining import proven
 from regrasp.planning.states.separation import edge_of, gap_left
 
 AT_LIMIT = 1e-6
@@ -27,7 +28,19 @@ _WORK = 1e-9
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
-    """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
+    """The error that says why no state exists: the cones alone, the force limits, the reserve, or the limit."""
+    reason = verdict(grasp, load, criteria)
+    if reason is not None:
+        return reason
+    return Infeasible(
+        f"no forces of {', '.join(grasp.names)} that balance {load!r} were found with {criteria.reserve:g} of "
+        f"the friction kept in reserve, and no motion proves that there are none without it: the load needs "
+        f"more friction than that leaves; choose a smaller reserve"
+    )
+
+
+def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None:
+    """Why no state exists, where that is proven or the load is at its limit; else None."""
     names = ", ".join(grasp.names)
     loose = loose_twist(grasp, load)
     if loose is not None:
@@ -36,7 +49,7 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             f"load has a torque; the object escapes by {loose}",
             loose,
         )
-    full = Criteria(criteria.objective, criteria.max_force, criteria.peak_ratio, reserve=0.0)
+    full = replace(criteria, reserve=0.0)
     frictions, limits = full.frictions(grasp), full.limits(grasp)
     twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
     if twist is not None:
@@ -63,11 +76,17 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             f"{_REACHES[1]:g} times by {limit[1]:.2g}, so no motion proves it; the contacts would "
             f"need a little more friction"
         )
-    return Infeasible(
-        f"no forces of {names} that balance {load!r} were found with {criteria.reserve:g} of the friction "
-        f"kept in reserve, and no motion proves that there are none without it: the load needs more friction "
-        f"than that leaves, or is at the limit of what they can hold; choose a smaller reserve"
-    )
+    kept = criteria.frictions(grasp)
+    for mu in (frictions, kept):
+        edge = edge_of(grasp, load.vector, mu, criteria.limits(grasp)) if any(load.plain) else None
+        if edge is not None and abs(edge.beyond) <= AT_LIMIT:
+            what = "" if mu is frictions else f" with {criteria.reserve:g} of the friction kept in reserve"
+            return Infeasible(
+                f"{load!r} is at its limit for {names}{what}: within {AT_LIMIT:g} of the edge of what forces "
+                f"inside their friction cones and force limits balance, where rounding decides; none were "
+                f"found, and no motion proves that there are none"
+            )
+    return None
 
 
 def loose_twist(grasp: Grasp, load: Wrench) -> EscapeTwist | None:

@@ -8,9 +8,7 @@ import numpy as np
 
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
-from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
-from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
 from regrasp.planning.states.solving import FEASIBLE, Chooser, Found
 from regrasp.programs import Status
@@ -43,7 +41,9 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
             proven = level if found.is_proof else proven
             sure = level if found.is_sure else sure
         else:
-            reached = max(narrowing.level(found.forces), held)
+            # Inside the narrowed cones is the level reached, whatever a margin says that rounding blurs: every
+            # step gets on.
+            reached = max(narrowing.level(found.forces), level)
             # Steps that do not shrink converge too slowly: halve what is left once, then climb on.
             climbs = not climbs or reached - held < gained / 2
             gained, held, forces = reached - held, reached, found.forces
@@ -83,8 +83,7 @@ def _lowest_proof(
     step = LEVEL_TOLERANCE
     while above + step < proven:
         cones = narrowing.narrowed(above + step)
-        grasp, bounds = chooser.grasp.subset(cones), [limits[i] for i in cones]
-        if escape_twist(grasp, chooser.load, list(cones.values()), bounds) is not None:
+        if chooser.of(cones).is_lost(list(cones.values()), [limits[i] for i in cones]):
             return above + step
         step *= 4
     return proven
@@ -118,12 +117,9 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
         forces = used.exact(answer, frictions, bounds)
         if forces is not None:
             return _Level(_whole(grasp, cones, forces))
-    twist = -answer.duals[: used.load.vector.size]
-    twist[grasp.dimension :] /= used.grasp.size or 1.0
+    twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
-    if is_twist and EscapeTwist(used.grasp, used.load, twist, tuple(frictions), tuple(bounds)).is_proof:
-        return _Level(None, True, True)
-    if escape_twist(used.grasp, used.load, frictions, bounds) is not None:
+    if (is_twist and used.proves(twist, frictions, bounds)) or used.is_lost(frictions, bounds):
         return _Level(None, True, True)
     if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
         return _Level(None, False, True)

@@ -9,11 +9,15 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.degenerate.no_load import best_squeeze
+from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
-from regrasp.planning.states.solving import LOOSE, Chooser
+from regrasp.planning.states.solving import LOOSE, Chooser, Found
+
+VANISHING = 1e-9
+"""A load below this fraction of the force limits changes no margin: the best squeeze is that without a load."""
 
 
 def solved_forces(
@@ -29,9 +33,9 @@ def solved_forces(
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except SolverFailed:
-        # Solvers fail at the limit of what can be held. That is no verdict; a proof is.
-        reason = infeasible(grasp, load, criteria)
-        if reason.certificate is None:
+        # Solvers fail at the limit of what can be held. That is no verdict; a proof is, or how near it is.
+        reason = verdict(grasp, load, criteria)
+        if reason is None:
             raise
         raise reason from None
 
@@ -39,6 +43,13 @@ def solved_forces(
 def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None) -> ChosenForces:
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
+    if criteria.unbounded and chooser.load_size <= VANISHING * min(limits) and max(limits) < inf:
+        squeezed = best_squeeze(grasp, criteria, backend, facets, frictions, limits)
+        if squeezed is None and not any(load.plain):  # nothing to hold, and nothing to hold it with
+            squeezed = Found(np.zeros((len(grasp), grasp.width)), 0.0)
+        forces = None if squeezed is None else chooser.settled(squeezed.forces, frictions, limits)
+        if squeezed is not None and forces is not None:
+            return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, squeezed.gap)
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
     if criteria.unbounded and inf in limits:

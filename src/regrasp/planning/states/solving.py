@@ -9,8 +9,10 @@ import numpy as np
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Solution, Status, solve
 
@@ -51,7 +53,7 @@ class Chooser:
     ) -> None:
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
-        self.unit = force_unit(grasp, load)
+        self.unit = self.load_size = force_unit(grasp, load)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
             self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
         self.loose = LOOSE * self.unit
@@ -158,6 +160,19 @@ class Chooser:
         size, cones = self.grasp.size or 1.0, self.grasp.cones
         mu, limit = np.array(frictions), np.array(limits)
         return nearest_equilibrium(forces, cones.matrix, self.load.vector, cones.normals, mu, limit, size)
+
+    def twist_of(self, answer: Solution) -> Array:
+        """The motion that the duals of the balance are, (3,) or (6,)."""
+        twist: Array = -answer.duals[: self.load.vector.size] / self.grasp.lengths
+        return twist
+
+    def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:
+        """Whether no forces exist, proven by this motion."""
+        return EscapeTwist(self.grasp, self.load, twist, tuple(frictions), tuple(limits)).is_proof
+
+    def is_lost(self, frictions: list[float], limits: list[float]) -> bool:
+        """Whether no forces exist, proven by any motion that is found."""
+        return escape_twist(self.grasp, self.load, frictions, limits) is not None
 
     def _wanted(self, answer: Solution) -> Array:
         w = self.grasp.width

@@ -27,6 +27,7 @@ _STILL = (1e-6, 1e-3)
 # A contact that opposes a motion by less than this fraction of its speed is meant not to oppose it at all.
 _TOUCHING = 1e-3
 _STEPS = 8
+_REACHED = 2.0**-60
 _ROUNDING = 2.0**-50
 # Lengths of the twist at which its rounding is tried where contacts that stand still leave no other room.
 _LENGTHS = 24
@@ -48,18 +49,23 @@ def proven(
 
 def _candidates(grasp: Grasp, twist: Array, frictions: list[float], limits: list[float]) -> Iterator[Array]:
     for still in _STILL:
-        refined, rests = _refined(grasp, twist, frictions, limits, still)
-        largest = max(abs(x) for x in refined)
-        if not largest:
-            continue
-        for k in range(_LENGTHS if rests else 1):
-            yield np.array([float(x / largest * Fraction(16 + k, 16)) for x in refined])
-        if not rests:
-            return
+        for delta in (2 * _ROUNDING, 0.0):  # no room for it where other contacts stand still
+            refined, rests = _refined(grasp, twist, frictions, limits, still, delta)
+            largest = max(abs(x) for x in refined)
+            if not largest:
+                continue
+            lengths = [1 / largest]
+            if rests:  # per radian about an axis the velocity is a product with coordinates, often an exact one
+                lengths = [1 / abs(x) for x in refined[grasp.dimension :] if abs(x) > largest / 2**20]
+                lengths += [Fraction(_LENGTHS + k, _LENGTHS) / largest for k in range(_LENGTHS)]
+            for length in lengths[: None if delta == 0 else 1]:
+                yield np.array([float(x * length) for x in refined])
+            if not rests and delta == 0:
+                return
 
 
 def _refined(
-    grasp: Grasp, twist: Array, frictions: list[float], limits: list[float], still: float
+    grasp: Grasp, twist: Array, frictions: list[float], limits: list[float], still: float, delta: float
 ) -> tuple[list[Fraction], bool]:
     """The twist after Newton's steps, and whether any contact stands still in it."""
     w, size = grasp.width, twist.size
@@ -89,8 +95,8 @@ def _refined(
             else:
                 direction = [float(a / sideways) if sideways else 0.0 for a in across]
                 jacobian.append(at.T @ (grasp.cones.normals[i] - frictions[i] * np.array(direction)))
-                misses.append(float(slack) - 2 * _ROUNDING * speed)
-        if not rows or max(map(abs, misses)) <= _ROUNDING / 4 * speed:
+                misses.append(float(slack) - delta * speed)
+        if not rows or max(map(abs, misses)) <= _REACHED * speed:
             break
         step = np.linalg.lstsq(np.array(jacobian).reshape(-1, size), np.array(misses), rcond=1e-12)[0]
         v = [a - Fraction(b) for a, b in zip(v, (step * weight).tolist(), strict=True)]
