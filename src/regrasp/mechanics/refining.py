@@ -23,7 +23,7 @@ from regrasp.mechanics.opposition import dot, exact
 from regrasp.mechanics.wrench import Wrench
 
 # Contacts that move by less than these fractions of the motion's speed may be meant to stand still.
-_STILL = (1e-6, 1e-3)
+_STILL = (1e-12, 1e-6, 1e-3)
 # A contact that opposes a motion by less than this fraction of its speed is meant not to oppose it at all.
 _TOUCHING = 1e-3
 _STEPS = 8

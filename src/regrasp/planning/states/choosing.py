@@ -6,7 +6,7 @@ from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria, criteria_of
-from regrasp.planning.states.two_fingers import best_forces
+from regrasp.planning.states.two_fingers import best_forces, is_one_point
 
 DEFAULT_BACKEND = "clarabel"
 
@@ -65,6 +65,10 @@ def choose_forces(
             f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
             f"{grasp.dimension}; use method='auto'"
         )
+    if planar_pair and is_one_point(grasp):
+        if method == "closed-form":
+            raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
+        planar_pair = False
     if len(grasp) < 2:
         raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
     if method == "closed-form" and facets is not None:

@@ -10,6 +10,7 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import Infeasible
+from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
@@ -78,8 +79,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
         )
     kept = criteria.frictions(grasp)
     for mu in (frictions, kept):
-        edge = edge_of(grasp, load.vector, mu, criteria.limits(grasp)) if any(load.plain) else None
-        if edge is not None and abs(edge.beyond) <= AT_LIMIT:
+        if any(load.plain) and _is_at_limit(grasp, load, mu, criteria.limits(grasp)):
             what = "" if mu is frictions else f" with {criteria.reserve:g} of the friction kept in reserve"
             return Infeasible(
                 f"{load!r} is at its limit for {names}{what}: within {AT_LIMIT:g} of the edge of what forces "
@@ -87,6 +87,28 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
                 f"found, and no motion proves that there are none"
             )
     return None
+
+
+def _is_at_limit(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> bool:
+    """Whether a load is within ``AT_LIMIT`` of the edge of what is held, or inside it but for rounding.
+
+    Near the edge: not inside by more, and missed by no more by some forces. Rounding: a solver's forces balance
+    it, and none near them do exactly.
+    """
+    edge = edge_of(grasp, load.vector, frictions, limits)
+    if edge is None:
+        return False
+    if edge.beyond < -AT_LIMIT:
+        cones, mu, most = grasp.cones, np.array(frictions), np.array(limits)
+        given = edge.forces, cones.matrix, load.vector, cones.normals, mu, most, grasp.size or 1.0
+        return nearest_equilibrium(*given) is None
+    if edge.beyond <= AT_LIMIT:
+        return True
+    weight = 1 / grasp.lengths
+    target = -load.vector * weight
+    unit = float(abs(target).max())
+    gap = gap_left(grasp, target / unit, weight, frictions, [limit / unit for limit in limits])
+    return float(np.linalg.norm(gap)) <= AT_LIMIT
 
 
 def loose_twist(grasp: Grasp, load: Wrench) -> EscapeTwist | None:

@@ -47,11 +47,13 @@ def gap_left(
 class Edge(NamedTuple):
     """How far beyond the edge of what is held a load is, and the motion along which it wins there.
 
-    beyond: the least t of ``edge_of``; negative where the load is held. twist: (3,) or (6,).
+    beyond: the least t of ``edge_of``; negative where the load is held. twist: (3,) or (6,). forces: (n, w) that
+    balance the load where it is held, to the solver's tolerance [N].
     """
 
     beyond: float
     twist: Array
+    forces: Array
 
 
 def edge_of(grasp: Grasp, load: Array, frictions: list[float], limits: list[float]) -> Edge | None:
@@ -95,4 +97,7 @@ def edge_of(grasp: Grasp, load: Array, frictions: list[float], limits: list[floa
     twist = -answer.duals[: target.size] * weight
     if not (np.isfinite(twist).all() and twist.any() and isfinite(answer.value[n])):
         return None
-    return Edge(float(answer.value[n]), twist)
+    beyond = float(answer.value[n])
+    share = 1 / (1 - min(beyond, 0.0))  # between the forces at the edge and the pushes inside, w_ext
+    forces = share * answer.value[:n].reshape(-1, w) + (1 - share) * pushes[:, None] * cones.normals
+    return Edge(beyond, twist, unit * forces)
