@@ -17,8 +17,11 @@ from regrasp.programs import Status
 _SURE = 1e-2
 # The best level must be known this well; how well it is known is in the gap.
 _UNSURE = 100 * LEVEL_TOLERANCE
-# A force below this fraction of the largest may be what a solver leaves at a finger that need not push.
-_NOISE = 1e-6
+# Cones so far from the forces of a solved program, in its units, hold them whatever its tolerance.
+_CLEAR = 1e-6
+# A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the root
+# of its tolerance, where the optimum is flat.
+_NOISE = 1e-4
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -63,17 +66,32 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
 
 
 def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
-    """The forces with those that are a solver's noise made zero, where that costs nothing."""
+    """The forces with those that are a solver's noise made zero, where the level stays within the tolerance."""
     sizes = abs(forces).max(axis=1)
-    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
+    used = set(np.flatnonzero(sizes > _NOISE * sizes.max()).tolist())
     if len(used) in (0, len(forces)):
         return forces
-    frictions, bounds = [narrowing.frictions[i] for i in used], [limits[i] for i in used]
-    rest = chooser.of(used).settled(forces[used], frictions, bounds)
-    if rest is None:
+    level = narrowing.level(forces)
+    idle = _of_those_that_push(chooser, forces, narrowing.frictions, limits)
+    if idle is None or narrowing.level(idle) < level - LEVEL_TOLERANCE / 10:
+        cones = narrowing.narrowed(max(level - LEVEL_TOLERANCE / 10, 0.0))
+        idle = _at_level(chooser, {i: mu for i, mu in cones.items() if i in used}, limits, None).forces
+    if idle is None or narrowing.level(idle) < level - LEVEL_TOLERANCE / 5:
         return forces
-    idle = _whole(chooser.grasp, used, rest)
-    return idle if narrowing.level(idle) >= narrowing.level(forces) - LEVEL_TOLERANCE / 10 else forces
+    return idle
+
+
+def _of_those_that_push(
+    chooser: Chooser, forces: Array, frictions: list[float], limits: list[float]
+) -> Array | None:
+    """Forces near these of the fingers that carry more than noise, all others idle; None if there are none."""
+    sizes = abs(forces).max(axis=1)
+    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
+    if len(used) in (0, len(forces)) or not np.isfinite(forces).all():
+        return None
+    mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
+    rest = chooser.of(used).settled(forces[used], mu, bounds)
+    return None if rest is None else _whole(chooser.grasp, used, rest)
 
 
 def _lowest_proof(
@@ -115,8 +133,12 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
         answer = failed.solution  # whether it is near enough is seen below
     if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -FEASIBLE:
         forces = used.exact(answer, frictions, bounds)
+        if forces is None:
+            forces = _of_those_that_push(used, used.wanted(answer), frictions, bounds)
         if forces is not None:
             return _Level(_whole(grasp, cones, forces))
+        if answer.status is Status.SOLVED and answer.value[-1] > _CLEAR:
+            return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
     twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
     if (is_twist and used.proves(twist, frictions, bounds)) or used.is_lost(frictions, bounds):

@@ -16,6 +16,7 @@ from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
 
+_FAR = 1e3  # forces so much larger than the load are the better unit
 VANISHING = 1e-9
 """A load below this fraction of the force limits changes no margin: the best squeeze is that without a load."""
 
@@ -52,14 +53,22 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
             return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, squeezed.gap)
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
+    least = None
     if criteria.unbounded and inf in limits:
         least = chooser.best("peak", frictions, limits)
         if least is None:
             raise infeasible(grasp, load, criteria)
         peak = _radius(grasp, frictions, least.forces, facets)
+        if peak > _FAR * chooser.unit:
+            chooser.rescale(peak)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     narrows = criteria.objective in ("angle", "friction_use")
-    found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
+    try:
+        found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
+    except SolverFailed:
+        if least is None or not narrows:
+            raise
+        found = least  # forces far larger than the load; the search goes on from the smallest
     if found is None:
         raise infeasible(grasp, load, criteria)
     if narrows:

@@ -85,7 +85,7 @@ class Chooser:
         try:
             return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
         except SolverFailed as failed:
-            size = float(abs(self._wanted(failed.solution)).max())
+            size = float(abs(self.wanted(failed.solution)).max())
             if not _FAR * self.unit < size < inf:
                 raise
             self.unit = size
@@ -122,7 +122,7 @@ class Chooser:
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
         if objective == "force" and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
-        wanted = self._wanted(answer)
+        wanted = self.wanted(answer)
         forces = self.settled(wanted, frictions, limits)
         if forces is None:
             return None
@@ -138,7 +138,7 @@ class Chooser:
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
         """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are."""
-        return self.settled(self._wanted(answer), frictions, limits)
+        return self.settled(self.wanted(answer), frictions, limits)
 
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none.
@@ -174,7 +174,8 @@ class Chooser:
         """Whether no forces exist, proven by any motion that is found."""
         return escape_twist(self.grasp, self.load, frictions, limits) is not None
 
-    def _wanted(self, answer: Solution) -> Array:
+    def wanted(self, answer: Solution) -> Array:
+        """The answer's forces (n, w), as the cones measure them [N]."""
         w = self.grasp.width
         wanted: Array = answer.value[: w * len(self.grasp)].reshape(-1, w)
         if w == 4:  # a point contact makes no torque, whatever a solver says of a number that does nothing
