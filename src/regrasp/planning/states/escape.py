@@ -21,6 +21,8 @@ from regrasp.planning.states.separation import edge_of, gap_left
 
 AT_LIMIT = 1e-6
 """A load within this fraction of the edge of what is held is at its limit: rounding may decide it."""
+# Limits beyond this many loads are left out of the search.
+_LOOSE = 1e6
 # Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
 _REACHES = (1e2, 1e4)
 _NEARER = 0.1
@@ -136,6 +138,7 @@ def escape_twist(
     unit = float(abs(target).max())
     if unit == 0:
         return None
+    limits = [inf if limit > _LOOSE * unit else limit for limit in limits]  # they bind no proof, and spoil scales
     if min(limits) < inf or d == 3:
         gaps = [gap_left(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
     else:
@@ -186,6 +189,8 @@ def _gaps(wrenches: Array, target: Array) -> list[Array]:
     if miss < 1e-9:
         return [gap]  # W'v >= 1 has no solution: the wrenches leave no half-space free
     residual = equations @ combination - goal
+    if not residual[-1] or not residual[:-1].any():
+        return [gap]
     clear = residual[:-1] / residual[-1]
     return [gap, gap + clear * (2.0**-40 * float(np.linalg.norm(gap) / np.linalg.norm(clear)))]
 
