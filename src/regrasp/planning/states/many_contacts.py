@@ -9,6 +9,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.states.degenerate.flat_minima import polished
 from regrasp.planning.states.degenerate.no_load import best_squeeze
 from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
@@ -71,9 +72,12 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         found = least  # forces far larger than the load; the search goes on from the smallest
     if found is None:
         raise infeasible(grasp, load, criteria)
+    forces, gap = found
     if narrows:
-        found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), found.forces, limits)
-    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
+        forces, gap = highest(chooser, Narrowing(grasp, criteria.objective, frictions), forces, limits)
+    elif facets is None:
+        forces = polished(chooser, criteria.objective, forces, frictions, limits)
+    return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
 
 
 def _radius(grasp: Grasp, frictions: list[float], forces: Array, facets: int | None) -> float:
