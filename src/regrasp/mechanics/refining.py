@@ -48,26 +48,27 @@ def proven(
 
 
 def _candidates(grasp: Grasp, twist: Array, frictions: list[float], limits: list[float]) -> Iterator[Array]:
+    tried = set()
     for still in _STILL:
         for delta in (2 * _ROUNDING, 0.0):  # no room for it where other contacts stand still
             refined, rests = _refined(grasp, twist, frictions, limits, still, delta)
             largest = max(abs(x) for x in refined)
-            if not largest:
+            if not largest or (delta, rests) in tried:
                 continue
+            tried.add((delta, rests))
             lengths = [1 / largest]
-            if rests:  # per radian about an axis the velocity is a product with coordinates, often an exact one
+            if rests and delta == 0:
+                # Per radian about an axis the velocity is a product with coordinates, often an exact one.
                 lengths = [1 / abs(x) for x in refined[grasp.dimension :] if abs(x) > largest / 2**20]
                 lengths += [Fraction(_LENGTHS + k, _LENGTHS) / largest for k in range(_LENGTHS)]
-            for length in lengths[: None if delta == 0 else 1]:
+            for length in lengths:
                 yield np.array([float(x * length) for x in refined])
-            if not rests and delta == 0:
-                return
 
 
 def _refined(
     grasp: Grasp, twist: Array, frictions: list[float], limits: list[float], still: float, delta: float
-) -> tuple[list[Fraction], bool]:
-    """The twist after Newton's steps, and whether any contact stands still in it."""
+) -> tuple[list[Fraction], frozenset[int]]:
+    """The twist after Newton's steps, and the contacts that stand still in it."""
     w, size = grasp.width, twist.size
     weight = 1 / grasp.lengths
     arms = grasp.cones.matrix.T * weight  # velocities of the contacts from the twist in speeds at ``size``
@@ -100,7 +101,7 @@ def _refined(
             break
         step = np.linalg.lstsq(np.array(jacobian).reshape(-1, size), np.array(misses), rcond=1e-12)[0]
         v = [a - Fraction(b) for a, b in zip(v, (step * weight).tolist(), strict=True)]
-    return v, any(rows.values())
+    return v, frozenset(i for i, rests in rows.items() if rests)
 
 
 def _root(square: Fraction) -> Fraction:

@@ -1,10 +1,11 @@
 """Choosing the state of any number of contacts by programs."""
 
+from contextlib import suppress
 from math import inf
 
 import numpy as np
 
-from regrasp.errors import SolverFailed
+from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
@@ -15,8 +16,10 @@ from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
+from regrasp.planning.states.separation import edge_of
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
 
+_NARROWS = ("angle", "friction_use")
 _FAR = 1e3  # forces so much larger than the load are the better unit
 VANISHING = 1e-9
 """A load below this fraction of the force limits changes no margin: the best squeeze is that without a load."""
@@ -34,12 +37,44 @@ def solved_forces(
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
     try:
         return _solved(grasp, load, criteria, backend, facets)
-    except SolverFailed:
-        # Solvers fail at the limit of what can be held. That is no verdict; a proof is, or how near it is.
-        reason = verdict(grasp, load, criteria)
+    except (SolverFailed, Infeasible) as failure:
+        # Solvers fail at the limit of what can be held, or call it infeasible. That is no verdict; a proof is.
+        reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
+        if reason is None or reason.certificate is None:
+            anyway = _by_newton(grasp, load, criteria, backend, facets)
+            if anyway is not None:
+                return anyway
         if reason is None:
             raise
         raise reason from None
+
+
+def _by_newton(
+    grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
+) -> ChosenForces | None:
+    """Forces that hold the load where a solver gives none: of least effort by Newton's method, or near the edge.
+
+    Nothing is known of how much better an objective other than effort can be: the gap is infinite.
+    """
+    if backend != "clarabel" or facets is not None:
+        return None
+    frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
+    chooser = Chooser(grasp, load, backend, facets, limits)
+    forces = chooser.nearest(np.zeros((len(grasp), grasp.width)), frictions, limits)
+    is_least = forces is not None and criteria.objective == "effort"
+    if forces is None:
+        edge = edge_of(grasp, load.vector, frictions, limits) if any(load.plain) else None
+        forces = None if edge is None else chooser.settled(edge.forces, frictions, limits)
+    if forces is None:
+        return None
+    found = Found(forces, 0.0 if is_least else inf)
+    if criteria.unbounded and inf in limits:
+        peak = _radius(grasp, frictions, forces, facets)
+        limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
+    if criteria.objective in _NARROWS:
+        with suppress(SolverFailed):
+            found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), forces, limits)
+    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 
 def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None) -> ChosenForces:
@@ -63,7 +98,7 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         if peak > _FAR * chooser.unit:
             chooser.rescale(peak)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
-    narrows = criteria.objective in ("angle", "friction_use")
+    narrows = criteria.objective in _NARROWS
     try:
         found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
     except SolverFailed:
