@@ -17,10 +17,11 @@ from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plans.loads import LoadSeries
-from regrasp.plans.sampled import SampledTransition
+from regrasp.plans.sampled import SampledPath
+from regrasp.plans.straight import StraightPath
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
-from regrasp.plans.turning import TurningTransition
+from regrasp.plans.turning import TurningPath
 from regrasp.verification import Verification, verify
 
 if TYPE_CHECKING:
@@ -89,16 +90,17 @@ __all__ = [
     "RegraspPlan",
     "RegraspProblem",
     "RegraspWeights",
-    "SampledTransition",
+    "SampledPath",
     "Sensitivity",
     "SolverFailed",
     "SolverUnavailable",
     "SpaceRegraspPlan",
     "SpaceRegraspProblem",
     "SqueezeLocus",
+    "StraightPath",
     "TimeScaling",
     "Transition",
-    "TurningTransition",
+    "TurningPath",
     "Verification",
     "Wrench",
     "best_squeezes",

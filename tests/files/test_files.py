@@ -28,7 +28,7 @@ from regrasp.files import (
     write_setpoints,
 )
 from regrasp.files.staging import whole_file, whole_folder
-from regrasp.plans.transition import Choice, Record
+from regrasp.plans.record import Choice, Record
 from scenarios import PAPER, edited
 
 EXAMPLES = ROOT / "examples"
@@ -249,9 +249,8 @@ def transitions(draw: st.DrawFn) -> rg.Transition:
     record = Record(
         draw(st.floats(0, 0.99)), (Choice("end", "angle", "closed-form", limits),), draw(frictions)
     )
-    return rg.Transition(
-        draw(st.sampled_from(["removal", "addition"])), grasp.names[0], start, end, scaling, record
-    )
+    moving = {draw(st.sampled_from(["leaving", "arriving"])): grasp.names[: draw(st.integers(1, n))]}
+    return rg.Transition(start, end, scaling, record, **moving)
 
 
 @given(plan=transitions())
@@ -323,8 +322,9 @@ def put(value: Any, *keys: str | int) -> Callable[[dict[str, Any]], None]:
         (lambda data: data.pop("load"), "load: a required key is missing"),
         (lambda data: data["record"].pop("reserve"), "record.reserve: a required key is missing"),
         (put("fast", "speed"), "speed: unknown key; known here: format, version, kind, contact, load, "
-                               "contacts, start, end, scaling, course, record, arrival, turn"),
-        (put("removing", "kind"), "kind: expected 'removal', 'addition', 'rotation' or 'exchange', "
+                               "contacts, start, end, scaling, course, record, arrival, leaving, arriving, "
+                               "turn"),
+        (put("removing", "kind"), "kind: expected 'removal', 'addition', 'rotation', 'exchange' or 'hold', "
                                   "got 'removing'"),
         (put("rotation", "kind"), "a rotation names the wrong fingers: 'P3' and None"),
         (put("P2", "arrival"), "a removal names the wrong fingers: 'P3' and 'P2'"),

@@ -75,7 +75,7 @@ def same_bits(ours: rg.Transition, theirs: rg.Transition) -> bool:
 
 
 @pytest.mark.parametrize(
-    "plan", [ROTATION, ROTATION.reversed(), *REGRASP.steps], ids=lambda plan: plan._kind_in_words()
+    "plan", [ROTATION, ROTATION.reversed(), *REGRASP.steps], ids=lambda plan: plan.in_words
 )
 def test_turning_plans_are_read_back_bit_for_bit(plan: rg.Transition, tmp_path: Path) -> None:
     path = tmp_path / "plan.json"
@@ -96,14 +96,14 @@ def test_any_rotation_is_read_back(
     plan = rg.plan_rotation(JAR, angle, load=rg.Wrench([0.1, -weight]))
     write_plan(plan, path)
     back = read_plan(path)
-    assert isinstance(back, rg.TurningTransition)
+    assert isinstance(back.path, rg.TurningPath)
     assert back == plan
     assert same_bits(plan, back)
 
 
 def test_regrasp_is_read_back_bit_for_bit(tmp_path: Path) -> None:
     assert {step.kind for step in REGRASP.steps} >= {"removal", "exchange", "rotation", "addition"}
-    assert any(isinstance(step, rg.TurningTransition) and step.arrival for step in REGRASP.steps)
+    assert any(step.turn and step.arrival for step in REGRASP.steps)
     for plan in (REGRASP, REGRASP.reversed()):
         write_plan(plan, tmp_path / "plan.json")
         back = read_plan(tmp_path / "plan.json")
@@ -185,7 +185,8 @@ def test_damaged_rotation(change: Callable[[dict[str, Any]], None], message: str
         (put([], "rotations"), "rotations: leave them out in the plane"),
         (drop("steps", 1, "record"), "steps[1].record: a required key is missing"),
         (put(1, "steps", 0, "version"), "steps[0].version: unknown key; known here: kind, contact, load, "
-                                        "contacts, start, end, scaling, course, record, arrival, turn"),
+                                        "contacts, start, end, scaling, course, record, arrival, leaving, "
+                                        "arriving, turn"),
         (put("P9", "steps", 0, "contact"),
          f"steps[0]: no contact 'P9' in this grasp; it has {', '.join(REGRASP.steps[0].grasp.names)}"),
         (put(None, "steps", EXCHANGE, "arrival"), f"steps[{EXCHANGE}]: an exchange names the wrong fingers: "
@@ -395,9 +396,9 @@ def changed(text: str, *changes: tuple[str, str]) -> str:
     return text
 
 
-def rotation(*changes: tuple[str, str]) -> rg.TurningTransition:
+def rotation(*changes: tuple[str, str]) -> rg.Transition:
     plan = plan_scenario(parse_scenario(changed(TURN, *changes)))
-    assert isinstance(plan, rg.TurningTransition)
+    assert plan.turn is not None
     assert rg.verify(plan).ok
     return plan
 
@@ -427,14 +428,14 @@ def test_rotation_scenario_plans_what_the_same_call_plans() -> None:
     ],
 )
 def test_option_of_a_rotation_reaches_the_plan(
-    line: str, seen: Callable[[rg.TurningTransition], Any], expected: Any
+    line: str, seen: Callable[[rg.Transition], Any], expected: Any
 ) -> None:
     key = line.split(" ")[0]
     text = TURN
     if key in ("degrees", "objective", "duration", "scaling"):
         text = re.sub(rf"(?m)^{key} = .*$", "", text)
     plan = plan_scenario(parse_scenario(f"{text}\n{line}\n"))
-    assert isinstance(plan, rg.TurningTransition)
+    assert plan.turn is not None
     assert seen(plan) == expected
     assert rg.verify(plan).ok
 
@@ -452,7 +453,7 @@ def test_given_forces_of_a_rotation_are_used() -> None:
     plan = rotation()
     text = with_forces(plan, ("force", plan.start.forces), ("end_force", plan.end.forces))
     again = plan_scenario(parse_scenario(text))
-    assert isinstance(again, rg.TurningTransition)
+    assert again.turn is not None
     assert rg.verify(again).ok
     assert again.record.choices == ()
     assert 0 < again.record.balancing < 1e-4

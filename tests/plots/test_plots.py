@@ -698,7 +698,7 @@ def test_pictures_of_the_plane_refuse_a_grasp_in_space():
     grasp = rg.Grasp([rg.Contact([1, 0, 0], [-1, 0, 0], 0.5), rg.Contact([-1, 0, 0], [1, 0, 0], 0.5)])
     state = rg.GraspState(grasp, rg.Wrench([0, 0, 0]), [[-1, 0, 0], [1, 0, 0]])
     idle = rg.GraspState(grasp, rg.Wrench([0, 0, 0]), np.zeros((2, 3)))
-    transition = rg.Transition("removal", "P1", state, idle, rg.TimeScaling.spline(1.0), None)
+    transition = rg.Transition(state, idle, rg.TimeScaling.spline(1.0), None, leaving=("P1",))
     calls = [
         (plots.plot_wrench_loop, state),
         (plots.plot_wrench_paths, transition),

@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 import regrasp as rg
 from regrasp import plots
 from regrasp.mesh import Mesh
-from regrasp.plans.transition import Record
+from regrasp.plans.record import Record
 from regrasp.plots.escapes.screw_motion import amount_for, moved
 from regrasp.plots.look.arrows import Arrow3D
 from regrasp.plots.look.solids import cone, creases, triangles_of
@@ -43,7 +43,7 @@ def removal(length=1.0, force=1.0, names=("thumb", "index", "middle", "ring")):
     start = rg.GraspState(grasp, load, 8 * force * grasp.normals).balanced()
     rest = rg.GraspState(grasp.without(3), load, force * np.array([[12.0, 0, 0], [-6, 0, 0], [-6, 0, 0]]))
     end = rg.GraspState(grasp, load, np.vstack([rest.balanced().forces, np.zeros(3)]))
-    return rg.Transition("removal", names[3], start, end, rg.TimeScaling.spline(2.0), Record(1e-9))
+    return rg.Transition(start, end, rg.TimeScaling.spline(2.0), Record(1e-9), leaving=(names[3],))
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,7 @@ import pytest
 
 import regrasp as rg
 from box import BOX, GOAL, MU, START, WEIGHT
-from regrasp.plans.course import Course
-from regrasp.plans.sampled import SampledTransition
+from regrasp.plans.sampled import SampledPath
 
 OUTLINE = rg.Outline.ellipse(2, 1)
 
@@ -46,11 +45,9 @@ def test_an_object_dropped_within_a_step(plan):
     step = next(s for s in plan.steps if s.turn is None)
     k = plan.steps.index(step)
     first, last, load = step.start.forces, step.end.forces, step.start.load.vector
-    course = Course([0, step.duration / 2, step.duration], [first, 0 * first, last], [load, 0 * load, load])
-    dropped = SampledTransition(
-        step.kind, step.contact, step.start, step.end, step.scaling, step.record,
-        course=course, arrival=step.arrival,
-    )  # fmt: skip
+    times, forces = [0, step.duration / 2, step.duration], [first, 0 * first, last]
+    path = SampledPath(times, forces, [load, 0 * load, load])
+    dropped = replace(step, path=path)
     steps = (*plan.steps[:k], dropped, *plan.steps[k + 1 :])
     assert f"step {k + 1}: its load at t = 0.5 s is not the one in the world" in broken(plan, steps=steps)
 
@@ -63,7 +60,8 @@ def test_a_finger_that_may_do_more_after_a_joint(plan, change):
     )
     other = replace(
         last,
-        contact=grasp.names[last.grasp.names.index(last.contact)] if last.contact else None,
+        leaving=tuple(grasp.names[last.grasp.names.index(name)] for name in last.leaving),
+        arriving=tuple(grasp.names[last.grasp.names.index(name)] for name in last.arriving),
         start=rg.GraspState(grasp, last.start.load, last.start.forces),
         end=rg.GraspState(grasp, last.end.load, last.end.forces),
     )

@@ -69,3 +69,25 @@ def _over_used(values: Array, pick: np.ufunc, start: float) -> float:
     if np.isnan(values).all():
         return nan
     return float(pick.reduce(values, axis=None, initial=start))
+
+
+def friction_needed(forces: Array, normals: Array, torsions: Array | None = None) -> Array:
+    """(..., n) the least coefficient that keeps each force inside its cone [-]: |f_t| / f_n.
+
+    forces: (..., n, d) [N], of soft fingers (..., n, 4) with ``torsions`` (n,) [m], whose limit surface
+    leaves |f_t| / sqrt(f_n^2 - (m / torsion)^2). 0 for a contact without force, infinite where none does.
+    """
+    d = normals.shape[1]
+    linear = forces[..., :d]
+    normal = (linear * normals).sum(axis=-1)  # f_n
+    tangential = np.sqrt(((linear - normal[..., None] * normals) ** 2).sum(axis=-1))
+    magnitude = np.sqrt((linear**2).sum(axis=-1))
+    available = normal
+    if torsions is not None:
+        twist = np.divide(forces[..., 3], torsions, out=np.zeros_like(normal), where=torsions > 0)
+        left = np.maximum((normal - abs(twist)) * (normal + abs(twist)), 0.0)
+        available = np.where(normal > 0, np.sqrt(left), normal)
+    idle = magnitude <= IDLE * magnitude.max(axis=-1, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        needed = np.where(available > 0, tangential / available, inf)
+    return np.where(idle, 0.0, needed)

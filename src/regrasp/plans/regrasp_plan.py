@@ -49,6 +49,11 @@ class RegraspPlan(ArrayValue, Pictured):
         """Of all steps [s]; the fingers' own moves between contact points are not timed."""
         return sum(step.duration for step in self.steps)
 
+    @property
+    def friction_needed(self) -> float:
+        """The least coefficient of all contacts under which all forces stay in their cones [-]."""
+        return max(step.friction_needed for step in self.steps)
+
     def orientation(self, t: ArrayLike) -> Array:
         """The object's angle [rad] at times in [0, duration] [s], of the shape of t."""
         k, local = self._place(t)
@@ -112,9 +117,7 @@ class RegraspPlan(ArrayValue, Pictured):
         for k, (step, (a, b)) in enumerate(zip(self.steps, pairwise(self.orientations), strict=True), 1):
             turn = self._turn_in_words(step, a, b)
             held = ", ".join(step.grasp.names)
-            what = step.kind if step.contact is None else f"{step.kind} of {step.contact}"
-            what += f" for {step.arrival}" if step.arrival else ""
-            lines.append(f"{k:2}. {what} with {held}{turn}")
+            lines.append(f"{k:2}. {step.in_words} with {held}{turn}")
         return "\n".join(lines)
 
     __repr__ = __str__

@@ -1,103 +1,105 @@
-"""A transition whose forces are linear between instants: the answer of a path program."""
+"""A path through instants: the answer of a path program."""
 
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
-from regrasp.plans.course import Course
+from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.path import Path
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Transition
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class SampledTransition(Transition):
-    """A transition along instants, for loads that vary and limits that bend the path.
+@dataclass(frozen=True, eq=False)
+class SampledPath(ArrayValue, Path):
+    """Forces and loads at instants, both linear in time between them: for loads that vary, limits that bend.
 
-    Between instants f(t) and w_ext(t) are linear, so that equilibrium and cones at the instants prove every
-    time between. ``start`` and ``end`` are the states at the first and last instant, each under its load;
-    ``scaling`` is the phase T(t) by which the least change was weighed.
+    Equilibrium and cones at the instants prove every time between. The clock's T(t) is the phase by which the
+    least change was weighed; ``start`` and ``end`` are the states at the first and the last instant.
+
+    times: (K,) [s], rising from 0. forces: (K, n, w) [N]. loads: (K, 3) or (K, 6) [N, N m].
     """
 
-    course: Course = field(kw_only=True)
+    timed: ClassVar[bool] = True
 
-    def _check(self) -> None:
-        course, shape = self.course, self.start.forces.shape
-        if course.forces.shape[1:] != shape or course.loads.shape[1:] != self.start.load.vector.shape:
-            raise InvalidInput(f"a course must have forces (K, {shape[0]}, {shape[1]}) and loads of the ends")
-        if course.times[-1] != self.scaling.duration:
+    times: Array
+    forces: Array
+    loads: Array
+
+    def __init__(self, times: ArrayLike, forces: ArrayLike, loads: ArrayLike) -> None:
+        t = array(times, "times of a path", (None,))
+        if t.size < 2 or t[0] != 0 or not (np.diff(t) > 0).all():
+            raise InvalidInput("times of a path through instants must rise from 0, two or more")
+        object.__setattr__(self, "times", t)
+        object.__setattr__(self, "forces", array(forces, "forces of a path", (t.size, None, None)))
+        object.__setattr__(self, "loads", array(loads, "loads of a path", (t.size, None)))
+
+    def check(self, start: GraspState, end: GraspState, scaling: TimeScaling) -> None:
+        """Raise ``InvalidInput`` unless shapes and duration are those of the ends and the clock."""
+        shape = start.forces.shape
+        if self.forces.shape[1:] != shape or self.loads.shape[1:] != start.load.vector.shape:
             raise InvalidInput(
-                f"a course must last the duration {self.scaling.duration!r}, got {course.times[-1]!r}"
+                f"a path through instants must have forces (K, {shape[0]}, {shape[1]}) and loads of the ends"
+            )
+        if self.times[-1] != scaling.duration:
+            raise InvalidInput(
+                f"a path through instants must last the duration {scaling.duration!r}, got {self.times[-1]!r}"
             )
 
-    def forces(self, t: ArrayLike) -> Array:
-        """Finger forces (n, d) at a time, (m, n, d) at m times [N]; times in [0, duration] [s]."""
-        return self._between(self.course.forces, t)
+    def forces_at(self, start: GraspState, end: GraspState, u: Array) -> Array:
+        """Finger forces (..., n, w) at times u, object frame [N]."""
+        return self._between(self.forces, u)
 
-    def wrenches(self, t: ArrayLike) -> Array:
-        """Finger wrenches (n, 3) or (m, n, 3) [N, N m]; (…, 6) in space."""
-        return self.grasp.wrenches(self.forces(t))
+    def rates_at(self, start: GraspState, end: GraspState, u: Array) -> Array:
+        """Force rates (..., n, w) [N/s]; at an instant that of the stretch after it."""
+        slope: Array = np.diff(self.forces, axis=0) / np.diff(self.times)[:, None, None]
+        return slope[self._place(u)[0]]
 
-    def rates(self, t: ArrayLike) -> Array:
-        """Force rates f'(t), (n, d) or (m, n, d) [N/s]; at an instant that of the stretch after it."""
-        k, _ = self._place(t)
-        slope: Array = np.diff(self.course.forces, axis=0) / np.diff(self.course.times)[:, None, None]
-        return slope[k]
+    def load_at(self, start: GraspState, u: Array) -> Array:
+        """The load (..., 3) or (..., 6) at times u, object frame [N, N m]."""
+        return self._between(self.loads, u)
 
     @property
     def load_varies(self) -> bool:
         """Whether the load is not the same at every instant."""
-        return bool(np.ptp(self.course.loads, axis=0).any())
+        return bool(np.ptp(self.loads, axis=0).any())
 
-    @property
-    def steepest(self) -> Array:
-        """(n,) the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
-        moved = np.linalg.norm(np.diff(self.course.forces, axis=0), axis=-1)
-        result: Array = (moved / np.diff(self.course.times)[:, None]).max(axis=0)
+    def steepest(self, start: GraspState, end: GraspState) -> Array:
+        """(n,) the fastest change of each force over the whole path [N/s]."""
+        moved = np.linalg.norm(np.diff(self.forces, axis=0), axis=-1)
+        result: Array = (moved / np.diff(self.times)[:, None]).max(axis=0)
         return result
 
-    def load(self, t: ArrayLike) -> Array:
-        """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space."""
-        return self._between(self.course.loads, t)
+    def deciding(self, start: GraspState, end: GraspState) -> Array:
+        """(K, n, w) all instants."""
+        return self.forces
 
-    def retimed(self, scaling: TimeScaling) -> Transition:
-        """Refused: the load is tied to the clock."""
-        raise InvalidInput("a path planned through instants keeps its times; plan it with another duration")
+    def reversed(self) -> "SampledPath":
+        """The same, run backwards."""
+        return SampledPath(self.times[-1] - self.times[::-1], self.forces[::-1], self.loads[::-1])
 
-    def _deciding_forces(self) -> Array:
-        return self.course.forces
-
-    def _load_in_words(self) -> str:
+    def load_in_words(self, start: GraspState, end: GraspState) -> str:
+        """Under what load it leads."""
         if not self.load_varies:
-            return repr(self.start.load)
-        return f"a load that goes from {self.start.load!r} to {self.end.load!r}"
+            return repr(start.load)
+        return f"a load that goes from {start.load!r} to {end.load!r}"
 
-    def _path_in_words(self) -> list[str]:
-        record = self.record
-        kept = (
-            [f"rates below {', '.join(f'{r:.4g}' for r in record.rate_limits)}"] if record.rate_limits else []
-        )
-        return [
-            f"path of {self.course.times.size} instants for {record.path_objective} by {record.path}",
-            *kept,
-        ]
+    def in_words(self, start: GraspState, end: GraspState, by: str, objective: str | None) -> list[str]:
+        """How many instants, what for and by whom."""
+        return [f"path of {self.times.size} instants for {objective} by {by}"]
 
-    def _reversed(self, **changes: Any) -> "SampledTransition":
-        return replace(self, course=self.course.reversed(), **changes)
-
-    def _between(self, values: Array, t: ArrayLike) -> Array:
-        k, part = self._place(t)
+    def _between(self, values: Array, u: Array) -> Array:
+        k, part = self._place(u)
         part = part.reshape(*part.shape, *[1] * (values.ndim - 1))
         result: Array = values[k] * (1 - part) + values[k + 1] * part
         return result
 
-    def _place(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
+    def _place(self, u: Array) -> tuple[NDArray[np.intp], Array]:
         """The stretch each time lies on and how far along it, from 0 to 1."""
-        self.scaling(t)  # checks the times
-        course = self.course.times
-        times = np.minimum(np.asarray(t, dtype=float), course[-1])
-        k = np.clip(np.searchsorted(course, times, side="right") - 1, 0, course.size - 2)
-        return k, (times - course[k]) / (course[k + 1] - course[k])
+        times = np.minimum(u, self.times[-1])
+        k = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, self.times.size - 2)
+        return k, (times - self.times[k]) / (self.times[k + 1] - self.times[k])

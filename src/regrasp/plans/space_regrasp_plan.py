@@ -10,7 +10,6 @@ from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
-from regrasp.plans.turning import TurningTransition
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,8 +36,7 @@ class SpaceRegraspPlan(RegraspPlan):
         for step in range(len(self.steps)):
             here = k == step
             plan, before = self.steps[step], self.rotations[step]
-            turned = plan.rotations(local[here]) if isinstance(plan, TurningTransition) else np.eye(3)
-            result[here] = before @ turned
+            result[here] = before @ plan.rotations(local[here])
         return result
 
     def reversed(self) -> "SpaceRegraspPlan":

@@ -1,13 +1,13 @@
 """A transition between two equilibria: Eq. 1-3 as a value."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import degrees
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.closed_form.straight_path import straight_path
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number
@@ -15,127 +15,98 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
-from regrasp.plans.course import Course
+from regrasp.plans.path import Path
+from regrasp.plans.record import Record
+from regrasp.plans.sampled import SampledPath
+from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.turn import Turn
+from regrasp.plans.turning import TurningPath
 
 if TYPE_CHECKING:
     import pandas
 
 
-_BACKWARDS: dict[str, Any] = {
-    "removal": "addition",
-    "addition": "removal",
-    "rotation": "rotation",
-    "exchange": "exchange",
-}
-
-
-# Whether a kind names the finger of ``contact``, and that of ``arrival``.
-_FINGERS = {
-    "removal": (True, False),
-    "addition": (True, False),
-    "rotation": (False, False),
-    "exchange": (True, True),
-}
-
-
-@dataclass(frozen=True)
-class Choice:
-    """How one end of a plan was chosen.
-
-    end: which one. objective: what for. method: ``closed-form`` or the back end.
-    force_limits: one per contact in use [N], those set by ``peak_ratio`` included; infinite for none.
-    """
-
-    end: Literal["start", "end"]
-    objective: str
-    method: str
-    force_limits: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Record:
-    """What a plan decided by itself.
-
-    reserve: fraction of every friction coefficient kept back. choices: the ends that were not given.
-    balancing: largest change of a given force to reach exact equilibrium [N].
-    path: ``closed-form`` for Eq. 1-3, or the back end that planned the instants; path_objective: what for.
-    rate_limits [N/s] of a path through instants, least_normals [N]: one for each contact; empty for none.
-    """
-
-    reserve: float
-    choices: tuple[Choice, ...] = ()
-    balancing: float = 0.0
-    path: str = "closed-form"
-    path_objective: str | None = None
-    rate_limits: tuple[float, ...] = ()
-    least_normals: tuple[float, ...] = ()
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Transition(ArrayValue, Pictured):
-    """Finger forces that carry a grasp from one equilibrium to another while one finger leaves or arrives.
+    """Finger forces that carry a grasp from one equilibrium to another while fingers leave or arrive.
 
         f(t) = f_end + (f_start - f_end) T(t)
 
     With fixed contacts and load the equilibrium forces inside the cones are a convex set, so both ends
     being in it proves every instant (fact 1); ``regrasp.verify`` checks them in exact arithmetic.
 
-    A path that is not straight is a ``SampledTransition``, which answers the same questions.
-
-    kind: ``removal``, ``addition``, ``rotation`` or ``exchange``. contact: the finger that leaves or arrives,
-    idle at that end; of an exchange the one that leaves; None for a rotation. arrival: of an exchange, the
-    finger that arrives.
-    start, end: states of one grasp, every contact in play, under one load. course: None.
+    start, end: states of one grasp, every contact in play.
+    leaving: names of the fingers that carry no force at the end. arriving: of those that carry none at the
+    start. Neither: the object turns in its hold, or only the forces change.
+    path: what lies between the ends: a ``StraightPath``, a ``SampledPath`` through instants, or a
+    ``TurningPath`` of the object.
     """
 
-    kind: Literal["removal", "addition", "rotation", "exchange"]
-    contact: str | None
     start: GraspState
     end: GraspState
     scaling: TimeScaling
     record: Record
-    course: Course | None = field(default=None, kw_only=True)
-    arrival: str | None = field(default=None, kw_only=True)
-    turn: Turn | None = field(default=None, kw_only=True)
+    leaving: tuple[str, ...] = ()
+    arriving: tuple[str, ...] = ()
+    path: Path = STRAIGHT
 
     _drawn_by = "regrasp.plots.pages.overview:transition_png"
 
     def __post_init__(self) -> None:
         if self.start.grasp != self.end.grasp:
             raise InvalidInput("both ends of a transition must have the same grasp")
-        wanted = _FINGERS.get(self.kind)
-        if wanted is None:
-            raise InvalidInput(f"kind must be one of {', '.join(_FINGERS)}, got {self.kind!r}")
-        if wanted != (self.contact is not None, self.arrival is not None):
-            article = "an" if self.kind[0] in "ae" else "a"
+        for label, names in (("leaving", self.leaving), ("arriving", self.arriving)):
+            if not isinstance(names, tuple) or len(set(names)) != len(names):
+                raise InvalidInput(f"{label} must be a tuple of different contact names, got {names!r}")
+            for name in names:
+                self.grasp.index(name)
+        both = [name for name in self.leaving if name in self.arriving]
+        if both:
+            raise InvalidInput(f"a finger leaves or arrives, not both: {', '.join(both)}")
+        if not isinstance(self.path, Path):
             raise InvalidInput(
-                f"{article} {self.kind} names the wrong fingers: {self.contact!r} and {self.arrival!r}"
+                f"path must be a StraightPath, a SampledPath or a TurningPath, got {self.path!r}"
             )
-        if self.contact is not None:
-            self.grasp.index(self.contact)
-        if self.arrival is not None:
-            self.grasp.index(self.arrival)
-        self._check()
+        self.path.check(self.start, self.end, self.scaling)
+
+    @property
+    def kind(self) -> str:
+        """``removal``, ``addition``, ``exchange``, ``rotation`` (of the object alone) or ``hold``."""
+        if self.leaving:
+            return "exchange" if self.arriving else "removal"
+        if self.arriving:
+            return "addition"
+        return "rotation" if self.turn is not None else "hold"
+
+    @property
+    def contact(self) -> str | None:
+        """The finger that leaves, the first of several; the one that arrives where none leaves; or None."""
+        return next(iter((*self.leaving, *self.arriving)), None)
+
+    @property
+    def arrival(self) -> str | None:
+        """Of an exchange, the finger that arrives, the first of several; or None."""
+        return self.arriving[0] if self.leaving and self.arriving else None
+
+    @property
+    def course(self) -> SampledPath | None:
+        """The path through instants, if it is one."""
+        return self.path if isinstance(self.path, SampledPath) else None
+
+    @property
+    def turn(self) -> TurningPath | None:
+        """The turn of the object, if it turns."""
+        return self.path if isinstance(self.path, TurningPath) else None
 
     @property
     def idle_at_start(self) -> tuple[str, ...]:
-        """Names of the fingers that carry no force at the start: the one that arrives."""
-        name = {"addition": self.contact, "exchange": self.arrival}.get(self.kind)
-        return () if name is None else (name,)
+        """Names of the fingers that carry no force at the start: those that arrive."""
+        return self.arriving
 
     @property
     def idle_at_end(self) -> tuple[str, ...]:
-        """Names of the fingers that carry no force at the end: the one that leaves."""
-        name = self.contact if self.kind in ("removal", "exchange") else None
-        return () if name is None else (name,)
-
-    def _check(self) -> None:
-        if self.start.load != self.end.load:
-            raise InvalidInput("both ends of a straight path must have the same load")
-        if self.course is not None or self.turn is not None:
-            raise InvalidInput("a straight path has no course and no turn; those are of other transitions")
+        """Names of the fingers that carry no force at the end: those that leave."""
+        return self.leaving
 
     @property
     def grasp(self) -> Grasp:
@@ -147,45 +118,69 @@ class Transition(ArrayValue, Pictured):
         """[s]."""
         return self.scaling.duration
 
+    def _place(self, t: ArrayLike) -> Array:
+        """The path's parameter at times in [0, duration] [s]."""
+        clock = self.scaling(t)  # checks the times
+        return np.asarray(t, dtype=float) if self.path.timed else clock
+
     def forces(self, t: ArrayLike) -> Array:
-        """Finger forces (n, d) at a time, (m, n, d) at m times [N]; times in [0, duration] [s]."""
-        return straight_path(self.start.forces, self.end.forces, self.scaling(t))
+        """Finger forces (n, d) at a time, (m, n, d) at m times in [0, duration] [s]; object frame [N]."""
+        return self.path.forces_at(self.start, self.end, self._place(t))
 
     def wrenches(self, t: ArrayLike) -> Array:
-        """Finger wrenches (n, 3) or (m, n, 3), Eq. 1-3 [N, N m]; (…, 6) in space."""
-        return straight_path(self.start.wrenches, self.end.wrenches, self.scaling(t))
+        """Finger wrenches (n, 3) or (m, n, 3), object frame, Eq. 1-3 [N, N m]; (…, 6) in space."""
+        return self.path.wrenches_at(self.start, self.end, self._place(t))
 
     def rates(self, t: ArrayLike) -> Array:
-        """Force rates f'(t) = (f_start - f_end) T'(t), (n, d) or (m, n, d) [N/s]."""
-        slope = self.scaling.velocity(t)
-        result: Array = slope[..., None, None] * (self.start.forces - self.end.forces)
-        return result
+        """Force rates f'(t), (n, d) or (m, n, d) [N/s]; at an instant of a path that of the stretch after."""
+        rates = self.path.rates_at(self.start, self.end, self._place(t))
+        return rates if self.path.timed else self.scaling.velocity(t)[..., None, None] * rates
 
     @property
     def load_varies(self) -> bool:
-        """Whether the load is not the same at every instant."""
-        return False
+        """Whether the load, seen from the object, is not the same at every instant."""
+        return self.path.load_varies
 
     @property
     def steepest(self) -> Array:
-        """(n,) the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
-        moved: Array = np.linalg.norm(self._change, axis=1)
-        return self.scaling.steepest * moved
+        """(n,) at least the fastest change of each force over the whole path, max |f_i'(t)| [N/s]."""
+        return self._steepest if self.path.timed else self.scaling.steepest * self._steepest
+
+    @cached_property
+    def _steepest(self) -> Array:
+        return self.path.steepest(self.start, self.end)
+
+    @cached_property
+    def peaks(self) -> Array:
+        """(n,) the largest |f_i| of each finger on the way, exact [N]; of soft ones |(f, mu m / torsion)|."""
+        return self.path.peaks(self.start, self.end)
 
     @property
-    def _change(self) -> Array:
-        """(n, d) from the end to the start, forces alone [N]."""
-        change: Array = (self.start.forces - self.end.forces)[:, : self.grasp.dimension]
-        return change
+    def peak(self) -> float:
+        """The largest |f_i| of all fingers on the way, exact [N]."""
+        return float(self.peaks.max())
+
+    @property
+    def friction_needed(self) -> float:
+        """The least coefficient of all contacts under which the forces, as they are, stay in their cones [-].
+
+        |f_t| / f_n at its highest over the whole way; of soft fingers |f_t| / sqrt(f_n^2 - (m / torsion)^2).
+        """
+        return float(self.path.friction_needed(self.start, self.end).max())
 
     def load(self, t: ArrayLike) -> Array:
-        """The load (3,) or (m, 3) in the object frame, constant here [N, N m]; (…, 6) in space."""
-        times = self.scaling(t)  # checks the times
-        return np.broadcast_to(self.start.load.vector, (*times.shape, self.start.load.vector.size))
+        """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space."""
+        return self.path.load_at(self.start, self._place(t))
 
     def orientation(self, t: ArrayLike) -> Array:
-        """The object's angle from the start [rad], counter-clockwise; zero here."""
-        return np.zeros_like(self.scaling(t))
+        """The object's angle from the start [rad], counter-clockwise or about the axis; of the shape of t."""
+        return self.path.orientation_at(self._place(t))
+
+    def rotations(self, t: ArrayLike) -> Array:
+        """(3, 3) or (m, 3, 3) matrices from the object's frame to its frame at the start; in space."""
+        if self.grasp.dimension == 2:
+            raise InvalidInput("an object in the plane turns by an angle; ask for orientation(t)")
+        return self.path.rotations_at(self._place(t))
 
     def margins(self, t: ArrayLike) -> Margins:
         """Margins of every contact, (n,) or (m, n); NaN where a contact carries no force."""
@@ -202,27 +197,30 @@ class Transition(ArrayValue, Pictured):
 
     def reversed(self) -> "Transition":
         """The same path run backwards: a removal becomes an addition."""
-        choices = tuple(replace(c, end="end" if c.end == "start" else "start") for c in self.record.choices)
-        return self._reversed(
-            kind=_BACKWARDS[self.kind],
-            contact=self.contact if self.arrival is None else self.arrival,
-            arrival=None if self.arrival is None else self.contact,
-            start=self.end,
-            end=self.start,
-            scaling=self.scaling.reversed(),
-            record=replace(self.record, choices=choices),
+        return Transition(
+            self.end,
+            self.start,
+            self.scaling.reversed(),
+            self.record.reversed(),
+            leaving=self.arriving,
+            arriving=self.leaving,
+            path=self.path.reversed(),
         )
 
-    def _reversed(self, **changes: Any) -> "Transition":
-        return replace(self, **changes)
-
     def retimed(self, scaling: TimeScaling) -> "Transition":
-        """The same path under another time function."""
+        """The same path under another time function; refused where the load is tied to the clock."""
+        if self.path.timed:
+            raise InvalidInput(
+                "a path planned through instants keeps its times; plan it with another duration"
+            )
         return replace(self, scaling=scaling)
 
     def fastest(self, rate_limit: ArrayLike) -> "Transition":
-        """The same path and shape in the least time with |f_i'(t)| <= rate_limit, a number or (n,) [N/s]."""
-        return self.retimed(TimeScaling.fastest(self._change, rate_limit, self.scaling))
+        """The same path and shape in the least time with |f_i'(t)| <= rate_limit, a number or (n,) [N/s].
+
+        Of a turn to the bound that ``steepest`` is.
+        """
+        return self.retimed(TimeScaling.fastest(self._steepest[:, None], rate_limit, self.scaling))
 
     def to_dataframe(self, rate: float = 1000.0) -> "pandas.DataFrame":
         """Set-points as a table: index t [s], a column ``<name>_fx`` ... per contact and axis [N]."""
@@ -236,23 +234,21 @@ class Transition(ArrayValue, Pictured):
             self.forces(t).reshape(t.size, -1), index=pandas.Index(t, name="t"), columns=columns
         )
 
+    @property
+    def in_words(self) -> str:
+        """What happens: ``removal of P3``, ``exchange of P1 for P4``, ``rotation``."""
+        who = ", ".join(self.leaving or self.arriving)
+        for_whom = f" for {', '.join(self.arriving)}" if self.leaving and self.arriving else ""
+        return f"{self.kind} of {who}{for_whom}" if who else self.kind
+
     def __str__(self) -> str:
+        record = self.record
         lines = [
-            f"{self._kind_in_words()} in {self.duration:g} s under {self._load_in_words()}",
+            f"{self.in_words} in {self.duration:g} s under {self.path.load_in_words(self.start, self.end)}",
             f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
+            *self._rows(),
         ]
-        cones, forces = self.grasp.cones, self._deciding_forces()
-        angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
-        largest = max(self.start.magnitudes.max(), self.end.magnitudes.max())
-        form = "10.4f" if 0.1 <= largest < 1e5 or largest == 0 else "11.3e"  # any units, readable in newtons
-        for i, name in enumerate(self.grasp.names):
-            start, end = (
-                " ".join(format(x + 0.0, form) for x in s.forces[i]) for s in (self.start, self.end)
-            )
-            margin = np.fmin.reduce(angles[:, i])
-            shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
-            lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
-        for c in self.record.choices:
+        for c in record.choices:
             limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
             lines.append(f"{c.end} chosen for {c.objective} by {c.method}, force limits {limits}")
         for label, idle in (("start", self.idle_at_start), ("end", self.idle_at_end)):
@@ -260,27 +256,30 @@ class Transition(ArrayValue, Pictured):
             free = self.grasp.subset(held).freedom
             if free is not None:
                 lines.append(f"at the {label} no force of {', '.join(held)} resists {free}")
-        lines += self._path_in_words()
-        if self.record.balancing:
-            lines.append(f"given forces were balanced; largest change {self.record.balancing:.2g}")
+        lines += self.path.in_words(self.start, self.end, record.path, record.path_objective)
+        if record.rate_limits:
+            lines.append(f"rates below {', '.join(f'{r:.4g}' for r in record.rate_limits)}")
+        if record.balancing:
+            lines.append(f"given forces were balanced; largest change {record.balancing:.2g}")
         return "\n".join(lines)
 
     __repr__ = __str__
 
-    def _deciding_forces(self) -> Array:
-        """(m, n, d) forces whose least margins are those of the whole path: of a straight one both ends'."""
-        return np.stack([self.start.forces, self.end.forces])
-
-    def _kind_in_words(self) -> str:
-        if self.kind == "rotation":
-            return self.kind
-        return f"{self.kind} of {self.contact}" + (f" for {self.arrival}" if self.arrival else "")
-
-    def _load_in_words(self) -> str:
-        return repr(self.start.load)
-
-    def _path_in_words(self) -> list[str]:
-        return []
+    def _rows(self) -> list[str]:
+        """A line for each contact: its forces at both ends and its least margin on the way."""
+        cones, forces = self.grasp.cones, self.path.deciding(self.start, self.end)
+        angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
+        largest = max(self.start.magnitudes.max(), self.end.magnitudes.max())
+        form = "10.4f" if 0.1 <= largest < 1e5 or largest == 0 else "11.3e"  # any units, readable in newtons
+        lines = []
+        for i, name in enumerate(self.grasp.names):
+            start, end = (
+                " ".join(format(x + 0.0, form) for x in s.forces[i]) for s in (self.start, self.end)
+            )
+            margin = np.fmin.reduce(angles[:, i])
+            shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
+            lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
+        return lines
 
 
 def setpoint_columns(grasp: Grasp) -> list[str]:

@@ -1,13 +1,13 @@
-"""A transition while the object turns: closed-form pieces between states at chosen angles."""
+"""A path while the object turns: closed-form pieces between states at chosen angles."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any
+from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from regrasp.closed_form.arc_friction import arc_friction_angles, arc_in_waves
 from regrasp.closed_form.turning_path import (
     arc_path,
     arc_peaks,
@@ -17,61 +17,92 @@ from regrasp.closed_form.turning_path import (
     turning_slope,
 )
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
-from regrasp.mechanics.orientation.rotations import rotation_matrix
+from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
 from regrasp.mechanics.rotated_loads import still_part
-from regrasp.mechanics.value import numbers
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue, numbers
+from regrasp.plans.path import Path, needed_by
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Transition
-from regrasp.plans.turn import Turn
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class TurningTransition(Transition):
-    """Finger forces, in the object frame, while the object turns under a load that stays in the world.
+@dataclass(frozen=True, eq=False)
+class TurningPath(ArrayValue, Path):
+    """Forces, in the object frame, while the object turns under a load that stays in the world.
 
-    Between the angles of ``turn`` the forces are a f_k + b f_k+1 with a, b >= 0, or with a middle state where
-    a part of the load does not turn (docs/facts.md, 6), which keeps equilibrium and cones exactly. The
-    object's angle is turn.angle (1 - T(t)), about the centre of mass and in space about ``turn.axis``.
+    Between the angles they are a f_k + b f_k+1 with a, b >= 0, or with a middle state where a part of the
+    load does not turn (docs/facts.md, 6), which keeps equilibrium and cones exactly. The object's angle is
+    angle (1 - T(t)), about the centre of mass and in space about ``axis``.
+
+    angles: (K,) of the object [rad], from 0 to the whole turn, each step below pi; counter-clockwise in the
+    plane, right-handed about ``axis`` in space.
+    forces: (K, n, w) in equilibrium at these angles, in the object frame [N].
+    axis: (3,) unit, through the centre of mass, in space; None in the plane.
+    middles: (K - 1, n, w) [N] under the load where the tangents of its arc at two angles meet; None where all
+    of the load turns and the states at the angles are enough.
     """
 
-    turn: Turn = field(kw_only=True)
+    angles: Array
+    forces: Array
+    axis: Array | None = None
+    middles: Array | None = None
 
-    def _check(self) -> None:
-        if self.turn.forces.shape[1:] != self.start.forces.shape:
-            n, d = self.start.forces.shape
+    def __init__(
+        self,
+        angles: ArrayLike,
+        forces: ArrayLike,
+        axis: ArrayLike | None = None,
+        middles: ArrayLike | None = None,
+    ) -> None:
+        turned = array(angles, "angles of a turn", (None,))
+        steps = np.diff(turned)
+        one_way = bool((steps > 0).all() or (steps < 0).all())
+        if turned.size < 2 or turned[0] != 0 or not one_way or abs(steps).max() >= pi:
+            raise InvalidInput(f"angles of a turn must go one way from 0 in steps below pi, got {angles!r}")
+        held = array(forces, "forces of a turn", (turned.size, None, None))
+        between = None if middles is None else (turned.size - 1, *held.shape[1:])
+        object.__setattr__(self, "angles", turned)
+        object.__setattr__(self, "forces", held)
+        object.__setattr__(self, "axis", None if axis is None else unit_axis(axis))
+        object.__setattr__(
+            self,
+            "middles",
+            None if between is None else array(middles, "middles of a turn", between),  # type: ignore[arg-type]
+        )
+
+    @property
+    def angle(self) -> float:
+        """The whole turn [rad]."""
+        return float(self.angles[-1])
+
+    def check(self, start: GraspState, end: GraspState, scaling: TimeScaling) -> None:
+        """Raise ``InvalidInput`` for forces of another shape, or middles that are missing."""
+        if self.forces.shape[1:] != start.forces.shape:
+            n, d = start.forces.shape
             raise InvalidInput(f"forces of a turn must have shape (K, {n}, {d})")
-        still = still_part(self.start.load, self.turn.axis)
-        if still is not None and self.turn.middles is None:
+        still = still_part(start.load, self.axis)
+        if still is not None and self.middles is None:
             raise InvalidInput(
                 f"a part of the load, {still!r}, does not turn: middles are needed, states between angles"
             )
 
-    def orientation(self, t: ArrayLike) -> Array:
-        """The object's angle from the start [rad], counter-clockwise or about the axis; of the shape of t."""
-        result: Array = self.turn.angle * (1 - self.scaling(t))
-        return result
+    def forces_at(self, start: GraspState, end: GraspState, u: Array) -> Array:
+        """Finger forces (..., n, w), object frame [N]."""
+        return self._along(turning_path, arc_path, u)
 
-    def rotations(self, t: ArrayLike) -> Array:
-        """(3, 3) or (m, 3, 3) matrices from the turned object's frame to its frame at the start; in space."""
-        axis = self.turn.axis
-        if axis is None:
-            raise InvalidInput("an object in the plane turns by an angle; ask for orientation(t)")
-        theta = self.orientation(t)
-        matrices = [rotation_matrix(axis, angle) for angle in theta.ravel().tolist()]
-        return np.reshape(matrices, (*theta.shape, 3, 3))
+    def rates_at(self, start: GraspState, end: GraspState, u: Array) -> Array:
+        """(..., n, w) the change of the forces by u [N]."""
+        return -self.angle * self._along(turning_slope, arc_slope, u)
 
-    def forces(self, t: ArrayLike) -> Array:
-        """Finger forces in the object frame, (n, 2) at a time, (m, n, 2) at m times [N]."""
-        return self._along(turning_path, arc_path, t)
+    @property
+    def load_varies(self) -> bool:
+        """Whether the load is not the same at every instant: it turns."""
+        return True
 
-    def wrenches(self, t: ArrayLike) -> Array:
-        """Finger wrenches (n, 3) or (m, n, 3), object frame [N, N m]; (…, 6) in space."""
-        return self.grasp.wrenches(self.forces(t))
-
-    def load(self, t: ArrayLike) -> Array:
-        """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space."""
-        load, axis, theta = self.start.load, self.turn.axis, self.orientation(t)
+    def load_at(self, start: GraspState, u: Array) -> Array:
+        """The load (..., 3) or (..., 6), object frame [N, N m]."""
+        load, axis, theta = start.load, self.axis, self.orientation_at(u)
         c, s = np.cos(theta)[..., None], np.sin(theta)[..., None]
         if axis is None:
             fx, fy = load.force
@@ -83,50 +114,74 @@ class TurningTransition(Transition):
             parts.append(still + c * (vector - still) - s * np.cross(axis, vector))
         return np.concatenate(parts, axis=-1)
 
-    def rates(self, t: ArrayLike) -> Array:
-        """Force rates in the object frame, (n, 2) or (m, n, 2) [N/s]."""
-        speed = -self.turn.angle * self.scaling.velocity(t)
-        result: Array = speed[..., None, None] * self._along(turning_slope, arc_slope, t)
+    def orientation_at(self, u: Array) -> Array:
+        """The object's angle from the start (...) [rad], counter-clockwise or about the axis."""
+        result: Array = self.angle * (1 - u)
         return result
 
-    @property
-    def load_varies(self) -> bool:
-        """Whether the load is not the same at every instant: it turns."""
-        return True
+    def rotations_at(self, u: Array) -> Array:
+        """(..., 3, 3) from the turned object's frame to its frame at the start; in space."""
+        if self.axis is None:
+            raise InvalidInput("an object in the plane turns by an angle; ask for orientation(t)")
+        theta = self.orientation_at(u)
+        matrices = [rotation_matrix(self.axis, angle) for angle in theta.ravel().tolist()]
+        return np.reshape(matrices, (*theta.shape, 3, 3))
 
-    @property
-    def peak(self) -> float:
-        """The largest |f_i| on the way, exact [N]; of soft fingers |(f, mu m / torsion)|.
+    def steepest(self, start: GraspState, end: GraspState) -> Array:
+        """(n,) at least the fastest change of each force by u [N]."""
+        result: Array = self._extremes(start)[:, :, 1].max(axis=0) * abs(self.angle)
+        return result
 
-        At most 1 / cos(step / 2) times that of ``turn.forces``; with middles at most the largest of all.
+    def deciding(self, start: GraspState, end: GraspState) -> Array:
+        """(m, n, w) the states at the angles, and those between."""
+        return self.forces if self.middles is None else np.concatenate([self.forces, self.middles])
+
+    def peaks(self, start: GraspState, end: GraspState) -> Array:
+        """(n,) the largest |f_i| of each finger on the way, exact [N].
+
+        At most 1 / cos(step / 2) times that of ``forces``; with middles at most the largest of all.
         """
-        return float(self.peaks.max())
+        largest: Array = self._extremes(start)[:, :, 0].max(axis=0)
+        return largest
 
-    @property
-    def peaks(self) -> Array:
-        """(n,) the largest |f_i| of each finger on the way, exact [N]."""
-        result: Array = self._peaks[:, :, 0].max(axis=0)
-        return result
+    def friction_needed(self, start: GraspState, end: GraspState) -> Array:
+        """(n,) the least coefficient of each finger that keeps its forces on the path inside its cone [-]."""
+        if self.middles is None:  # the forces between are sums of those at the angles
+            return super().friction_needed(start, end)
+        states = [self.forces]
+        for k, step in enumerate(np.diff(self.angles).tolist()):
+            ends = self.forces[k], self.middles[k], self.forces[k + 1]
+            x = _most_friction(start.grasp, *arc_in_waves(*ends, step))
+            inside = np.clip(x, -abs(step) / 2, abs(step) / 2)
+            states.append(arc_path(*ends, step, inside + step / 2))
+        return needed_by(start.grasp, np.concatenate(states))
 
-    @property
-    def steepest(self) -> Array:
-        """(n,) at least the fastest change of each force, max |df/dtheta| max |theta'(t)| [N/s]."""
-        result: Array = self._peaks[:, :, 1].max(axis=0) * abs(self.turn.angle) * self.scaling.steepest
-        return result
+    def reversed(self) -> "TurningPath":
+        """The same, run backwards, counted from its own start."""
+        middles = None if self.middles is None else self.middles[::-1]
+        return TurningPath(self.angles[::-1] - self.angles[-1], self.forces[::-1], self.axis, middles)
 
-    @cached_property
-    def _peaks(self) -> Array:
+    def load_in_words(self, start: GraspState, end: GraspState) -> str:
+        """Under what load it leads."""
+        about = "" if self.axis is None else f" about {numbers(self.axis)}"
+        return f"{start.load!r}, turning the object by {np.degrees(self.angle):.6g} deg{about}"
+
+    def in_words(self, start: GraspState, end: GraspState, by: str, objective: str | None) -> list[str]:
+        """How many pieces, and the largest force."""
+        peak = float(self.peaks(start, end).max())
+        return [f"{self.angles.size - 1} pieces in closed form, largest force {peak:.4g}"]
+
+    def _extremes(self, start: GraspState) -> Array:
         """(K - 1, n, 2) the largest |f_i| [N] and |df_i/dtheta| [N/rad] of each piece."""
-        cones, middles = self.grasp.cones, self.turn.middles
-        measured = cones.measured(self.turn.forces)
+        cones, middles = start.grasp.cones, self.middles
+        measured = cones.measured(self.forces)
         f, g = measured[:-1], measured[1:]
+        steps = np.diff(self.angles).tolist()
         if middles is not None:
-            between = cones.measured(middles)
-            pieces = zip(f, between, g, np.diff(self.turn.angles).tolist(), strict=True)
+            pieces = zip(f, cones.measured(middles), g, steps, strict=True)
             return np.array(
                 [[arc_peaks(*force, step) for force in zip(a, c, b, strict=True)] for a, c, b, step in pieces]
             )
-        steps = np.diff(self.turn.angles).tolist()
         return np.array(
             [
                 [turning_peaks(a, b, step) for a, b in zip(*piece, strict=True)]
@@ -134,41 +189,29 @@ class TurningTransition(Transition):
             ]
         )
 
-    def fastest(self, rate_limit: ArrayLike) -> Transition:
-        """The same turn and shape in the least time with |f_i'(t)| <= rate_limit, to a bound [N/s].
-
-        rate_limit: a number or (n,). The bound is that of ``steepest``.
-        """
-        change = (self.steepest / self.scaling.steepest)[:, None]
-        return self.retimed(TimeScaling.fastest(change, rate_limit, self.scaling))
-
-    def _along(self, path: Callable[..., Array], arc: Callable[..., Array], t: ArrayLike) -> Array:
-        """The closed form of one piece, without or with a middle state, at times on all pieces."""
-        theta, turn = self.orientation(t), self.turn
-        flat, sign = theta.ravel(), float(np.sign(turn.angle))
-        piece = np.searchsorted(sign * turn.angles, sign * flat, side="right") - 1
-        piece = np.clip(piece, 0, turn.angles.size - 2)
-        result = np.empty((flat.size, *self.start.forces.shape))
+    def _along(self, path: Callable[..., Array], arc: Callable[..., Array], u: Array) -> Array:
+        """The closed form of one piece, without or with a middle state, at u on all pieces."""
+        theta = self.orientation_at(u)
+        flat, sign = theta.ravel(), float(np.sign(self.angle))
+        piece = np.searchsorted(sign * self.angles, sign * flat, side="right") - 1
+        piece = np.clip(piece, 0, self.angles.size - 2)
+        shape = self.forces.shape[1:]
+        result = np.empty((flat.size, *shape))
         for k in np.unique(piece):
             here = piece == k
-            step = float(turn.angles[k + 1] - turn.angles[k])
-            ends, at = (turn.forces[k], turn.forces[k + 1]), flat[here] - turn.angles[k]
-            if turn.middles is None:
+            step = float(self.angles[k + 1] - self.angles[k])
+            ends, at = (self.forces[k], self.forces[k + 1]), flat[here] - self.angles[k]
+            if self.middles is None:
                 result[here] = path(*ends, step, at)
             else:
-                result[here] = arc(ends[0], turn.middles[k], ends[1], step, at)
-        return result.reshape(*theta.shape, *self.start.forces.shape)
+                result[here] = arc(ends[0], self.middles[k], ends[1], step, at)
+        return result.reshape(*theta.shape, *shape)
 
-    def _deciding_forces(self) -> Array:
-        turn = self.turn
-        return turn.forces if turn.middles is None else np.concatenate([turn.forces, turn.middles])
 
-    def _load_in_words(self) -> str:
-        about = "" if self.turn.axis is None else f" about {numbers(self.turn.axis)}"
-        return f"{self.start.load!r}, turning the object by {np.degrees(self.turn.angle):.6g} deg{about}"
-
-    def _path_in_words(self) -> list[str]:
-        return [f"{self.turn.angles.size - 1} pieces in closed form, largest force {self.peak:.4g}"]
-
-    def _reversed(self, **changes: Any) -> "TurningTransition":
-        return replace(self, turn=self.turn.reversed(), **changes)
+def _most_friction(grasp: Grasp, u: Array, v: Array, w: Array) -> Array:
+    """Where on an arc any finger may need the most friction: x (m,)."""
+    found = [
+        arc_friction_angles(u[i], v[i], w[i], contact.normal, contact.torsion)
+        for i, contact in enumerate(grasp)
+    ]
+    return np.concatenate(found)

@@ -30,7 +30,7 @@ def check_load(
         loads = np.stack([plan.start.load.vector, plan.end.load.vector])
     else:
         times, forces, loads = plan.course.times, plan.course.forces, plan.course.loads
-    grasp, name = plan.start.grasp, plan.contact
+    grasp, moving = plan.start.grasp, (*plan.leaving, *plan.arriving)
     if grasp.is_soft:
         raise InvalidInput("a load function is checked for point contacts; a finger of these is soft")
     length = grasp.size or 1.0
@@ -51,7 +51,7 @@ def check_load(
                 f"differs from the plan's by {measured:.3g}, more than {gap:.3g}"
             )
             return measured, False, [broken]
-    stays = [i for i, known in enumerate(grasp.names) if known != name]
+    stays = [i for i, known in enumerate(grasp.names) if known not in moving]
     room = _room(plan, forces[:, stays], stays)
     d = grasp.dimension
     matrix = grasp.matrix.reshape(-1, len(grasp), d)[:, stays].reshape(grasp.matrix.shape[0], -1).copy()

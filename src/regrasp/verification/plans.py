@@ -45,7 +45,7 @@ def verify(
         if load is not None:
             raise InvalidInput("a regrasp holds the load it was planned for; leave load out")
         return _verify_regrasp(cast(Regrasp, plan))
-    if not all(hasattr(plan, name) for name in ("kind", "start", "end", "scaling", "record")):
+    if not all(hasattr(plan, name) for name in ("start", "end", "scaling", "record", "leaving", "arriving")):
         raise InvalidInput(f"verify needs a plan, got {plan!r}")
     if load is not None and not callable(load):
         raise InvalidInput(f"load must be the function of time the plan was made for, got {load!r}")
@@ -159,16 +159,9 @@ def _check_scaling(scaling: Scaling) -> list[str]:
 
 
 def _check_idle(plan: Plan) -> list[str]:
-    ends = {
-        "removal": ((), (plan.contact,)),
-        "addition": ((plan.contact,), ()),
-        "rotation": ((), ()),
-        "exchange": ((plan.arrival,), (plan.contact,)),
-    }
-    if plan.kind not in ends:
-        return [f"kind {plan.kind!r} is none of {', '.join(ends)}"]
-    broken = []
-    for label, state, idle in zip(("start", "end"), (plan.start, plan.end), ends[plan.kind], strict=True):
+    broken = [f"contact {name!r} leaves and arrives" for name in plan.leaving if name in plan.arriving]
+    ends = (("start", plan.start, plan.arriving), ("end", plan.end, plan.leaving))
+    for label, state, idle in ends:
         for name in idle:
             if name not in state.grasp.names:
                 broken.append(f"contact {name!r} is not one of {', '.join(state.grasp.names)}")

@@ -70,16 +70,12 @@ class Plan(Protocol):
     """What ``verify`` needs to know of a transition."""
 
     @property
-    def kind(self) -> str:
-        """``removal``, ``addition``, ``rotation`` or ``exchange``."""
+    def leaving(self) -> tuple[str, ...]:
+        """Names of the fingers that leave: they carry no force at the end."""
 
     @property
-    def contact(self) -> str | None:
-        """Name of the finger that leaves or arrives; the one that leaves in an exchange."""
-
-    @property
-    def arrival(self) -> str | None:
-        """Name of the finger that arrives in an exchange."""
+    def arriving(self) -> tuple[str, ...]:
+        """Names of the fingers that arrive: they carry none at the start."""
 
     @property
     def turn(self) -> "Turn | None":

@@ -232,7 +232,7 @@ def test_straight_where_straight_is_enough():
     assert quickest.record.path == "closed-form"
     assert quickest.steepest.max() == pytest.approx(7.0)
     bent = rg.plan_removal(STATE, "P3", duration=1.0, rate_limit=5.0)
-    assert type(bent) is rg.SampledTransition
+    assert type(bent.path) is rg.SampledPath
     assert bent.record.path == "clarabel"
     assert bent.steepest.max() <= 5.0 < rg.plan_removal(STATE, "P3").steepest.max()
     assert "path of 101 instants for change by clarabel" in str(bent)
@@ -241,7 +241,7 @@ def test_straight_where_straight_is_enough():
 def tampered(plan, change):
     forces = plan.course.forces.copy()
     change(forces)
-    return replace(plan, course=replace_course(plan.course, forces=forces))
+    return replace(plan, path=replace_course(plan.course, forces=forces))
 
 
 def replace_course(course, **changes):
@@ -272,7 +272,7 @@ def test_the_verifier_finds_what_is_wrong_at_one_instant():
     assert any("below 1.3" in v for v in rg.verify(hidden).violations)
     loads = plan.course.loads.copy()
     loads[3] *= 1 + 1e-6
-    assert not rg.verify(replace(plan, course=replace_course(plan.course, loads=loads))).ok
+    assert not rg.verify(replace(plan, path=replace_course(plan.course, loads=loads))).ok
 
 
 def lifting(t: float) -> rg.Wrench:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import regrasp as rg
 from regrasp.closed_form.turning_path import turning_path, turning_peaks, turning_slope
 from regrasp.mechanics.rotated_loads import turned_load
-from regrasp.plans.turn import Turn
+from regrasp.plans.turning import TurningPath
 from regrasp.verification.turning_steps import cosine_sine
 
 GRASP = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.8, name="A"), rg.Contact([1, 0.1], [-1, 0], 0.8, name="B")])
@@ -121,15 +121,15 @@ def test_the_verifier_finds_a_wrong_turn():
     assert verdict() == ""
     moved = forces.copy()
     moved[1] *= 1 + 1e-9
-    assert "angle 1 rad: not in equilibrium" in verdict(turn=Turn(angles, moved))
-    assert "not the first and the last state" in verdict(turn=Turn(angles, np.roll(forces, 1, axis=0)))
-    assert "not in equilibrium" in verdict(turn=Turn(1.001 * angles, forces))
-    wide = Turn([0.0, 3.1415], forces[[0, -1]])
-    assert "not in equilibrium" in verdict(turn=wide)
+    assert "angle 1 rad: not in equilibrium" in verdict(path=TurningPath(angles, moved))
+    assert "not the first and the last state" in verdict(path=TurningPath(angles, np.roll(forces, 1, axis=0)))
+    assert "not in equilibrium" in verdict(path=TurningPath(1.001 * angles, forces))
+    wide = TurningPath([0.0, 3.1415], forces[[0, -1]])
+    assert "not in equilibrium" in verdict(path=wide)
     with pytest.raises(rg.InvalidInput, match="steps below pi"):
-        Turn([0.0, 3.2], forces[[0, -1]])
+        TurningPath([0.0, 3.2], forces[[0, -1]])
     with pytest.raises(rg.InvalidInput, match="one way from 0"):
-        Turn([0.0, 1.0, 0.5], forces[:3])
+        TurningPath([0.0, 1.0, 0.5], forces[:3])
 
 
 @given(st.floats(-30, 30))

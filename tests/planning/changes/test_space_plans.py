@@ -12,7 +12,7 @@ import regrasp as rg
 from regrasp.closed_form.turning_path import arc_path, arc_peaks, arc_slope, arc_weights
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.mechanics.rotated_loads import load_between, turned_load
-from regrasp.plans.turn import Turn
+from regrasp.plans.turning import TurningPath
 from space import nose_cone, random_grasp, random_load, random_rotation, rotated
 
 NOSE, DOWN = nose_cone(5, 0.3), rg.Wrench([0, 0, -1.0])
@@ -210,7 +210,7 @@ def test_the_verifier_finds_wrong_turns_in_space():
 
     def verdict(**changes):
         fields = {"angles": turn.angles, "forces": turn.forces, "axis": turn.axis, "middles": turn.middles}
-        return "; ".join(rg.verify(replace(plan, turn=Turn(**{**fields, **changes}))).violations)
+        return "; ".join(rg.verify(replace(plan, path=TurningPath(**{**fields, **changes}))).violations)
 
     assert verdict() == ""
     assert "between 0 and 0.75 rad: not in equilibrium" in verdict(middles=1.001 * turn.middles)

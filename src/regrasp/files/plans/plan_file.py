@@ -20,14 +20,15 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.plans.course import Course
+from regrasp.plans.path import Path as ForcePath
+from regrasp.plans.record import Choice, Record
 from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.sampled import SampledTransition
+from regrasp.plans.sampled import SampledPath
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Choice, Record, Transition
-from regrasp.plans.turn import Turn
-from regrasp.plans.turning import TurningTransition
+from regrasp.plans.transition import Transition
+from regrasp.plans.turning import TurningPath
 
 FORMAT = "regrasp plan"
 Positive = Annotated[float, Field(gt=0)]
@@ -82,8 +83,8 @@ class _Turn(Strict):
 
 
 class _Transition(Strict):
-    kind: Literal["removal", "addition", "rotation", "exchange"]
-    contact: str | None  # none for a rotation
+    kind: Literal["removal", "addition", "rotation", "exchange", "hold"]
+    contact: str | None  # the finger that leaves or arrives; none for a rotation or a hold
     load: list[float]  # force, then torque; at the start
     contacts: list[_Contact]
     start: list[list[float]]
@@ -92,6 +93,8 @@ class _Transition(Strict):
     course: _Course | None = None  # none for the straight path
     record: _Record
     arrival: str | None = None  # of an exchange
+    leaving: list[str] | None = None  # where several leave or arrive
+    arriving: list[str] | None = None
     turn: _Turn | None = None  # of an object that turns
 
 
@@ -242,6 +245,8 @@ def _document(plan: Transition) -> dict[str, Any]:
     }
     if plan.arrival is not None:
         document["arrival"] = plan.arrival
+    if max(len(plan.leaving), len(plan.arriving)) > 1:
+        document |= {"leaving": list(plan.leaving), "arriving": list(plan.arriving)}
     if plan.turn is not None:
         document["turn"] = {
             "angles": plan.turn.angles.tolist(),
@@ -266,21 +271,33 @@ def _plan(stored: _Transition) -> Transition:
     given, turned = stored.course, stored.turn
     if given is not None and turned is not None:
         raise InvalidInput("a plan has a course or a turn, not both")
-    course = None if given is None else Course(given.times, given.forces, given.loads)
-    turn = None if turned is None else Turn(turned.angles, turned.forces, turned.axis, turned.middles)
+    path: ForcePath = STRAIGHT
     last = load
-    if course is not None:
-        last = Wrench.from_vector(course.loads[-1])
+    if given is not None:
+        path = SampledPath(given.times, given.forces, given.loads)
+        last = Wrench.from_vector(given.loads[-1])
     elif turned is not None:
+        path = TurningPath(turned.angles, turned.forces, turned.axis, turned.middles)
         last = Wrench.from_vector(turned.end_load)
     ends = GraspState(grasp, load, stored.start), GraspState(grasp, last, stored.end)
     scaling = TimeScaling(stored.scaling.duration, tuple(stored.scaling.control), stored.scaling.degree)
-    kind, contact, record = stored.kind, stored.contact, _read_record(stored.record)
-    if course is not None:
-        return SampledTransition(kind, contact, *ends, scaling, record, arrival=stored.arrival, course=course)
-    if turn is not None:
-        return TurningTransition(kind, contact, *ends, scaling, record, arrival=stored.arrival, turn=turn)
-    return Transition(kind, contact, *ends, scaling, record, arrival=stored.arrival)
+    record = _read_record(stored.record)
+    return Transition(*ends, scaling, record, *_moving(stored), path)
+
+
+def _moving(stored: _Transition) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The fingers that leave and those that arrive."""
+    first, second = ([] if name is None else [name] for name in (stored.contact, stored.arrival))
+    leaving, arriving = (second, first) if stored.kind == "addition" else (first, second)
+    if stored.leaving is not None or stored.arriving is not None:
+        leaving, arriving = stored.leaving or [], stored.arriving or []
+    wanted = {"removal": (True, False), "addition": (False, True), "exchange": (True, True)}
+    if wanted.get(stored.kind, (False, False)) != (bool(leaving), bool(arriving)):
+        article = "an" if stored.kind[0] in "ae" else "a"
+        raise InvalidInput(
+            f"{article} {stored.kind} names the wrong fingers: {stored.contact!r} and {stored.arrival!r}"
+        )
+    return tuple(leaving), tuple(arriving)
 
 
 def _read_record(record: _Record) -> Record:

@@ -23,8 +23,9 @@ from regrasp.planning.changes.joining import Demands, joined
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, Criteria, criteria_of
 from regrasp.plans.loads import LoadSeries
+from regrasp.plans.record import Choice, Record
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Choice, Record, Transition
+from regrasp.plans.transition import Transition
 
 LoadFunction = Callable[[float], Wrench]
 
@@ -75,7 +76,7 @@ def plan_removal(
     equilibrium inside the cones less the reserve; the change is recorded in ``record.balancing``.
 
     The path is the straight one of Eq. 1-3 where the load is constant and it keeps every demand; else it is a
-    ``SampledTransition`` by a convex program. ``record.path`` says which.
+    ``SampledPath`` by a convex program. ``record.path`` says which.
     Raises ``Infeasible`` with the escape twist where the fingers cannot hold the load, or with the limit that
     no path keeps, and ``InvalidInput`` for given states that are no equilibrium inside the cones.
     """

@@ -13,11 +13,11 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
-from regrasp.plans.course import Course
 from regrasp.plans.loads import LoadSeries
-from regrasp.plans.sampled import SampledTransition
+from regrasp.plans.record import Record
+from regrasp.plans.sampled import SampledPath
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Record, Transition
+from regrasp.plans.transition import Transition
 
 _INSTANTS = 101
 
@@ -112,8 +112,10 @@ def joined(
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
     grasp = start.grasp
+    who = (grasp.names[contact],)
+    leaving, arriving = (who, ()) if kind == "removal" else ((), who)
     if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
-        return Transition(kind, grasp.names[contact], start, end, scaling, record)
+        return Transition(start, end, scaling, record, leaving, arriving)
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = np.arange(len(grasp)) != contact
     least[contact] = 0.0
@@ -121,7 +123,7 @@ def joined(
     has_rates = bool((rates < inf).any())
     record = replace(record, least_normals=tuple(least.tolist()) if least.any() else ())
     if load is None:
-        plan = Transition(kind, grasp.names[contact], start, end, scaling or TimeScaling.spline(1.0), record)
+        plan = Transition(start, end, scaling or TimeScaling.spline(1.0), record, leaving, arriving)
         if scaling is None:
             plan = plan.fastest(rates)
         fast_enough = not has_rates or scaling is None or bool((plan.steepest <= rates * (1 + 1e-12)).all())
@@ -140,19 +142,17 @@ def joined(
     if objective in ("effort", "peak") and not has_rates:
         raise InvalidInput(f"path_objective {objective!r} would jump at both ends; give rate_limit as well")
     backend = DEFAULT_BACKEND if demands.method == "auto" else demands.method
-    course = _course(
-        kind, contact, start, end, scaling, load, rates, least, stays, criteria, demands, backend
-    )
+    path = _path(kind, contact, start, end, scaling, load, rates, least, stays, criteria, demands, backend)
     record = replace(
         record,
         path=backend,
         path_objective=objective,
         rate_limits=tuple(rates.tolist()) if has_rates else (),
     )
-    return SampledTransition(kind, grasp.names[contact], start, end, scaling, record, course=course)
+    return Transition(start, end, scaling, record, leaving, arriving, path)
 
 
-def _course(
+def _path(
     kind: str,
     contact: int,
     start: GraspState,
@@ -165,7 +165,7 @@ def _course(
     criteria: Criteria,
     demands: Demands,
     backend: str,
-) -> Course:
+) -> SampledPath:
     from regrasp.planning.changes.path_program import PathTask
     from regrasp.planning.changes.path_search import planned_path
 
@@ -201,7 +201,7 @@ def _course(
         unit=largest or float(max(start.magnitudes.max(), end.magnitudes.max())) or 1.0,
     )
     forces = planned_path(task, demands.path_objective or "change", criteria, backend, demands.facets)
-    return Course(times, forces, fine.vectors)
+    return SampledPath(times, forces, fine.vectors)
 
 
 def _refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:

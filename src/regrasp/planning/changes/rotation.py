@@ -28,10 +28,10 @@ from regrasp.planning.changes.given_ends import (
 )
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, Criteria
+from regrasp.plans.record import Choice, Record
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Choice, Record
-from regrasp.plans.turn import Turn
-from regrasp.plans.turning import TurningTransition
+from regrasp.plans.transition import Transition
+from regrasp.plans.turning import TurningPath
 
 STEP = pi / 3
 """Largest angle between two states of a turn if there are any: forces grow by 1 / cos(pi / 6) = 1.155."""
@@ -57,7 +57,7 @@ def plan_rotation(
     peak_ratio: float = PEAK_RATIO,
     reserve: float = RESERVE,
     balance_tolerance: float = BALANCE_TOLERANCE,
-) -> TurningTransition:
+) -> Transition:
     """Forces over time while the object turns and all fingers stay.
 
     start: the state to start from; or a grasp, whose state is then chosen under ``load``.
@@ -107,17 +107,15 @@ def plan_rotation(
         balanced = balanced_start(state, criteria, balance_tolerance, "end")
         last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
     if still_part(load, about) is None:
-        knots = Turn(*_on_the_way(chooser, turn, count, first, last), about)
+        knots = TurningPath(*_on_the_way(chooser, turn, count, first, last), about)
     else:
         knots = _along_arcs(chooser, turn, count, first, last)
-    plan = TurningTransition(
-        "rotation",
-        None,
+    plan = Transition(
         GraspState(grasp, load, first),
         GraspState(grasp, last_load, last),
         clock,
         Record(reserve, tuple(choices), change),
-        turn=knots,
+        path=knots,
     )
     _refuse_high_forces(plan)
     return plan
@@ -182,7 +180,7 @@ def _on_the_way(
     return knots, forces
 
 
-def _along_arcs(chooser: _Chooser, turn: float, count: int, first: Array, last: Array) -> Turn:
+def _along_arcs(chooser: _Chooser, turn: float, count: int, first: Array, last: Array) -> TurningPath:
     """States at equal steps and one between each two, in halved steps until all exist."""
     for halved in range(_HALVINGS + 1):
         angles = [turn * k / (count << halved) for k in range((count << halved) + 1)]
@@ -192,7 +190,7 @@ def _along_arcs(chooser: _Chooser, turn: float, count: int, first: Array, last: 
         except Infeasible as refusal:
             reason = refusal
             continue
-        return Turn(angles, forces, chooser.axis, middles)
+        return TurningPath(angles, forces, chooser.axis, middles)
     raise reason
 
 
@@ -218,7 +216,7 @@ def _axis(axis: ArrayLike | None, grasp: Grasp) -> Array | None:
     return unit_axis(axis)
 
 
-def _refuse_high_forces(plan: TurningTransition) -> None:
+def _refuse_high_forces(plan: Transition) -> None:
     for i, contact in enumerate(plan.grasp):
         peak = float(plan.peaks[i])
         if contact.max_force is not None and peak > contact.max_force:

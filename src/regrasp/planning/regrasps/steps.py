@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan, cos, pi, tan
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -17,11 +17,12 @@ from regrasp.planning.changes.given_ends import eased
 from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
+from regrasp.plans.record import Choice, Record
 from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Choice, Record, Transition
-from regrasp.plans.turn import Turn
-from regrasp.plans.turning import TurningTransition
+from regrasp.plans.transition import Transition
+from regrasp.plans.turning import TurningPath
 
 
 @dataclass(frozen=True)
@@ -176,17 +177,11 @@ def step_between(
     grasp = Grasp(contacts[i] for i in places)
     start = GraspState(grasp, before.load, before.among(places))
     end = GraspState(grasp, after.load, after.among(places))
-    leaving = [contacts[i].name for i in places if i not in after.places]
-    arriving = [contacts[i].name for i in places if i not in before.places]
-    kinds = {(1, 0): "removal", (0, 1): "addition", (1, 1): "exchange", (0, 0): "rotation"}
-    kind: Any = kinds[len(leaving), len(arriving)]
-    contact = (leaving or arriving or [None])[0]
-    arrival = arriving[0] if kind == "exchange" else None
+    leaving = tuple(str(contacts[i].name) for i in places if i not in after.places)
+    arriving = tuple(str(contacts[i].name) for i in places if i not in before.places)
     record = Record(reserve, (_choice("start", before), _choice("end", after)))
-    if turn == 0:
-        return Transition(kind, contact, start, end, scaling, record, arrival=arrival)
-    knots = Turn([0.0, turn], [start.forces, end.forces], axis)
-    return TurningTransition(kind, contact, start, end, scaling, record, arrival=arrival, turn=knots)
+    path = STRAIGHT if turn == 0 else TurningPath([0.0, turn], [start.forces, end.forces], axis)
+    return Transition(start, end, scaling, record, leaving, arriving, path)
 
 
 def _in_use(forces: Array) -> tuple[bool, ...]:

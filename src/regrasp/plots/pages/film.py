@@ -92,10 +92,8 @@ def moments(
                 for u in np.linspace(0, 1, count).tolist()
             ]
             idle.pop(move.finger, None)
-        what = step.kind if step.contact is None else f"{step.kind} of {step.contact}"
-        what += f" for {step.arrival}" if step.arrival else ""
         for t in np.linspace(0, step.duration, max(2, ceil(step.duration * rate) + 1)).tolist():
-            title = f"{short(_rounded(elapsed + t, plan))} {units.time}: {what}".replace("$", r"\$")
+            title = f"{short(_rounded(elapsed + t, plan))} {units.time}: {step.in_words}".replace("$", r"\$")
             frames.append((title, moment_of(plan, k, t, idle)))
         elapsed += step.duration
         for number_, name in enumerate(plan.fingers[k]):

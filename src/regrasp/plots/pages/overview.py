@@ -86,14 +86,14 @@ def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> d
     if transition.grasp.dimension == 3:
         drawn["components"] = plot_force_components(transition, units=units).figure
         drawn["wrenches"] = wrenches_figure(transition, units=units)
-    elif transition.contact is not None and transition.arrival is None:
-        drawn |= _of_one_finger(transition, transition.contact, units)
+    elif len(moving := (*transition.leaving, *transition.arriving)) == 1:
+        drawn |= _of_one_finger(transition, moving[0], units)
     return drawn
 
 
 def _of_one_finger(transition: Transition, moves: str, units: Units) -> dict[str, Figure]:
     """The figures of Section III, for one finger that leaves or arrives."""
-    fewer = transition.end if transition.kind == "removal" else transition.start
+    fewer = transition.end if transition.leaving else transition.start
     rest, colours = fewer.without(moves), contact_colours(transition.grasp)
     drawn = {
         "iso_torque": iso_torque_figure(transition, units=units),
@@ -144,7 +144,7 @@ def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
 def iso_torque_figure(transition: Transition, *, units: Units = SI) -> Figure:
     """Iso-torque lines of every contact, with its forces at the state of all fingers (Fig. 2)."""
     refuse_space(transition.grasp.dimension)
-    state = transition.start if transition.kind == "removal" else transition.end
+    state = transition.start if transition.leaving else transition.end
     colours = contact_colours(state.grasp)
     shown = [
         name for name, contact in zip(state.grasp.names, state.grasp, strict=True) if contact.position.any()
@@ -160,6 +160,6 @@ def iso_torque_figure(transition: Transition, *, units: Units = SI) -> Figure:
 
 def _chosen_for(transition: Transition) -> tuple[str, tuple[float, ...] | None]:
     """Objective and force limits of the state of fewer fingers; ``angle`` and None where it was given."""
-    end = "end" if transition.kind == "removal" else "start"
+    end = "end" if transition.leaving else "start"
     chosen = next((c for c in transition.record.choices if c.end == end), None)
     return ("angle", None) if chosen is None else (chosen.objective, chosen.force_limits)

@@ -15,7 +15,6 @@ from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
 from regrasp.plans.transition import Transition
-from regrasp.plans.turning import TurningTransition
 from regrasp.plots.look.arrows import arrow
 from regrasp.plots.look.style import INK, PALE, PALETTE, literal
 
@@ -202,7 +201,7 @@ def turn_of(plan: RegraspPlan, step: int, t: float) -> Array:
     if not isinstance(plan, SpaceRegraspPlan):
         return rotation(plan.orientations[step] + float(now.orientation(t)))
     before: Array = plan.rotations[step]
-    return before @ now.rotations(t) if isinstance(now, TurningTransition) else before
+    return before @ now.rotations(t)
 
 
 def rotation(angle: float) -> Array:

@@ -70,13 +70,16 @@ def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = 
     grasp = transition.grasp
     refuse_space(grasp.dimension)
     colours = contact_colours(grasp)
-    moves = transition.contact
-    if moves is None or transition.arrival is not None:
-        raise InvalidInput(f"wrench paths are drawn of a removal or an addition, got a {transition.kind}")
+    moving = (*transition.leaving, *transition.arriving)
+    if len(moving) != 1:
+        raise InvalidInput(
+            f"wrench paths are drawn where one finger leaves or arrives, got {transition.in_words}"
+        )
+    (moves,) = moving
     others = [name for name in grasp.names if name != moves]
     order = (*others[:-1], moves, *others[-1:])
     start, end = WrenchLoop(transition.start, order), WrenchLoop(transition.end, order)
-    loops = [start, end] if transition.kind == "removal" else [end, start]
+    loops = [start, end] if transition.leaving else [end, start]
     ax = _draw_sets(ax, loops, loops[1].state.without(moves), colours)
     for t in np.linspace(0, transition.duration, 7)[1:-1]:
         state = GraspState(grasp, transition.start.load, transition.forces(t))
