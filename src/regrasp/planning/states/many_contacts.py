@@ -84,7 +84,8 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         squeezed = best_squeeze(grasp, criteria, backend, facets, frictions, limits)
         if squeezed is None and not any(load.plain):  # nothing to hold, and nothing to hold it with
             squeezed = Found(np.zeros((len(grasp), grasp.width)), 0.0)
-        forces = None if squeezed is None else chooser.settled(squeezed.forces, frictions, limits)
+        room = 1 - 4 * len(grasp) * chooser.load_size / min(limits)  # for what the load adds
+        forces = None if squeezed is None else chooser.settled(room * squeezed.forces, frictions, limits)
         if squeezed is not None and forces is not None:
             return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, squeezed.gap)
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
