@@ -1,6 +1,7 @@
 """Choosing the state of any number of contacts by programs."""
 
 from contextlib import suppress
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -8,8 +9,9 @@ import numpy as np
 from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.states.criteria import ChosenForces, Criteria, objective_value
 from regrasp.planning.states.degenerate.flat_minima import polished
 from regrasp.planning.states.degenerate.no_load import best_squeeze
 from regrasp.planning.states.escape import infeasible, verdict
@@ -20,6 +22,8 @@ from regrasp.planning.states.separation import edge_of
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
 
 _NARROWS = ("angle", "friction_use")
+_SAME = 1e-6  # of a margin [rad, N or -]
+_BESIDE = 1e4  # forces so many times a load are beside it in one program
 _FAR = 1e3  # forces so much larger than the load are the better unit
 VANISHING = 1e-9
 """A load below this fraction of the force limits changes no margin: the best squeeze is that without a load."""
@@ -82,12 +86,16 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
     chooser = Chooser(grasp, load, backend, facets, limits)
     if criteria.unbounded and chooser.load_size <= VANISHING * min(limits) and max(limits) < inf:
         squeezed = best_squeeze(grasp, criteria, backend, facets, frictions, limits)
-        if squeezed is None and not any(load.plain):  # nothing to hold, and nothing to hold it with
-            squeezed = Found(np.zeros((len(grasp), grasp.width)), 0.0)
+        if not any(load.plain):  # nothing to hold, and where nothing squeezes nothing to hold it with
+            forces, gap = squeezed or Found(np.zeros((len(grasp), grasp.width)), 0.0)
+            return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
         room = 1 - 4 * len(grasp) * chooser.load_size / min(limits)  # for what the load adds
-        forces = None if squeezed is None else chooser.settled(room * squeezed.forces, frictions, limits)
-        if squeezed is not None and forces is not None:
-            return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, squeezed.gap)
+        loaded = None if squeezed is None else chooser.settled(room * squeezed.forces, frictions, limits)
+        if squeezed is not None and loaded is not None and _changes_nothing(grasp, criteria, squeezed.forces, loaded):
+            return ChosenForces(grasp.cones.forces(loaded), tuple(limits), backend, squeezed.gap)
+        # Fingers that take no part in the squeeze must hold the load, with forces of its size.
+        capped = replace(criteria, max_force=_BESIDE * chooser.load_size)
+        return _solved(grasp, load, capped, backend, facets)._replace(force_limits=tuple(limits))
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
     least = None
@@ -114,6 +122,16 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
     elif facets is None:
         forces = polished(chooser, criteria.objective, forces, frictions, limits)
     return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
+
+
+def _changes_nothing(grasp: Grasp, criteria: Criteria, squeezed: Array, loaded: Array) -> bool:
+    """Whether a squeeze that holds a load, too, is as good as before."""
+    none = Wrench.from_vector(np.zeros(len(grasp.matrix)))
+    before, after = (
+        objective_value(GraspState(grasp, none, grasp.cones.forces(forces)), criteria.objective)
+        for forces in (squeezed, loaded)
+    )
+    return abs(after - before) <= _SAME * max(1.0, abs(before))
 
 
 def _radius(grasp: Grasp, frictions: list[float], forces: Array, facets: int | None) -> float:
