@@ -1,6 +1,6 @@
 """Choosing the forces of a grasp under a load."""
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import check_load
@@ -74,7 +74,18 @@ def choose_forces(
     if method == "closed-form" and facets is not None:
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
     if method == "closed-form" or (method == "auto" and planar_pair and facets is None):
-        return best_forces(grasp, load, criteria)
+        try:
+            return best_forces(grasp, load, criteria)
+        except Infeasible as reason:
+            if method == "closed-form" or reason.certificate is not None:
+                raise
+            refused = reason  # without proof: rounding of contacts next to one another, or of the edge
+        from regrasp.planning.states.many_contacts import solved_forces
+
+        try:
+            return solved_forces(grasp, load, criteria, DEFAULT_BACKEND)
+        except RegraspError:
+            raise refused from None
     from regrasp.programs.backends import available_backends, is_available
 
     if method != "auto" and not is_available(method):

@@ -8,7 +8,9 @@ import numpy as np
 
 from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import NEVER
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.membership import vertex_forces
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria, objective_value
@@ -66,6 +68,10 @@ def _by_newton(
     chooser = Chooser(grasp, load, backend, facets, limits)
     forces = chooser.nearest(np.zeros((len(grasp), grasp.width)), frictions, limits)
     is_least = forces is not None and criteria.objective == "effort"
+    if forces is None and grasp.dimension == 2:
+        vertex = vertex_forces(grasp, load, frictions)
+        near = vertex is not None and abs(vertex).max() <= NEVER * chooser.load_size
+        forces = chooser.settled(vertex, frictions, limits) if vertex is not None and near else None
     if forces is None:
         edge = edge_of(grasp, load.vector, frictions, limits) if any(load.plain) else None
         forces = None if edge is None else chooser.settled(edge.forces, frictions, limits)
