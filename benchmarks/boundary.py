@@ -1,4 +1,4 @@
-"""Grasps whose limit is known by construction, and loads on either side of it. Imports nothing of the project.
+"""Grasps whose limit is known by construction, and loads on both sides of it; nothing of the project is used.
 
 A motion v comes first, then contacts at random places, each turned so that v is what it must be at a load the
 grasp can just hold: u_i = v + omega x r_i, the velocity at contact i, then
@@ -8,10 +8,10 @@ grasp can just hold: u_i = v + omega x r_i, the velocity at contact i, then
     still       u_i = 0: no force of it does any work
     limited     |f_i| <= limit_i and any normal: its force that does the least work along v, f_i
 
-So w = -G f of active, still and limited forces lies on the boundary of what can be held, v being the motion along
-which the object escapes beyond it. With a load w_in that forces inside all cones hold, w + r (w - w_in) is beyond
-the edge by r, and w - r (w - w_in) inside it by r, both for sure: the first does r (v . w - v . w_in) > 0 of work
-along v, the second is a mean of two that are held.
+So w = -G f of active, still and limited forces lies on the boundary of what is held, v being the motion along
+which the object escapes beyond it. With a load w_in that forces inside all cones hold, w + r (w - w_in) is
+beyond the edge by r, and w - r (w - w_in) inside it by r, both for sure: the first does r (v . w - v . w_in)
+> 0 of work along v, the second is a mean of two that are held.
 """
 
 from dataclasses import dataclass
@@ -58,7 +58,10 @@ def wrench(positions: Array, forces: Array) -> Array:
 def _grasp(rng: np.random.Generator, d: int, kind: str) -> Boundary:
     while True:
         n = int(rng.integers(2, 5) if d == 2 else rng.integers(3, 6))
-        r, mu = rng.normal(size=(n, d)), rng.choice([0.0, 0.1, 0.3, 0.5, 0.8, 1.5], n, p=[0.05, 0.1, 0.2, 0.35, 0.2, 0.1])
+        r, mu = (
+            rng.normal(size=(n, d)),
+            rng.choice([0.0, 0.1, 0.3, 0.5, 0.8, 1.5], n, p=[0.05, 0.1, 0.2, 0.35, 0.2, 0.1]),
+        )
         v, omega = rng.normal(size=d), rng.normal(size=1 if d == 2 else 3)
         still = 0 if kind in ("sliding", "limited") else int(rng.integers(1, d))
         if still:  # the motion turns about the first one or, in space, two contacts
@@ -70,7 +73,11 @@ def _grasp(rng: np.random.Generator, d: int, kind: str) -> Boundary:
         u = v + _spin(omega, r)
         if not (np.linalg.norm(u[still:], axis=1) > 0.1).all():
             continue
-        active = still + (0 if kind == "tipping" else int(rng.integers(1, min(d + 1, n - still + 1)))) if n > still else still
+        active = (
+            still + (0 if kind == "tipping" else int(rng.integers(1, min(d + 1, n - still + 1))))
+            if n > still
+            else still
+        )
         normals, forces, limits = np.zeros((n, d)), np.zeros((n, d)), np.full(n, inf)
         for i in range(n):
             if kind == "limited" and rng.random() < 0.7:
@@ -97,7 +104,7 @@ def _grasp(rng: np.random.Generator, d: int, kind: str) -> Boundary:
 
 
 def _box(rng: np.random.Generator, d: int, kind: str) -> Boundary:
-    """A block on its corners, its weight carried to an edge of its base; in space turned about the vertical as well."""
+    """A block on its corners, its weight over an edge of its base, or in space turned about the vertical."""
     mu = rng.uniform(0.1, 1)
     half, high = rng.uniform(0.3, 2, d - 1), rng.uniform(0.2, 2)
     corners = [[s] for s in (-1.0, 1.0)] if d == 2 else [[s, t] for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
@@ -105,10 +112,9 @@ def _box(rng: np.random.Generator, d: int, kind: str) -> Boundary:
     n = np.zeros_like(r)
     n[:, -1] = 1
     f = n / len(r)
-    inside = -wrench(r, f)
     if kind == "box turns" and d == 3:  # every corner slides about the vertical through the middle
         u = np.cross([0, 0, 1.0], r)
-        forces = np.array([rng.uniform(1, 1) * _edge(a, b, mu) / len(r) for a, b in zip(u, n, strict=True)])
+        forces = np.array([_edge(a, b, mu) / len(r) for a, b in zip(u, n, strict=True)])
     else:
         on = r[:, 0] > 0
         forces = np.where(on[:, None], n * 2 / len(r), 0.0)

@@ -1,11 +1,11 @@
-"""Verdicts near the edge of what a grasp holds: is it held inside, is there a proof outside, how near?
+"""Verdicts near the edge of what a grasp holds: states inside, proofs outside, and what is neither.
 
-    python benchmarks/edges.py 10000 -o DIR   so many grasps, each under 18 loads; go on after a stop with the same line
-    python benchmarks/edges.py --table -o DIR the table of what DIR holds
+    python benchmarks/edges.py 10000 -o DIR    so many grasps, each under 18 loads; the same line goes on
+    python benchmarks/edges.py --table -o DIR  the table of what DIR holds
 
-Grasps are made with their edge (``boundary``), where the load's exact place follows from the construction. In the plane
-without limits it is decided again by membership in rational arithmetic. Certificates are checked in rational
-arithmetic (``exact_judge``): an escape from cones that are wider by 1e-12 would be one, too.
+Grasps are made with their edge (``boundary``), so that the place of every load follows from the construction.
+In the plane without limits it is decided again by membership in rational arithmetic, and so are certificates and
+states (``exact_judge``).
 """
 
 import argparse
@@ -24,11 +24,11 @@ CHUNK = 50
 OBJECTIVES = ("effort", "angle", "peak", "force", "friction_use", "peak_normal")
 DISTANCES = tuple(10.0**-e for e in range(1, 10))
 ROUNDING = 1e-12
-"""Loads nearer to the edge than this are not made: the construction is exact to rounding."""
+"""The construction is exact to rounding: a verdict may change with as much of the friction."""
 
 
 def verdicts(seed: int) -> list[tuple[int, float, str]]:
-    """(dimension, distance beyond the edge, outcome) of one grasp under all loads; negative distances inside."""
+    """(dimension, distance beyond the edge, outcome) of a grasp under all loads; inside it is negative."""
     rng = np.random.default_rng(seed)
     d = int(rng.integers(2, 4))
     kind = str(rng.choice([k for k in KINDS if d == 3 or k != "box turns"]))
@@ -97,7 +97,12 @@ def table(folder: Path) -> str:
         counts.update(chunk["counts"])
         grasps += chunk["grasps"]
     words = sorted({key.split("|")[2] for key in counts})
-    lines = [f"{grasps:,} grasps", "", "| | beyond the edge by | " + " | ".join(words) + " |", "|---|--:|" + "--:|" * len(words)]
+    lines = [
+        f"{grasps:,} grasps",
+        "",
+        "| | beyond the edge by | " + " | ".join(words) + " |",
+        "|---|--:|" + "--:|" * len(words),
+    ]
     for d, where in ((2, "plane"), (3, "space")):
         for distance in (*DISTANCES, *(-x for x in reversed(DISTANCES))):
             row = [f"{counts[f'{d}|{distance:g}|{word}']:,}" for word in words]
@@ -107,7 +112,9 @@ def table(folder: Path) -> str:
 
 def main() -> None:
     """The command line above."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("count", type=int, nargs="?", default=0)
     parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results" / "edges")
     parser.add_argument("--table", action="store_true")

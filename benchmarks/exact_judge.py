@@ -60,7 +60,7 @@ def state_faults(
 def is_escape(
     positions: Array, normals: Array, frictions: Array, limits: Array, load: Array, twist: Array
 ) -> bool:
-    """Whether along a motion the load does more work than fingers can oppose with less than ``NEVER`` loads."""
+    """Whether the load does more work along a motion than fingers oppose with less than ``NEVER`` loads."""
     d = positions.shape[1]
     motion, w = exact(twist.tolist()), exact(load.tolist())
     power, free = dot(motion, w), Fraction(0)
@@ -102,10 +102,7 @@ def _root_above(value: Fraction) -> Fraction:
 
 
 def is_held(positions: Array, normals: Array, frictions: Array, load: Array) -> bool:
-    """Whether planar forces without limits hold a load, exactly: -w is a sum of three edges of cones or fewer.
-
-    By Caratheodory's theorem the edges of a vertex are enough; every three independent ones are tried.
-    """
+    """Whether planar forces without limits hold a load, exactly: whether -w is a sum of edges of cones."""
     edges = []
     for r, n, mu in zip(positions.tolist(), normals.tolist(), frictions.tolist(), strict=True):
         (x, y), (a, b), m = exact(r), exact(n), Fraction(mu)
@@ -118,11 +115,19 @@ def is_held(positions: Array, normals: Array, frictions: Array, load: Array) -> 
 
 def _in_cone(edges: list[Vector], target: Vector) -> bool:
     """By the simplex method's first phase with Bland's rule, which cannot cycle, in rationals."""
-    rows = [[(-1 if t < 0 else 1) * x for x in row] for row, t in zip(zip(*edges, strict=True), target, strict=True)]
-    table = [[*row, *[Fraction(int(i == j)) for j in range(3)], abs(t)] for i, (row, t) in enumerate(zip(rows, target, strict=True))]
+    rows = [
+        [(-1 if t < 0 else 1) * x for x in row]
+        for row, t in zip(zip(*edges, strict=True), target, strict=True)
+    ]
+    table = [
+        [*row, *[Fraction(int(i == j)) for j in range(3)], abs(t)]
+        for i, (row, t) in enumerate(zip(rows, target, strict=True))
+    ]
     count, basis = len(edges), [len(edges) + i for i in range(3)]
     while True:
-        price = [sum((table[i][j] for i in range(3) if basis[i] >= count), start=Fraction(0)) for j in range(count)]
+        price = [
+            sum((table[i][j] for i in range(3) if basis[i] >= count), start=Fraction(0)) for j in range(count)
+        ]
         enter = next((j for j in range(count) if price[j] > 0 and j not in basis), None)
         if enter is None:
             return all(table[i][-1] == 0 for i in range(3) if basis[i] >= count)

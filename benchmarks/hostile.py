@@ -1,8 +1,9 @@
 """Grasps and loads from distributions that break planners. Imports nothing of the project.
 
-Near-parallel normals, contacts 1e-13 to 1e-3 of the size apart or at one point, all on a line, sizes and forces from
-1e-6 to 1e6, frictions 0, 1e-13 ... 1e-6 and 0.1 to 10, no load, loads 1e-12 of the force limits, pure torques, loads
-made by forces inside the cones, and loads at, inside and beyond an edge that is known (``boundary``).
+Near-parallel normals, contacts 1e-13 to 1e-3 of the size apart or at one point, all on a line, sizes and
+forces from 1e-6 to 1e6, frictions 0, 1e-13 ... 1e-6 and 0.1 to 10, no load, loads 1e-12 of the force limits,
+pure torques, loads made by forces inside the cones, and loads at, inside and beyond an edge that is known
+(``boundary``).
 """
 
 from dataclasses import dataclass
@@ -21,8 +22,8 @@ FRICTIONS = (0.1, 0.3, 0.5, 0.8, 1.5, 3.0, 10.0)
 class Problem:
     """Contacts (n, d), load (3,) or (6,) and force limits (n,), infinite for none.
 
-    room: how far the load is known to be inside what is held, as a fraction of it; negative if it is known to be
-    outside by that much; nan if unknown. max_force: a limit besides, or None.
+    room: how far the load is known to be inside what is held, as a fraction of it; negative if it is known
+    to be outside by that much; nan if unknown. max_force: a limit besides, or None.
     """
 
     kind: str
@@ -43,8 +44,8 @@ def problem(seed: int) -> Problem:
     load = made.load * force
     load[made.positions.shape[1] :] *= length
     return Problem(
-        made.kind, made.positions * length, made.normals, made.frictions, made.limits * force, load, made.room,
-        None if made.max_force is None else made.max_force * force,
+        made.kind, made.positions * length, made.normals, made.frictions, made.limits * force, load,
+        made.room, None if made.max_force is None else made.max_force * force,
     )  # fmt: skip
 
 
@@ -53,7 +54,9 @@ def _at_an_edge(rng: np.random.Generator) -> Problem:
     kind = str(rng.choice([k for k in KINDS if d == 3 or k != "box turns"]))
     at = boundary(rng, d, kind)
     beyond = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.integers(-9, 0))
-    return Problem(f"edge, {kind}", at.positions, at.normals, at.frictions, at.limits, at.load(beyond), -beyond, None)
+    return Problem(
+        f"edge, {kind}", at.positions, at.normals, at.frictions, at.limits, at.load(beyond), -beyond, None
+    )
 
 
 def _anywhere(rng: np.random.Generator) -> Problem:
@@ -61,13 +64,24 @@ def _anywhere(rng: np.random.Generator) -> Problem:
     n = int(rng.integers(2, 5) if d == 2 else rng.integers(2, 6))
     r = rng.normal(size=(n, d))
     normals = -r / np.linalg.norm(r, axis=1)[:, None] + 0.5 * rng.normal(size=(n, d))
-    shape = str(rng.choice(["plain", "parallel", "close", "line", "one point", "lattice"], p=[0.4, 0.12, 0.16, 0.12, 0.1, 0.1]))
+    shape = str(
+        rng.choice(
+            ["plain", "parallel", "close", "line", "one point", "lattice"],
+            p=[0.4, 0.12, 0.16, 0.12, 0.1, 0.1],
+        )
+    )
     if shape == "parallel":
-        normals[1:] = rng.choice([-1.0, 1.0], n - 1)[:, None] * normals[0] + _hair(rng) * rng.normal(size=(n - 1, d))
+        normals[1:] = rng.choice([-1.0, 1.0], n - 1)[:, None] * normals[0] + _hair(rng) * rng.normal(
+            size=(n - 1, d)
+        )
     if shape == "close":
         r[1] = r[0] + _hair(rng, -13, -3) * rng.normal(size=d)
     if shape == "line":
-        r = r[0] + rng.normal(size=(n, 1)) * rng.normal(size=d) + rng.choice([0.0, 1e-12, 1e-6]) * rng.normal(size=(n, d))
+        r = (
+            r[0]
+            + rng.normal(size=(n, 1)) * rng.normal(size=d)
+            + rng.choice([0.0, 1e-12, 1e-6]) * rng.normal(size=(n, d))
+        )
     if shape == "one point":
         r[1] = r[0]
     if shape == "lattice":
@@ -94,11 +108,13 @@ def _anywhere(rng: np.random.Generator) -> Problem:
     return Problem(f"{shape}, {what}", r, normals, frictions, limits, load, room, max_force)
 
 
-def _held(rng: np.random.Generator, r: Array, normals: Array, frictions: Array, limits: Array) -> tuple[Array, float]:
+def _held(
+    rng: np.random.Generator, r: Array, normals: Array, frictions: Array, limits: Array
+) -> tuple[Array, float]:
     """A load that forces inside the cones hold, and at least how far inside.
 
-    Forces that change by df stay inside where |df_i| is below the distance of f_i to its cone and limit, and the
-    change of load that the smallest df makes up for is at least sigma_min(G) |df|, torques by the size.
+    Forces that change by df stay inside where |df_i| is below the distance of f_i to its cone and limit, and
+    the change of load that the smallest df makes up for is at least sigma_min(G) |df|, torques by the size.
     """
     n, d = r.shape
     f, depth = np.zeros((n, d)), np.zeros(n)
@@ -110,7 +126,9 @@ def _held(rng: np.random.Generator, r: Array, normals: Array, frictions: Array, 
         f[i] *= min(rng.uniform(0.1, 2), 0.9 * limits[i] / np.linalg.norm(f[i]))
         size = np.linalg.norm(f[i])
         tangent = np.linalg.norm(f[i] - (f[i] @ normals[i]) * normals[i])
-        depth[i] = min((frictions[i] * (f[i] @ normals[i]) - tangent) / sqrt(1 + frictions[i] ** 2), limits[i] - size)
+        depth[i] = min(
+            (frictions[i] * (f[i] @ normals[i]) - tangent) / sqrt(1 + frictions[i] ** 2), limits[i] - size
+        )
     load = -wrench(r, f)
     arm = np.linalg.norm(r, axis=1).max()
     columns = []

@@ -1,10 +1,11 @@
-"""Random hostile problems through every planning verb, each answer judged by rational arithmetic that shares no code.
+"""Hostile problems through every planning verb, answers judged in rational arithmetic that shares no code.
 
     python benchmarks/million.py 100000 -o DIR    problems 0 to 99,999; go on after a stop with the same line
     python benchmarks/million.py --table -o DIR   the table of what DIR holds
     python benchmarks/million.py --one 4711       a problem, its answers and their faults
 
-A chunk of problems is one file of DIR, written whole. ``hostile`` makes the problems, ``exact_judge`` judges them.
+A chunk of problems is one file of DIR, written whole. ``hostile`` makes the problems, ``exact_judge`` judges
+them.
 """
 
 import argparse
@@ -48,13 +49,25 @@ def answers(seed: int) -> Iterator[tuple[str, str]]:
         yield "locus_intervals", outcome(lambda: interval(given), given)
     if n > 2:
         leaving = int(rng.integers(n))
-        yield "plan_removal", outcome(lambda: planned(rg.plan_removal(grasp, leaving, load=load, **options)), given)
-        yield "plan_addition", outcome(
-            lambda: planned(rg.plan_addition(grasp.without(leaving), grasp[leaving], load=load, **options)), given
+        yield (
+            "plan_removal",
+            outcome(lambda: planned(rg.plan_removal(grasp, leaving, load=load, **options)), given),
+        )
+        yield (
+            "plan_addition",
+            outcome(
+                lambda: planned(
+                    rg.plan_addition(grasp.without(leaving), grasp[leaving], load=load, **options)
+                ),
+                given,
+            ),
         )
     angle = float(rng.uniform(-2, 2))
     axis = {} if grasp.dimension == 2 else {"axis": rng.normal(size=3)}
-    yield "plan_rotation", outcome(lambda: planned(rg.plan_rotation(grasp, angle, load=load, **axis, **options)), given)
+    yield (
+        "plan_rotation",
+        outcome(lambda: planned(rg.plan_rotation(grasp, angle, load=load, **axis, **options)), given),
+    )
     guess = float(abs(given.load).max() or 1.0) * rng.normal(size=given.positions.shape)
     yield "balanced", outcome(lambda: moved(given, rg.GraspState(grasp, load, guess)), given)
     if seed % 100 == 0:
@@ -103,12 +116,17 @@ def refused(reason: rg.Infeasible) -> str:
     if isinstance(twist, rg.EscapeTwist):
         grasp = twist.grasp
         proof = twist.is_proof and (grasp.is_soft or is_escape(
-            grasp.positions, grasp.normals, np.array(twist.frictions), np.array(twist.limits), twist.load.vector, twist.twist
+            grasp.positions, grasp.normals, np.array(twist.frictions), np.array(twist.limits),
+            twist.load.vector, twist.twist
         ))  # fmt: skip
         return "proven" if proof else "wrong: a certificate proves nothing"
     if twist is not None:
         return "proven"
-    return "at its limit" if "at its limit" in str(reason) or "only in the limit" in str(reason) else "plain refusal"
+    return (
+        "at its limit"
+        if "at its limit" in str(reason) or "only in the limit" in str(reason)
+        else "plain refusal"
+    )
 
 
 def chosen(given: Problem, grasp: rg.Grasp, load: rg.Wrench, options: dict) -> str:
@@ -120,7 +138,7 @@ def chosen(given: Problem, grasp: rg.Grasp, load: rg.Wrench, options: dict) -> s
         word = refused(reason)
         is_planar = given.positions.shape[1] == 2 and (most == inf).all()
         truly = is_planar and is_held(given.positions, given.normals, given.frictions, given.load)
-        if word == "proven" and (given.room > 1e-12 or truly and not _far(given)):
+        if word == "proven" and (given.room > 1e-12 or (truly and not _far(given))):
             return "wrong: held, and a certificate says it is not"
         return "refused though held" if word != "proven" and given.room > HELD else word
     except rg.SolverFailed:
@@ -187,7 +205,10 @@ def regrasped(rng: np.random.Generator) -> str:
     outline = rg.Outline.ellipse(1.0, float(rng.uniform(0.3, 1)))
     friction = float(rng.choice([1e-9, 0.1, 0.3, 0.6, 1.5]))
     start, goal = (
-        rg.Grasp(outline.contact_at(s, friction=friction) for s in np.sort(rng.uniform(0, outline.length, 3)).tolist())
+        rg.Grasp(
+            outline.contact_at(s, friction=friction)
+            for s in np.sort(rng.uniform(0, outline.length, 3)).tolist()
+        )
         for _ in range(2)
     )
     plan = rg.plan_regrasp(outline, start, goal, rg.Wrench(rng.normal(size=2)), friction=friction)
@@ -197,7 +218,10 @@ def regrasped(rng: np.random.Generator) -> str:
 def warm() -> None:
     """Everything is compiled once, so that no verb is timed while it waits for that."""
     outline = rg.Outline.ellipse(2, 1)
-    ends = (rg.Grasp(outline.contact_at(s * outline.length, friction=0.5) for s in p) for p in ((0.02, 0.35, 0.7), (0.2, 0.5, 0.85)))
+    ends = (
+        rg.Grasp(outline.contact_at(s * outline.length, friction=0.5) for s in p)
+        for p in ((0.02, 0.35, 0.7), (0.2, 0.5, 0.85))
+    )
     rg.plan_regrasp(outline, *ends, rg.Wrench([0, -3.0]), friction=0.5)
     rg.locus_intervals([0, 0], [1, 0], 0.5, [1, 0], [-1, 0], 0.5, [0, -1])
     for seed in range(20):
@@ -235,15 +259,22 @@ def table(folder: Path) -> str:
         counts.update(chunk["counts"])
         problems += chunk["problems"]
     verbs = list(dict.fromkeys(key.split("|")[0] for key in counts))
-    words = sorted({key.split("|")[1] for key in counts}, key=lambda word: (word.startswith((*WRONG, "refused")), word))
+    words = sorted(
+        {key.split("|")[1] for key in counts}, key=lambda word: (word.startswith((*WRONG, "refused")), word)
+    )
     lines = [f"{problems:,} problems", "", "| | " + " | ".join(verbs) + " |", "|---|" + "--:|" * len(verbs)]
-    lines += [f"| {word} | " + " | ".join(f"{counts[f'{verb}|{word}']:,}" for verb in verbs) + " |" for word in words]
+    lines += [
+        f"| {word} | " + " | ".join(f"{counts[f'{verb}|{word}']:,}" for verb in verbs) + " |"
+        for word in words
+    ]
     return "\n".join(lines)
 
 
 def main() -> None:
     """The command line above."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("count", type=int, nargs="?", default=0)
     parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results" / "million")
     parser.add_argument("--one", type=int)

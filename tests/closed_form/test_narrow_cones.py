@@ -1,4 +1,4 @@
-"""Loci of cones that are nearly rays, against membership in rational arithmetic: no finger pulls, whatever rounding says."""
+"""Loci of cones that are nearly rays, against membership in rational arithmetic: no finger pulls."""
 
 import sys
 from math import inf
@@ -22,9 +22,13 @@ def held(grasp: rg.Grasp, load: np.ndarray) -> bool:
 
 @pytest.mark.parametrize("friction", [0.0, 1e-16, 1e-13, 1e-11, 1e-9, 1e-6, 1e-3, 1.9e-3])
 def test_a_finger_above_would_have_to_pull(friction: float) -> None:
-    """The weight passes beside the support by 1e-6; the finger that faces down would have to pull up by as much."""
+    """The weight passes beside the support by 1e-6; the finger facing down would have to pull by as much."""
     grasp = rg.Grasp(
-        [rg.Contact([0, 0], [0, 1], 1.5), rg.Contact([-1, 3], [0, -1], friction), rg.Contact([-1, 0], [0, 1], 0.8)]
+        [
+            rg.Contact([0, 0], [0, 1], 1.5),
+            rg.Contact([-1, 3], [0, -1], friction),
+            rg.Contact([-1, 0], [0, 1], 0.8),
+        ]
     )
     load = rg.Wrench([0, -1], 1e-6)
     for reserve in (0.0, 1e-9, 0.1):
@@ -74,7 +78,11 @@ def test_both_nappes_of_narrow_cones(seed: int) -> None:
 def test_the_interval_of_one_cone_is_empty_exactly_on_its_negative() -> None:
     rng = np.random.default_rng(4)
     for _ in range(2000):
-        angle, mu, across = rng.uniform(-3.1, 3.1), 10.0 ** rng.uniform(-18, 0), rng.choice([-1, 1]) * 10.0 ** rng.uniform(-12, 3)
+        angle, mu, across = (
+            rng.uniform(-3.1, 3.1),
+            10.0 ** rng.uniform(-18, 0),
+            rng.choice([-1, 1]) * 10.0 ** rng.uniform(-12, 3),
+        )
         c, s = float(np.cos(angle)), float(np.sin(angle))
         if abs(s) < 1e-6:
             continue

@@ -42,14 +42,14 @@ def test_chunks_are_kept_and_told(tmp_path, monkeypatch) -> None:
 
 
 def test_the_judge_tells_right_from_wrong() -> None:
-    """A weight on two supports: forces, a pull, a slip, a limit, an imbalance; motions that prove and do not."""
+    """A weight on two supports: a pull, a slip, a limit, an imbalance; motions that prove and do not."""
     r, n, mu = np.array([[-1.0, 0], [1, 0]]), np.array([[0.0, 1], [0, 1]]), np.array([0.5, 0.5])
     none, load = np.full(2, np.inf), np.array([0.0, -1, 0])
-    half = np.array([[0, 0.5], [0, 0.5]])
+    half, sideways = np.array([[0, 0.5], [0, 0.5]]), np.array([[1.0, 0], [-1, 0]])
     assert state_faults(r, n, mu, none, load, half) == []
-    assert state_faults(r, n, mu, none, load, half + [0, 1e-11]) == ["not in equilibrium"]
-    assert state_faults(r, n, mu, none, load, half + [[0.25, 0], [-0.25, 0]]) == []
-    slips = state_faults(r, n, mu, none, load, half + [[0.25 + 1e-12, 0], [-0.25 - 1e-12, 0]])
+    assert state_faults(r, n, mu, none, load, half * (1 + 2e-11)) == ["not in equilibrium"]
+    assert state_faults(r, n, mu, none, load, half + 0.25 * sideways) == []
+    slips = state_faults(r, n, mu, none, load, half + (0.25 + 1e-12) * sideways)
     assert slips == ["0 is outside its cone", "1 is outside its cone"]
     assert state_faults(r, n, mu, np.array([0.5, 0.4999]), load, half) == ["1 is above its limit"]
     assert state_faults(r, n, mu, none, np.array([0.0, 0, 2]), [1, -1] * np.array([[0, -1.0], [0, -1]]).T)

@@ -33,7 +33,9 @@ def pair_frame(
     about2, terms2 = tau - (x2 * fy - y2 * fx), abs(tau) + abs(x2 * fy) + abs(y2 * fx)
     through1, through2 = abs(about1) <= _CANCELLED * terms1, abs(about2) <= _CANCELLED * terms2
     if through1 and through2 and abs(across) > _CANCELLED * (abs(fx) + abs(fy)):
-        a = b = -0.5 * across  # across the line between contacts so near that both count as on the load's line
+        a = b = (
+            -0.5 * across
+        )  # across the line between contacts so near that both count as on the load's line
     elif through1 or through2:
         a = 0.0 if through2 else -across
         b = 0.0 if through1 else -across

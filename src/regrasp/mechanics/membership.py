@@ -1,7 +1,8 @@
-"""Whether planar cones hold a load, decided in rational arithmetic: a linear program over the edges of the cones.
+"""Whether planar cones hold a load, decided in rational arithmetic: a linear program over their edges.
 
-Every force in a planar cone is a sum of its two edges, so -w_ext is to be a sum of edge wrenches with factors >= 0: the
-first phase of the simplex method, its rows the three equations of balance, its pivots Bland's, which cannot cycle.
+Every force in a planar cone is a sum of its two edges, so -w_ext is to be a sum of edge wrenches with factors
+>= 0: the first phase of the simplex method, its rows the three equations of balance, its pivots Bland's,
+which cannot cycle.
 """
 
 from collections.abc import Sequence
@@ -41,7 +42,11 @@ def _factors(edges: list[Row], target: Row) -> dict[int, Fraction] | None:
     """Factors >= 0 by edge whose sum is the target; None if there are none."""
     count = len(edges)
     table = [
-        [*((-1 if t < 0 else 1) * edge[k] for edge in edges), *(Fraction(int(k == j)) for j in range(3)), abs(t)]
+        [
+            *((-1 if t < 0 else 1) * edge[k] for edge in edges),
+            *(Fraction(int(k == j)) for j in range(3)),
+            abs(t),
+        ]
         for k, t in enumerate(target)
     ]
     basis = [count, count + 1, count + 2]

@@ -1,13 +1,13 @@
 """A motion that the contacts hardly oppose, changed by a hair so that they do not at all.
 
-A solver's twist touches the cones to its tolerance, 1e-8 or so, and a finger without a force limit could oppose
-that much enough. Newton's method on
+A solver's twist touches the cones to its tolerance, 1e-8 or so, and a finger without a force limit could
+oppose that much enough. Newton's method on
 
     n_i . u_i - mu_i |u_i across n_i| = delta      where contact i slides (u_i, its velocity, is not zero),
     u_i = 0                                        where it stands still,
 
-for the contacts that oppose the motion, in rational arithmetic, places it beyond the last bit of doubles; delta,
-a few units of rounding, is what the rounding of the twist itself may take away.
+for the contacts that oppose the motion, in rational arithmetic, places it beyond the last bit of doubles;
+delta, a few units of rounding, is what the rounding of the twist itself may take away.
 """
 
 from collections.abc import Iterator
@@ -29,6 +29,8 @@ _TOUCHING = 1e-3
 _STEPS = 8
 _REACHED = 2.0**-60
 _ROUNDING = 2.0**-50
+# A contact without limit that opposes a motion by more than this fraction of its speed holds by a small lever.
+_NOISE = 2.0**-46
 # Lengths of the twist at which its rounding is tried where contacts that stand still leave no other room.
 _LENGTHS = 24
 
@@ -40,7 +42,11 @@ def proven(
     for candidate in _candidates(grasp, twist, frictions, limits):
         if candidate.any() and np.isfinite(candidate).all():
             found = EscapeTwist(grasp, load, candidate, tuple(frictions), tuple(limits))
-            if found.is_proof:
+            speed = float(abs(candidate * grasp.lengths).max())
+            opposed = max(
+                (o for o, f in zip(found.oppositions, limits, strict=True) if f == inf), default=0.0
+            )
+            if found.is_proof and opposed <= _NOISE * speed:
                 return found
             if found.load_power <= 0:
                 return None

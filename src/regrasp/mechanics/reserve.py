@@ -11,7 +11,7 @@ RESERVE = 1e-9
 """Default fraction of every friction coefficient kept back."""
 
 NEGLIGIBLE = 1e-9
-"""Friction up to this counts as none where forces are planned: it takes normal forces 1e9 times what it gives."""
+"""Friction up to this counts as none in planning: it takes normal forces 1e9 times what it gives."""
 
 # Doubles place the direction of a computed force to a few units of 2^-52 [rad]; keep at least this much.
 _DIRECTION = 2.0**-44

@@ -73,7 +73,9 @@ def test_levels_of_next_to_no_friction_end() -> None:
     rng = np.random.default_rng(5)
     for power in (-10, -9, -8, -7, -6):
         for _ in range(3):
-            slippery = rg.Grasp(c.changed(friction=10.0**power * rng.uniform(1, 9)) for c in comfortable_triple(rng)[0])
+            slippery = rg.Grasp(
+                c.changed(friction=10.0**power * rng.uniform(1, 9)) for c in comfortable_triple(rng)[0]
+            )
             for objective in ("angle", "friction_use"):
                 try:
                     state = rg.choose_state(slippery, rg.Wrench(rng.normal(size=2)), objective)

@@ -14,9 +14,9 @@ from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.refining import proven
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
-from regrasp.mechanics.refining import proven
 from regrasp.planning.states.separation import edge_of, gap_left
 
 AT_LIMIT = 1e-6
@@ -31,14 +31,15 @@ _WORK = 1e-9
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
-    """The error that says why no state exists: the cones alone, the force limits, the reserve, or the limit."""
+    """The error that says why no state exists: the cones, the force limits, the reserve or the limit."""
     reason = verdict(grasp, load, criteria)
     if reason is not None:
         return reason
     return Infeasible(
-        f"no forces of {', '.join(grasp.names)} that balance {load!r} were found with {criteria.reserve:g} of "
-        f"the friction kept in reserve, and no motion proves that there are none without it: the load needs "
-        f"more friction than that leaves; choose a smaller reserve"
+        f"no forces of {', '.join(grasp.names)} that balance {load!r} were found with {criteria.reserve:g} "
+        f"of the friction kept in reserve, and no motion proves that there are none without it: the load "
+        f"needs more friction than that leaves, or is at the limit of what they can hold; choose a smaller "
+        f"reserve"
     )
 
 
@@ -94,8 +95,8 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
 def _is_at_limit(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> bool:
     """Whether a load is within ``AT_LIMIT`` of the edge of what is held, or inside it but for rounding.
 
-    Near the edge: not inside by more, and missed by no more by some forces. Rounding: a solver's forces balance
-    it, and none near them do exactly.
+    Near the edge: not inside by more, and missed by no more by some forces. Rounding: a solver's forces
+    balance it, and none near them do exactly.
     """
     edge = edge_of(grasp, load.vector, frictions, limits)
     if edge is None:
@@ -138,7 +139,9 @@ def escape_twist(
     unit = float(abs(target).max())
     if unit == 0:
         return None
-    limits = [inf if limit > _LOOSE * unit else limit for limit in limits]  # they bind no proof, and spoil scales
+    limits = [
+        inf if limit > _LOOSE * unit else limit for limit in limits
+    ]  # they bind no proof, and spoil scales
     if min(limits) < inf or d == 3:
         gaps = [gap_left(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
     else:

@@ -19,8 +19,8 @@ _SURE = 1e-2
 _UNSURE = 100 * LEVEL_TOLERANCE
 # Cones so far from the forces of a solved program, in its units, hold them whatever its tolerance.
 _CLEAR = 1e-6
-# A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the root
-# of its tolerance, where the optimum is flat.
+# A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
+# root of its tolerance, where the optimum is flat.
 _NOISE = 1e-4
 
 
@@ -44,8 +44,8 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
             proven = level if found.is_proof else proven
             sure = level if found.is_sure else sure
         else:
-            # Inside the narrowed cones is the level reached, whatever a margin says that rounding blurs: every
-            # step gets on.
+            # Inside the narrowed cones is the level reached, whatever a margin says that rounding blurs:
+            # every step gets on.
             reached = max(narrowing.level(found.forces), level)
             # Steps that do not shrink converge too slowly: halve what is left once, then climb on.
             climbs = not climbs or reached - held < gained / 2
@@ -66,7 +66,7 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
 
 
 def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
-    """The forces with those that are a solver's noise made zero, where the level stays within the tolerance."""
+    """The forces with those that are a solver's noise made zero, where the level stays as good."""
     sizes = abs(forces).max(axis=1)
     used = set(np.flatnonzero(sizes > _NOISE * sizes.max()).tolist())
     if len(used) in (0, len(forces)):
@@ -84,7 +84,7 @@ def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits
 def _of_those_that_push(
     chooser: Chooser, forces: Array, frictions: list[float], limits: list[float]
 ) -> Array | None:
-    """Forces near these of the fingers that carry more than noise, all others idle; None if there are none."""
+    """Forces near these of the fingers that carry more than noise, others idle; None if there are none."""
     sizes = abs(forces).max(axis=1)
     used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
     if len(used) in (0, len(forces)) or not np.isfinite(forces).all():

@@ -28,7 +28,7 @@ _SAME = 1e-6  # of a margin [rad, N or -]
 _BESIDE = 1e4  # forces so many times a load are beside it in one program
 _FAR = 1e3  # forces so much larger than the load are the better unit
 VANISHING = 1e-9
-"""A load below this fraction of the force limits changes no margin: the best squeeze is that without a load."""
+"""A load below this fraction of the force limits changes no margin: the best squeeze is that without."""
 
 
 def solved_forces(
@@ -44,7 +44,8 @@ def solved_forces(
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except (SolverFailed, Infeasible) as failure:
-        # Solvers fail at the limit of what can be held, or call it infeasible. That is no verdict; a proof is.
+        # Solvers fail at the limit of what can be held, or call it infeasible. That is no verdict; a proof
+        # is.
         reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
         if reason is None or reason.certificate is None:
             anyway = _by_newton(grasp, load, criteria, backend, facets)
@@ -58,7 +59,7 @@ def solved_forces(
 def _by_newton(
     grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
 ) -> ChosenForces | None:
-    """Forces that hold the load where a solver gives none: of least effort by Newton's method, or near the edge.
+    """Forces that hold the load where a solver gives none: of least effort by Newton's method, or any.
 
     Nothing is known of how much better an objective other than effort can be: the gap is infinite.
     """
@@ -97,7 +98,11 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
             return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
         room = 1 - 4 * len(grasp) * chooser.load_size / min(limits)  # for what the load adds
         loaded = None if squeezed is None else chooser.settled(room * squeezed.forces, frictions, limits)
-        if squeezed is not None and loaded is not None and _changes_nothing(grasp, criteria, squeezed.forces, loaded):
+        if (
+            squeezed is not None
+            and loaded is not None
+            and _changes_nothing(grasp, criteria, squeezed.forces, loaded)
+        ):
             return ChosenForces(grasp.cones.forces(loaded), tuple(limits), backend, squeezed.gap)
         # Fingers that take no part in the squeeze must hold the load, with forces of its size.
         capped = replace(criteria, max_force=_BESIDE * chooser.load_size)

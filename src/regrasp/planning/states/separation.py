@@ -47,8 +47,8 @@ def gap_left(
 class Edge(NamedTuple):
     """How far beyond the edge of what is held a load is, and the motion along which it wins there.
 
-    beyond: the least t of ``edge_of``; negative where the load is held. twist: (3,) or (6,). forces: (n, w) that
-    balance the load where it is held, to the solver's tolerance [N].
+    beyond: the least t of ``edge_of``; negative where the load is held. twist: (3,) or (6,). forces: (n, w)
+    that balance the load where it is held, to the solver's tolerance [N].
     """
 
     beyond: float
@@ -59,10 +59,12 @@ class Edge(NamedTuple):
 def edge_of(grasp: Grasp, load: Array, frictions: list[float], limits: list[float]) -> Edge | None:
     """The edge along the way from a load to one that the fingers hold by pushing straight; None if unknown.
 
-        minimise t   subject to   G f = -w_ext + t (w_ext + G p),   f_i in cone_i,   |f_i| <= limit_i,   t >= -1
+        minimise t   subject to   G f = -w_ext + t (w_ext + G p),   f_i in cone_i,   |f_i| <= limit_i,   t >=
+        -1
 
-    p are pushes along the normals as large as the load, or half of a finger's limit. However near the edge the
-    load is, the duals of the balance are of order one: the twist that every force in the cones works along.
+    p are pushes along the normals as large as the load, or half of a finger's limit. However near the edge
+    the load is, the duals of the balance are of order one: the twist that every force in the cones works
+    along.
     """
     from regrasp.programs import Rows, solve
 

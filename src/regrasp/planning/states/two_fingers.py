@@ -23,8 +23,8 @@ from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, ChosenSta
 from regrasp.planning.states.escape import infeasible
 
 ONE_POINT = 1e-13
-"""Two contacts nearer than this fraction of the largest coordinate are at one point: forces at both balance a load
-through it to rounding."""
+"""Contacts nearer than this fraction of the largest coordinate are at one point: a load through it is
+balanced to rounding by forces at both."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,7 +47,8 @@ class EquilibriumLocus(ArrayValue):
             )
         if is_one_point(self.grasp):
             raise InvalidInput(
-                f"an equilibrium locus needs contacts at two points; {' and '.join(self.grasp.names)} are at one"
+                f"an equilibrium locus needs contacts at two points; {' and '.join(self.grasp.names)} "
+                f"are at one"
             )
         check_load(self.grasp, self.load)
 

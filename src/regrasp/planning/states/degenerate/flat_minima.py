@@ -1,11 +1,11 @@
-"""Forces at a flat minimum, polished: a solver's tolerance on the objective leaves its square root on the forces.
+"""Forces at a flat minimum, polished: a tolerance on the objective leaves its square root on the forces.
 
 Newton's method on the conditions of optimality (Karush, Kuhn, Tucker) with the constraints that are active,
 
     grad q + G' y + sum_j z_j grad c_j = 0,   G f + w = 0,   c_j = 0,
 
-q the objective and c_j a force's cone, limit or share of the peak. The step of least length serves where the minimum is
-not unique. Forces are taken only if they are no worse.
+q the objective and c_j a force's cone, limit or share of the peak. The step of least length serves where the
+minimum is not unique. Forces are taken only if they are no worse.
 """
 
 from collections.abc import Iterator
@@ -47,9 +47,9 @@ def polished(
     used = np.flatnonzero(sizes > _NOTHING * largest).tolist()
     if 0 < len(used) < np.count_nonzero(sizes):
         rest = chooser.of(used).settled(forces[used], [frictions[i] for i in used], [limits[i] for i in used])
-        if rest is not None and _value(chooser.grasp.subset(used), rest, objective) <= (1 + _NOTHING) * _value(
-            chooser.grasp, forces, objective
-        ):
+        if rest is not None and _value(chooser.grasp.subset(used), rest, objective) <= (
+            1 + _NOTHING
+        ) * _value(chooser.grasp, forces, objective):
             forces = np.zeros_like(forces)
             forces[used] = rest
             sizes = np.sqrt((forces**2).sum(axis=1))

@@ -4,9 +4,9 @@ Without a load every state may be scaled, so the forces of a level are those of
 
     maximise t   subject to   G f = 0,   sum_i f_i.n_i = 1,   mu_i f_i.n_i - |f_i across n_i| >= t w_i
 
-over cones narrowed to it, and the best state found is scaled until a finger reaches its limit. A level that no
-squeeze reaches has t < 0; the duals of G f = 0 are then a motion along which every force in the cones works, so
-that none of them cancel. Zero forces are the answer only where nothing else is.
+over cones narrowed to it, and the best state found is scaled until a finger reaches its limit. A level that
+no squeeze reaches has t < 0; the duals of G f = 0 are then a motion along which every force in the cones
+works, so that none of them cancel. Zero forces are the answer only where nothing else is.
 """
 
 from collections.abc import Iterable
@@ -25,7 +25,8 @@ from regrasp.planning.states.narrowing import Narrowing
 from regrasp.planning.states.solving import Chooser, Found
 from regrasp.programs import Program, Rows, solve
 
-# A finger that pushes less than this fraction of the others, however hard they do, takes no part in a squeeze.
+# A finger that pushes less than this fraction of the others, however hard they do, takes no part in a
+# squeeze.
 _APART = 1e-7
 # A motion along which each force in the cones does at least this fraction of its speed's work proves it.
 _WORKS = 1e-12
@@ -47,7 +48,9 @@ class Squeezer(Chooser):
         slack: float,
     ) -> Program:
         mu = (1 - slack) * np.array(frictions)
-        return squeeze_program(self.grasp, mu, np.sqrt(1 + mu**2) if weights is None else weights, self.facets)
+        return squeeze_program(
+            self.grasp, mu, np.sqrt(1 + mu**2) if weights is None else weights, self.facets
+        )
 
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Internal forces near to ``wanted``; None if only zero is."""
@@ -111,7 +114,7 @@ def squeezing(
 ) -> tuple[list[int], Array]:
     """The contacts that take part in any squeeze, and forces (n, w) of one in which all of them do.
 
-        maximise sum_i s_i   subject to   G f = 0,   f_i in cone_i,   0 <= s_i <= 1,   s_i <= f_i.n_i
+    maximise sum_i s_i   subject to   G f = 0,   f_i in cone_i,   0 <= s_i <= 1,   s_i <= f_i.n_i
     """
     w, n = grasp.width, len(grasp)
     rows = Rows(w * n + n)
