@@ -4,8 +4,8 @@
     python benchmarks/edges.py --table -o DIR  the table of what DIR holds
 
 Grasps are made with their edge (``boundary``), so that the place of every load follows from the construction.
-In the plane without limits it is decided again by membership in rational arithmetic, and so are certificates and
-states (``exact_judge``).
+In the plane without limits it is decided again by membership in rational arithmetic, and certificates and
+states are judged so everywhere (``exact_judge``).
 """
 
 import argparse

@@ -29,7 +29,7 @@ _TOUCHING = 1e-3
 _STEPS = 8
 _REACHED = 2.0**-60
 _ROUNDING = 2.0**-50
-# A contact without limit that opposes a motion by more than this fraction of its speed holds by a small lever.
+# A contact without limit that opposes a motion by more than this part of its speed holds by a small lever.
 _NOISE = 2.0**-46
 # Lengths of the twist at which its rounding is tried where contacts that stand still leave no other room.
 _LENGTHS = 24
