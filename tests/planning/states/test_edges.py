@@ -113,5 +113,7 @@ def test_at_its_limit_is_said_with_the_reserve_that_was_kept() -> None:
         rg.choose_state(block, rg.Wrench([0.45 + 1e-9, -1]), "effort", reserve=0.1)
     assert "is at its limit for P1, P2, P3 with 0.1 of the friction kept in reserve" in str(error.value)
     assert error.value.certificate is None
-    with pytest.raises(rg.Infeasible, match="more friction than that leaves; choose a smaller reserve"):
+    with pytest.raises(
+        rg.Infeasible, match="more friction than that leaves, or is at the limit of what they can hold"
+    ):
         rg.choose_state(block, rg.Wrench([0.46, -1]), "effort", reserve=0.1)

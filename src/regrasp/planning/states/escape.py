@@ -13,8 +13,8 @@ from regrasp.errors import Infeasible
 from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.exact.refining import proven
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.refining import proven
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.separation import edge_of, gap_left

@@ -9,8 +9,8 @@ import numpy as np
 from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import NEVER
+from regrasp.mechanics.exact.membership import vertex_forces
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.membership import vertex_forces
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria, objective_value

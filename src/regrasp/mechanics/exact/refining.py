@@ -12,12 +12,12 @@ delta, a few units of rounding, is what the rounding of the twist itself may tak
 
 from collections.abc import Iterator
 from fractions import Fraction
-from math import inf, sqrt
+from math import hypot, inf, sqrt
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.escape import NEVER, EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.opposition import dot, exact
 from regrasp.mechanics.wrench import Wrench
@@ -29,7 +29,9 @@ _TOUCHING = 1e-3
 _STEPS = 8
 _REACHED = 2.0**-60
 _ROUNDING = 2.0**-50
-# A contact without limit that opposes a motion by more than this part of its speed holds by a small lever.
+# A contact without limit that opposes a motion by more than this part of its speed holds by a small lever:
+# then forces must be so many times what counts as never.
+_FAR = 10
 _NOISE = 2.0**-46
 # Lengths of the twist at which its rounding is tried where contacts that stand still leave no other room.
 _LENGTHS = 24
@@ -39,6 +41,7 @@ def proven(
     grasp: Grasp, load: Wrench, twist: Array, frictions: list[float], limits: list[float]
 ) -> EscapeTwist | None:
     """The twist, or one a hair from it, as a proof; None where none is found."""
+    never = NEVER * (hypot(*load.force) + hypot(*load.torque) / (grasp.size or 1.0))
     for candidate in _candidates(grasp, twist, frictions, limits):
         if candidate.any() and np.isfinite(candidate).all():
             found = EscapeTwist(grasp, load, candidate, tuple(frictions), tuple(limits))
@@ -46,7 +49,7 @@ def proven(
             opposed = max(
                 (o for o, f in zip(found.oppositions, limits, strict=True) if f == inf), default=0.0
             )
-            if found.is_proof and opposed <= _NOISE * speed:
+            if found.is_proof and (opposed <= _NOISE * speed or found.least_force > _FAR * never):
                 return found
             if found.load_power <= 0:
                 return None
