@@ -57,7 +57,8 @@ def choices(effort: Effort) -> Iterator[Row]:
     sample = pairs.first(effort.sample)
     threads = numba.get_num_threads()
     for code, objective in enumerate(OBJECTIVES):
-        same = objective != "peak"  # the least largest |f| is no QP: the effort QP is its yardstick
+        # The least largest |f| is no QP, the least sum of normals an LP: the effort QP is their yardstick.
+        same = objective not in ("peak", "sum_normal")
         programs = [quadratics(pair, objective if same else "effort") for pair in sample]
         if same:
             check_agreement(sample, programs, objective)

@@ -10,11 +10,12 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.finger_change import plan_addition, plan_removal
+from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
 from regrasp.planning.changes.rotation import plan_rotation
 from regrasp.planning.states.batch import best_squeezes, locus_intervals
 from regrasp.planning.states.choosing import choose_state
-from regrasp.planning.states.criteria import ChosenState
+from regrasp.planning.states.criteria import ChosenState, Criteria
+from regrasp.planning.states.objectives import ForceCost
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plans.loads import LoadSeries
 from regrasp.plans.sampled import SampledPath
@@ -72,8 +73,10 @@ __all__ = [
     "Bottleneck",
     "ChosenState",
     "Contact",
+    "Criteria",
     "EquilibriumLocus",
     "EscapeTwist",
+    "ForceCost",
     "Grasp",
     "GraspState",
     "HeldDirections",
@@ -110,6 +113,7 @@ __all__ = [
     "held_sphere",
     "locus_intervals",
     "plan_addition",
+    "plan_exchange",
     "plan_regrasp",
     "plan_regrasps",
     "plan_removal",

@@ -152,7 +152,7 @@ def test_setpoint_outside_its_cone_is_not_written(
         def forces(self, t: object) -> object:
             return super().forces(t) * [[1, 1], [1, 1], [1, -1]]
 
-    slipping = Slipping(PLAN.kind, PLAN.contact, PLAN.start, PLAN.end, PLAN.scaling, PLAN.record)
+    slipping = Slipping(PLAN.start, PLAN.end, PLAN.scaling, PLAN.record, PLAN.leaving)
     monkeypatch.setattr("regrasp.files.plan_scenario", lambda scenario: slipping)
     status, out, err = regrasp(capsys, "plan", EXAMPLES / "paper.toml", "-o", tmp_path / "out")
     assert (status, out) == (1, "")

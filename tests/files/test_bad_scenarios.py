@@ -242,8 +242,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(('objective = "angle"', 'objective = "safest"')),
         2,
         [
-            "task.objective: expected 'angle', 'force', 'effort', 'peak', 'peak_normal' or 'friction_use', "
-            "got 'safest'"
+            "task.objective: expected 'angle', 'force', 'effort', 'peak', 'peak_normal', 'friction_use' or "
+            "'sum_normal', got 'safest'"
         ],
     ),
     "unknown method": (
@@ -566,7 +566,8 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     "choose_state: unknown objective": (
         lambda: rg.choose_state(TWO, LOAD, "safest"),
         rg.InvalidInput,
-        "objective must be one of angle, force, effort, peak, peak_normal, friction_use; got 'safest'",
+        "objective must be one of angle, force, effort, peak, peak_normal, friction_use, sum_normal; "
+        "got 'safest'",
     ),
     "choose_state: unknown method": (
         lambda: rg.choose_state(TWO, LOAD, method="magic"),

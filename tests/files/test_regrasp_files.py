@@ -88,6 +88,7 @@ def test_turning_plans_are_read_back_bit_for_bit(plan: rg.Transition, tmp_path: 
     assert rg.verify(back).ok
 
 
+@pytest.mark.filterwarnings("ignore:angle is in radians")  # whole turns are meant here
 @given(angle=st.floats(-7, 7).filter(lambda angle: abs(angle) > 1e-6), weight=st.floats(1e-3, 1e3))
 def test_any_rotation_is_read_back(
     angle: float, weight: float, tmp_path_factory: pytest.TempPathFactory

@@ -250,6 +250,7 @@ def test_a_finger_in_the_air_stays_without_force(tmp_path: Path) -> None:
         read_setpoints(path, plan)
 
 
+@pytest.mark.filterwarnings("ignore:angle is in radians")  # whole turns are meant here
 def test_turns_of_any_size_are_read_back(tmp_path: Path) -> None:
     """A whole turn changes the quaternion's sign, and the next step goes on from there."""
     first = rg.plan_rotation(BALL, 7.0, axis=[1, 2, -0.5])

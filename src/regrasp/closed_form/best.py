@@ -204,6 +204,15 @@ def best_peak_normal(lo: float, hi: float, phi: float, first: Line, second: Line
     return clamp((q2 - q1) / (p1 - p2), lo, hi)
 
 
+def best_sum_normal(lo: float, hi: float, phi: float, first: Line, second: Line) -> float:
+    """The x of the least N_1 + N_2, a line in x: an end of the locus; where it is level the least effort."""
+    rise = first[0] + second[0]
+    end = lo if rise > 0.0 else hi
+    if abs(rise) <= IDLE or abs(end) == inf:
+        return best_effort(lo, hi, phi)
+    return end
+
+
 def _upright(lo: float, hi: float, line: Line, turn: float) -> float:
     """The x of [lo, hi] where a force inside its cone is nearest to the normal (T = 0)."""
     g, h = line[2], line[3]

@@ -9,13 +9,14 @@ from regrasp.closed_form.best import (
     best_friction_use,
     best_peak,
     best_peak_normal,
+    best_sum_normal,
     clamp,
     contact_lines,
 )
 from regrasp.closed_form.locus import common_interval, cone_interval, is_rounding, pair_frame, within_limit
 
-ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE = range(6)
-OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal", "friction_use")
+ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE, SUM_NORMAL = range(7)
+OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal", "friction_use", "sum_normal")
 """Names of the objectives; the place of a name is its code."""
 
 
@@ -68,6 +69,8 @@ def best_squeeze(
         first, second = contact_lines(ux, uy, phi, a, b, nx1, ny1, mu1, nx2, ny2, mu2)
         if objective == PEAK_NORMAL:
             x = best_peak_normal(lo, hi, phi, first, second)
+        elif objective == SUM_NORMAL:
+            x = best_sum_normal(lo, hi, phi, first, second)
         else:
             if limit1 == inf or limit2 == inf:
                 x = best_peak(lo, hi, phi, a, b)

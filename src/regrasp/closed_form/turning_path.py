@@ -100,13 +100,17 @@ def arc_peaks(start: Array, middle: Array, end: Array, delta: float) -> tuple[fl
     half = delta / 2
     v = (middle - (start + end) / 2) * (cos(half) / sin(half) ** 2)
     u, w = middle - v / cos(half), (end - start) / (2 * sin(half))
+    size = float(max(abs(u).max(), abs(v).max(), abs(w).max()))
+    if size == 0:
+        return 0.0, 0.0
+    u, v, w = u / size, v / size, w / size  # squares of small forces would vanish
     vv, ww, vw = float(v @ v), float(w @ w), float(v @ w)
     first, second = complex(u @ w, u @ v), complex(vw, (vv - ww) / 2)  # of exp(i x) and exp(2 i x)
     zeros = np.angle(np.roots([second, first, 0.0, first.conjugate(), second.conjugate()]))
     at = np.r_[-half, half, zeros[abs(zeros) <= abs(half)]][:, None]
     highest = ((u + v * np.cos(at) + w * np.sin(at)) ** 2).sum(axis=1).max()
     steepest = max(_highest((vv + ww) / 2, (ww - vv) / 2, -vw, side) for side in (half, -half))
-    return sqrt(float(highest)), sqrt(steepest)
+    return size * sqrt(float(highest)), size * sqrt(steepest)
 
 
 def _highest(c: float, p: float, q: float, delta: float) -> float:

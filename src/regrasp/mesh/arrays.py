@@ -11,6 +11,9 @@ from regrasp.mechanics.value import numbers
 
 Indices = NDArray[np.int64]
 
+_MOST_DIFFERENT = 1_500_000
+_MOST_NEAR = 30  # vertices in the cell of one, of two tolerances a side, on average
+
 
 def checked_vertices(vertices: ArrayLike) -> Array:
     """(k, 3) finite floats, a new array."""
@@ -55,18 +58,53 @@ def merged(vertices: Array, faces: Indices, tolerance: float = 0.0) -> tuple[Arr
 
     Faces that lose a corner by it and vertices that no face names are left out; the order stays.
     """
+    same, first = _equal(vertices)
     if tolerance:
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-        from scipy.spatial import cKDTree
-
-        i, j = cKDTree(vertices).query_pairs(tolerance, output_type="ndarray").T
-        links = coo_array((np.ones(i.size), (i, j)), shape=(len(vertices),) * 2)
-        same = connected_components(links, directed=False)[1]
-    else:
-        same = np.unique(vertices + 0.0, axis=0, return_inverse=True)[1].ravel()  # + 0.0: -0.0 is 0.0
-    _, first = np.unique(same, return_index=True)
+        near = _near(vertices[first], tolerance)
+        same = near[same]
+        _, first = np.unique(same, return_index=True)
     faces = first[same][faces]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     used, renumbered = np.unique(faces, return_inverse=True)
     return vertices[used], renumbered.reshape(-1, 3)
+
+
+def _equal(vertices: Array) -> tuple[Indices, Indices]:
+    """(k,) a number for each vertex, the same for equal ones, and of each number the first vertex."""
+    order = np.lexsort(vertices.T)
+    ahead = vertices[order]
+    new = np.concatenate([[True], (ahead[1:] != ahead[:-1]).any(axis=1)])
+    same = np.empty(len(vertices), dtype=np.int64)
+    same[order] = np.cumsum(new) - 1
+    return same, order[new]
+
+
+def _near(vertices: Array, tolerance: float) -> Indices:
+    """(k,) a number for each of different vertices, the same for chains of steps up to ``tolerance``."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    if len(vertices) > _MOST_DIFFERENT:
+        raise InvalidInput(f"there are {len(vertices)} different vertices, more than {_MOST_DIFFERENT}")
+    crowd = np.bincount(_equal(np.floor(vertices / (2 * tolerance)))[0]).astype(float)
+    if (crowd**2).sum() > _MOST_NEAR * len(vertices):
+        raise InvalidInput(
+            f"of the vertices many are within {tolerance:.3g} of one another, a millionth of the size: "
+            "is one of them far from the rest?"
+        )
+    i, j = cKDTree(vertices).query_pairs(tolerance, output_type="ndarray").T
+    links = coo_array((np.ones(i.size), (i, j)), shape=(len(vertices),) * 2)
+    result: Indices = connected_components(links, directed=False)[1].astype(np.int64)
+    return result
+
+
+def checked_points(points: ArrayLike) -> Array:
+    """(..., 3) finite floats."""
+    try:
+        result = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"points must be numbers of shape (..., 3), got {points!r}") from None
+    if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
+        raise InvalidInput(f"points must be finite, of shape (..., 3); got shape {result.shape}: {points!r}")
+    return result

@@ -1,52 +1,84 @@
 """Meshes from files, by trimesh, and as STL without it."""
 
+import io
+import warnings
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mesh.arrays import Indices, checked_vertices, merged
+from regrasp.mesh.encodings import check_count, prepared
+from regrasp.mesh.mending import Mended, one_of, parted, without_holes, without_slivers
 from regrasp.mesh.shading import face_normals
+from regrasp.outline.opening import quiet, read_bytes, reason
+from regrasp.outline.region import checked_size
 
 _KINDS = (".stl", ".obj", ".ply")
+_MOST = 64_000_000  # bytes
 # Vertices nearer than this, as a fraction of the largest side, are one: single precision keeps 6e-8.
 _SAME = 1e-6
 
 
-def read(path: Path) -> tuple[Array, Indices]:
-    """Vertices and faces of an STL, OBJ or PLY file, in the file's units; see ``Mesh.from_file``."""
+def read(path: Path, bodies: str = "one", close_holes: float = 0.0) -> Mended:
+    """Vertices, faces and words on what was mended, in the file's units; see ``Mesh.from_file``."""
     kind = path.suffix.lower()
-    if not path.is_file():
-        raise InvalidInput("expected a file with a mesh, found none")
-    if kind not in _KINDS:
+    if kind not in _KINDS and path.is_file():
         raise InvalidInput(f"the kind of file must be one of {', '.join(_KINDS)}; got {kind or 'none'!r}")
-    if path.stat().st_size == 0:
+    data = read_bytes(path, "a mesh", _MOST)
+    if not data:
         raise InvalidInput("the file is empty")
-    pieces = [piece for piece in _pieces(path, kind[1:]) if len(piece[1])]
+    pieces = [piece for piece in _pieces(data, kind[1:]) if len(piece[1])]
     if not pieces:
         raise InvalidInput("the file has no faces: a mesh is made of triangles")
+    check_count(sum(len(faces) for _, faces in pieces))
     counts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])
     vertices = checked_vertices(np.concatenate([vertices for vertices, _ in pieces]))
     faces = np.concatenate([faces + before for (_, faces), before in zip(pieces, counts[:-1], strict=True)])
-    return merged(vertices, faces, _SAME * float(np.ptp(vertices, axis=0).max()))
+    return _mended(vertices, faces, bodies, close_holes)
 
 
-def _pieces(path: Path, kind: str) -> list[tuple[Array, Indices]]:
+def _mended(vertices: Array, faces: Indices, bodies: str, close_holes: float) -> Mended:
+    size = checked_size(vertices, "the mesh")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise InvalidInput(f"a face names a vertex that is not there; there are {len(vertices)}")
+    vertices, faces = merged(vertices, faces, _SAME * size)
+    if not faces.size:
+        raise InvalidInput("the mesh is empty: every face has two corners in one place")
+    vertices, faces, notes = without_slivers(vertices, faces, _SAME * size)
+    if close_holes:
+        vertices, faces, words = without_holes(vertices, faces, close_holes * size)
+        notes += words
+    vertices, faces, words = one_of(vertices, faces, bodies)
+    return vertices, faces, notes + words
+
+
+def advice(faces: Indices, error: InvalidInput) -> str:
+    """What ``Mesh.from_file`` can do about a mesh that was refused."""
+    if "not watertight" in str(error):
+        return "; close_holes=0.05 closes holes up to a twentieth of its size"
+    if len(parted(faces)) > 1:
+        return '; bodies="largest" takes the largest, bodies="fuse" unites them'
+    return ""
+
+
+def _pieces(data: bytes, kind: str) -> list[tuple[Array, Indices]]:
     """Every geometry in a file, in its place: an OBJ may part one body by groups or materials."""
     try:
         import trimesh
     except ImportError:
         raise ImportError(f"reading {kind.upper()} needs trimesh: pip install 'regrasp[meshes]'") from None
-    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
+    stream = io.BytesIO(prepared(data, kind))
     try:
-        scene = trimesh.load_scene(path, file_type=kind, process=False, **options)
-        dumped = [piece for piece in scene.dump() if isinstance(piece, trimesh.Trimesh)]
+        with quiet("trimesh"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # text that stops being numbers is an error
+            warnings.filterwarnings("error", message="string or file could not be read")
+            scene = trimesh.load_scene(stream, file_type=kind, process=False)
+            dumped = [piece for piece in scene.dump() if isinstance(piece, trimesh.Trimesh)]
         return [(np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int64)) for p in dumped]
     except Exception as error:  # the parsers raise whatever their numbers and strings raise
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise InvalidInput(f"the file cannot be read as {kind.upper()}: {reason}") from None
+        raise InvalidInput(f"the file cannot be read as {kind.upper()}: {reason(error)}") from None
 
 
 def stl(vertices: Array, faces: Indices) -> bytes:

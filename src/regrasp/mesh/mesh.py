@@ -1,6 +1,6 @@
 """A solid object as a value: a closed surface of triangles."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -9,15 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number, read_only
+from regrasp.mechanics.checks import Array, array, choice, number, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.mesh.arrays import Indices, checked_faces, checked_vertices, merged
+from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
 from regrasp.mesh.closest import at, touching
+from regrasp.mesh.doubts import warn_of_distance, warn_of_unit, warn_of_walls
+from regrasp.mesh.rays import entry, outermost
 from regrasp.mesh.shading import Shading, face_normals, turns
-from regrasp.mesh.solid import doubled_areas, moments, solid
+from regrasp.mesh.solid import doubled_areas, inertia, moments, solid
 from regrasp.mesh.spread import Surface, spread
 from regrasp.outline import Outline
+from regrasp.outline.region import checked_size
 
 CREASE = float(np.radians(35.0))
 """An edge is sharp where the surface turns there by more than this [rad], if not said otherwise."""
@@ -25,6 +28,7 @@ CREASE = float(np.radians(35.0))
 _AMBIGUOUS = np.radians(5.0)  # normals of faces that meet may differ by this where a finger touches
 _AT_EDGE = 1e-9  # of the largest side
 _FAR = 0.1  # of the largest side
+_OPPOSED = -0.5  # the cosine between walls that face apart
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,11 +51,15 @@ class Mesh(ArrayValue):
     faces: Indices
     smooth: bool
     crease: float
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    """What reading the file has mended or left out, in words."""
 
     def __init__(
         self, vertices: ArrayLike, faces: ArrayLike, *, smooth: bool = False, crease: float = CREASE
     ) -> None:
         points = checked_vertices(vertices)
+        if len(points):
+            checked_size(points, "the mesh")
         points, triangles = merged(points, checked_faces(faces, len(points)))
         if not triangles.size:
             raise InvalidInput("the mesh is empty: every face has two corners in one place")
@@ -64,25 +72,48 @@ class Mesh(ArrayValue):
         object.__setattr__(self, "faces", triangles)
         object.__setattr__(self, "smooth", bool(smooth))
         object.__setattr__(self, "crease", limit)
+        object.__setattr__(self, "notes", ())
 
     @classmethod
     def from_file(
-        cls, path: str | PathLike[str], *, scale: float = 1.0, smooth: bool = False, crease: float = CREASE
+        cls,
+        path: str | PathLike[str],
+        *,
+        scale: float | None = None,
+        smooth: bool = False,
+        crease: float = CREASE,
+        bodies: str = "one",
+        close_holes: float = 0.0,
     ) -> "Mesh":
         """The body in an STL, OBJ or PLY file, in the file's units times ``scale``.
 
-        Files of triangles do not say their unit: look at ``size``. Vertices within 1e-6 of the largest side
-        are one, and all groups or materials of a file together are the body. Needs the extra
-        ``regrasp[meshes]``. Raises ``InvalidInput`` for a file that cannot be read and for what ``Mesh``
-        refuses; ``ImportError`` without the extra.
-        """
-        from regrasp.mesh.files import read
-        from regrasp.outline.readers import naming
+        Files of triangles do not say their unit: look at ``size``; without ``scale`` a side above 100 gives
+        a warning. Vertices within 1e-6 of the largest side are one, faces lower than that are taken out, and
+        all groups or materials of a file together are the body.
 
-        factor = number(scale, "scale", above=0)
-        with naming(path):
-            vertices, faces = read(Path(path))
-            return cls(factor * vertices, faces, smooth=smooth, crease=crease)
+        bodies: "one" refuses several closed surfaces, "largest" takes the one of the largest volume, "fuse"
+        unites them; a cavity is filled by both. close_holes: holes up to this part of the largest side across
+        are closed by triangles between their rims. ``notes`` of the result say what was done.
+        Needs the extra ``regrasp[meshes]``. Raises ``InvalidInput`` for a file that cannot be read and for
+        what ``Mesh`` refuses; ``ImportError`` without the extra.
+        """
+        from regrasp.mesh.files import advice, read
+        from regrasp.mesh.mending import BODIES
+        from regrasp.outline.opening import checked_path, naming
+
+        factor = 1.0 if scale is None else number(scale, "scale", above=0)
+        how, widest = choice(bodies, "bodies", BODIES), number(close_holes, "close_holes", least=0)
+        file = checked_path(path)
+        with naming(file):
+            vertices, faces, notes = read(file, how, widest)
+            try:
+                mesh = cls(factor * vertices, faces, smooth=smooth, crease=crease)
+            except InvalidInput as error:
+                raise InvalidInput(f"{error}{advice(faces, error)}") from None
+        object.__setattr__(mesh, "notes", tuple(notes))
+        if scale is None:
+            warn_of_unit(file, mesh.size)
+        return mesh
 
     @classmethod
     def box(cls, a: float, b: float, c: float) -> "Mesh":
@@ -155,6 +186,11 @@ class Mesh(ArrayValue):
         return read_only(self._moments[1])
 
     @cached_property
+    def inertia(self) -> Array:
+        """(3, 3) inertia about the centre of mass for a density of 1 [m^5]: times mass / volume in kg m^2."""
+        return read_only(inertia(self.vertices, self.faces))
+
+    @cached_property
     def size(self) -> Array:
         """(3,) how far it extends along x, y and z [m]."""
         return read_only(np.ptp(self.vertices, axis=0))
@@ -176,7 +212,7 @@ class Mesh(ArrayValue):
 
         For points relative to the centre of mass, such as a contact's, add ``centre_of_mass``.
         """
-        given = _points(points)
+        given = checked_points(points)
         faces, weights = self._nearest(given.reshape(-1, 3))
         return at(self._corners[faces], weights).reshape(given.shape)
 
@@ -185,7 +221,7 @@ class Mesh(ArrayValue):
 
         At an edge that of one of the faces there.
         """
-        given = _points(points)
+        given = checked_points(points)
         return self._normals_at(*self._nearest(given.reshape(-1, 3))).reshape(given.shape)
 
     def contact_at(
@@ -196,15 +232,27 @@ class Mesh(ArrayValue):
         max_force: float | None = None,
         torsion: float | None = None,
         name: str | None = None,
+        along: ArrayLike | None = None,
+        outside: bool = False,
     ) -> Contact:
         """The contact where the surface is nearest to ``point`` (3,), in the coordinates given [m].
 
         friction, max_force, torsion, name: as of ``Contact``.
+        along: (3,) the way the finger comes; the contact is then where a line through the point along it
+        enters the object, nearest to the point. outside: only where nothing is in front of the surface, so
+        not on the inner side of a wall. Without either a warning says when the point is off the surface and
+        another wall, which faces the other way, is about as near, or when it is so far off that the unit may
+        be another.
         Raises ``InvalidInput`` at an edge or corner where the normals of the faces that meet differ by more
         than 5 degrees, and for a point farther from the surface than a tenth of the object's largest side.
         """
         given = array(point, "point", (3,))
-        foot = self.nearest(given)
+        if along is not None and outside:
+            raise InvalidInput("give one of along and outside")
+        if along is not None:
+            foot = entry(given, array(along, "along", (3,)), self._corners, self._flat)
+        else:
+            foot = outermost(given, self._corners, self._flat) if outside else self.nearest(given)
         away, largest = float(np.linalg.norm(given - foot)), float(self.size.max())
         if away > _FAR * largest:
             raise InvalidInput(
@@ -223,6 +271,9 @@ class Mesh(ArrayValue):
                 f"point {numbers(foot)} is at an edge or corner, where {len(faces)} faces meet at up to "
                 f"{most:.3g} degrees and no normal is defined; move it into a face{advice}"
             )
+        if along is None and not outside and away > _AT_EDGE * largest:
+            warn_of_walls(given, away, self._corners[self._flat @ normals[0] < _OPPOSED])
+        warn_of_distance(given, away, self.size)
         place = foot - self.centre_of_mass
         return Contact(place, normals[0], friction, max_force=max_force, torsion=torsion, name=name)
 
@@ -303,13 +354,3 @@ def whole(value: int, what: str, least: int) -> int:
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
         raise InvalidInput(f"{what} must be a whole number of at least {least}, got {value!r}")
     return int(value)
-
-
-def _points(points: ArrayLike) -> Array:
-    try:
-        result = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"points must be numbers of shape (..., 3), got {points!r}") from None
-    if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
-        raise InvalidInput(f"points must be finite, of shape (..., 3); got shape {result.shape}: {points!r}")
-    return result

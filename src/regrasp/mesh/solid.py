@@ -47,6 +47,21 @@ def moments(vertices: Array, faces: Indices) -> tuple[float, Array]:
     return total / 6, base + (six[:, None] * (a + b + c)).sum(axis=0) / (4 * total)
 
 
+def inertia(vertices: Array, faces: Indices) -> Array:
+    """(3, 3) inertia about the centroid for a density of 1 [m^5], by the same tetrahedra.
+
+    With corners a, b, c and the centroid as the fourth, the integral of x x^T over one is
+    det / 120 (s s^T + a a^T + b b^T + c c^T), s = a + b + c, det = six times its volume.
+    """
+    corners = (vertices - moments(vertices, faces)[1])[faces]  # (m, 3, 3)
+    a, b, c = corners.transpose(1, 0, 2)
+    det = (a * np.cross(b, c)).sum(axis=1)
+    s = corners.sum(axis=1)
+    second = np.einsum("m,mi,mj->ij", det, s, s) + np.einsum("m,mki,mkj->ij", det, corners, corners)
+    result: Array = (np.trace(second) * np.eye(3) - second) / 120
+    return (result + result.T) / 2
+
+
 def doubled_areas(corners: Array) -> Array:
     """(m,) twice the areas of triangles (m, 3, 3) [m^2]."""
     a, b, c = corners.transpose(1, 0, 2)

@@ -22,6 +22,10 @@ class Boundary(Protocol):
     def moments(self) -> tuple[float, Array]:
         """Area [m^2] and centroid (2,) [m] of the region inside."""
 
+    @property
+    def second_moment(self) -> float:
+        """The integral of the squared distance to the centroid over the region inside [m^4]."""
+
     def points(self, s: ArrayLike) -> Array:
         """(..., 2) points at arc lengths."""
 

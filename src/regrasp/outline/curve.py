@@ -73,6 +73,18 @@ class CurveBoundary(ArrayValue):
         area, *first = _integrals(density, self._u[:-1], self._u[1:]).sum(axis=0)
         return float(area), base + np.array(first) / area
 
+    @cached_property
+    def second_moment(self) -> float:
+        """Polar, about the centroid [m^4]: the flux of x |x|^2 / 4, whose divergence is |x|^2."""
+        centre = self.moments[1]
+
+        def density(u: Array) -> Array:
+            x, dx = self.at(u) - centre, self.at(u, 1)
+            result: Array = (x[:, 0] * dx[:, 1] - x[:, 1] * dx[:, 0]) * (x * x).sum(axis=1) / 4
+            return result
+
+        return float(_integrals(density, self._u[:-1], self._u[1:]).sum())
+
     def points(self, s: ArrayLike) -> Array:
         """(..., 2) points at arc lengths."""
         return self.at(self._parameter(s))

@@ -1,17 +1,16 @@
 """The outline of a planar object as a value."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 from typing import Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number, read_only
+from regrasp.mechanics.checks import Array, array, choice, number, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary
@@ -44,6 +43,8 @@ class Outline(ArrayValue):
 
     boundary: Boundary
     holes: tuple[Boundary, ...]
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    """What reading the file has left out or mended, in words."""
 
     def __init__(self, vertices: ArrayLike, holes: Iterable[Hole] = ()) -> None:
         self._set(PolygonBoundary(checked_ring(vertices, "outline")), holes)
@@ -67,24 +68,44 @@ class Outline(ArrayValue):
 
     @classmethod
     def from_file(
-        cls, path: str | PathLike[str], *, scale: float = 1.0, tolerance: float | None = None
+        cls,
+        path: str | PathLike[str],
+        *,
+        scale: float = 1.0,
+        tolerance: float | None = None,
+        layers: str | Iterable[str] | None = None,
+        unit: str | None = None,
     ) -> "Outline":
         """The polygon in an SVG, DXF or coordinate file (CSV, TXT, DAT), in the file's units times ``scale``.
 
         Of several closed curves the largest is the outline and those inside it are holes. Curves become
         chords within ``tolerance`` of them [file's units], which turn by 2 degrees at most; ends of pieces
         that near are joined. It is 1e-4 of the drawing's larger side if not given. SVG's y axis, which points
-        down, is turned up. SVG and DXF need the extra ``regrasp[outlines]``.
+        down, is turned up.
+
+        layers: read these layers only, of a DXF, or groups of an SVG by ``id`` or label, hidden ones too.
+        Without it what is hidden is left out, and what is a centre line or a dimension by its name.
+        unit: convert from the unit that the file states to this one: mm, cm, m, in and others.
+        ``notes`` of the result say what was left out, closed or recovered, and the file's unit; a file that
+        had to be recovered gives a warning too. DXF needs the extra ``regrasp[outlines]``.
         Raises ``InvalidInput`` for a file that cannot be read and for an outline that is open, crosses
         itself, is empty or one of several; ``ImportError`` without the extra.
         """
-        from regrasp.outline.readers import naming, read_rings
+        from regrasp.outline.drawing import UNITS, checked_layers
+        from regrasp.outline.opening import checked_path, naming
+        from regrasp.outline.readers import read_rings
 
         factor = number(scale, "scale", above=0)
         within = None if tolerance is None else number(tolerance, "tolerance", above=0)
-        with naming(path):
-            outer, *holes = read_rings(Path(path), within)
-            return cls(factor * outer, [factor * hole for hole in holes])
+        names = checked_layers(layers)
+        wanted = None if unit is None else choice(unit, "unit", tuple(UNITS))
+        file = checked_path(path)
+        with naming(file):
+            found = read_rings(file, within, names, wanted)
+            outer, *holes = (factor * ring for ring in found.rings)
+            outline = cls(outer, holes)
+        object.__setattr__(outline, "notes", found.notes)
+        return outline
 
     @classmethod
     def _of(cls, boundary: Boundary, holes: Iterable[Hole]) -> "Outline":
@@ -97,6 +118,7 @@ class Outline(ArrayValue):
         check_holes(_chords(boundary), [_chords(hole) for hole in inner])
         object.__setattr__(self, "boundary", boundary)
         object.__setattr__(self, "holes", inner)
+        object.__setattr__(self, "notes", ())
 
     # -- the object -------------------------------------------------------------------------------------
 
@@ -118,6 +140,16 @@ class Outline(ArrayValue):
         for area, at in (hole.moments for hole in self.holes):
             shift += area * (centroid - at)
         return read_only(centroid + shift / self.area)
+
+    @cached_property
+    def inertia(self) -> float:
+        """About the centre of mass for a density of 1 [m^4]: times mass / area in kg m^2."""
+
+        def part(region: Boundary) -> float:  # the parallel axis theorem
+            area, centroid = region.moments
+            return region.second_moment + area * float(((centroid - self.centre_of_mass) ** 2).sum())
+
+        return part(self.boundary) - sum(part(hole) for hole in self.holes)
 
     def polygon(self, tolerance: float | None = None) -> Array:
         """(k, 2) a polygon for the outer boundary, relative to the centre of mass; exact if it is one [m].

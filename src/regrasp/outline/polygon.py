@@ -61,6 +61,14 @@ class PolygonBoundary(ArrayValue):
         cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         return float(cross.sum() / 2), base + ((a + b) * cross[:, None]).sum(axis=0) / (3 * cross.sum())
 
+    @property
+    def second_moment(self) -> float:
+        """Polar, about the centroid [m^4]: triangles from it, cross / 12 (a.a + a.b + b.b) each."""
+        a = self.vertices - self.moments[1]
+        b = np.roll(a, -1, axis=0)
+        cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        return float((cross * (a * a + a * b + b * b).sum(axis=1)).sum() / 12)
+
     def points(self, s: ArrayLike) -> Array:
         """(..., 2) points at arc lengths."""
         side, along = self._place(s)

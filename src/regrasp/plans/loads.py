@@ -1,6 +1,6 @@
 """A load that varies in time: an accelerating or a turning hand."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -36,11 +36,20 @@ class LoadSeries(ArrayValue):
         object.__setattr__(self, "vectors", w)
 
     @classmethod
-    def sampled(cls, load: Callable[[float], Wrench], duration: float, instants: int = 101) -> "LoadSeries":
-        """A function of time at ``instants`` equal steps from 0 to ``duration`` [s]."""
+    def sampled(
+        cls,
+        load: Callable[[float], Wrench],
+        duration: float,
+        instants: int = 101,
+        also: Sequence[float] = (),
+    ) -> "LoadSeries":
+        """A function of time at ``instants`` equal steps from 0 to ``duration``, and at more times [s]."""
         if not callable(load):
             raise InvalidInput(f"load must be a function of time that returns a Wrench, got {load!r}")
         times = np.linspace(0, number(duration, "duration", above=0), instants)
+        inside = [t for t in also if 0 < t < duration]
+        if inside:
+            times = _merged(np.unique(inside), times, 1e-9 * duration / instants)
         return cls(times, [_wrench_at(load, t).vector for t in times.tolist()])
 
     @property
@@ -63,12 +72,8 @@ class LoadSeries(ArrayValue):
     def refined(self, instants: int, *also: float) -> "LoadSeries":
         """The same load known at ``instants`` equal steps, too, and at the times of ``also`` [s]."""
         times: Array = np.unique(np.array(also, dtype=float))
-        # Steps of rounding beside a time that is there already would make stretches of no length.
         for more in (self.times, np.linspace(0, self.duration, instants)):
-            fence = np.concatenate([[-inf], times, [inf]])
-            place = np.searchsorted(times, more)
-            away = np.minimum(more - fence[place], fence[place + 1] - more)
-            times = np.union1d(times, more[away > 1e-9 * self.duration / instants])
+            times = _merged(times, more, 1e-9 * self.duration / instants)
         return LoadSeries(times, self.at(times))
 
     def __repr__(self) -> str:
@@ -80,3 +85,11 @@ def _wrench_at(load: Callable[[float], Wrench], t: float) -> Wrench:
     if not isinstance(wrench, Wrench):
         raise InvalidInput(f"a load function must return a Wrench, at t = {t:g} it returned {wrench!r}")
     return wrench
+
+
+def _merged(times: Array, more: Array, apart: float) -> Array:
+    """Both, but for those of ``more`` not ``apart`` from one of ``times``: every stretch has a length."""
+    fence = np.concatenate([[-inf], times, [inf]])
+    place = np.searchsorted(times, more)
+    away = np.minimum(more - fence[place], fence[place + 1] - more)
+    return np.union1d(times, more[away > apart])

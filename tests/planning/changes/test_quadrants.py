@@ -42,6 +42,7 @@ def widest_path(start, end, first, turn, instants=25):
     return solution.value[-1] * task.unit, angles, forces
 
 
+@pytest.mark.filterwarnings("ignore:angle is in radians")  # whole turns are meant here
 @pytest.mark.parametrize("quarters", [1, 2, 3, 4, 5, -1, -2, -3, -4, -5])
 def test_a_rotation_agrees_with_the_path_program_in_every_quadrant(quarters):
     """Between two states of a turn the closed form keeps the margin of the narrower one: no path keeps more.

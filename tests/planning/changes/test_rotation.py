@@ -35,6 +35,7 @@ def test_the_crest_of_a_turn(f, g, delta):
     assert path[-1] == pytest.approx(g, abs=1e-12 * size)
 
 
+@pytest.mark.filterwarnings("ignore:angle is in radians")  # whole turns are meant here
 @pytest.mark.parametrize("angle", [0.3, -0.3, 1.5, pi, -4.0, 2 * pi, 9.0])
 def test_a_turn_holds_at_every_time(angle):
     plan = rg.plan_rotation(GRASP, angle, load=WEIGHT, duration=2.0)

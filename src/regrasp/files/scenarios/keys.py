@@ -1,13 +1,14 @@
 """Keys that more than one kind of scenario has."""
 
 from functools import cached_property
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import choice
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.options import described
 from regrasp.plans.timing import TimeScaling
 from regrasp.programs import available_backends
 
@@ -31,15 +32,13 @@ AnyForce = Annotated[list[float], Field(min_length=2, max_length=4)]
 """A force in the plane or in space; of a soft finger its torque about the normal comes last."""
 Control = Annotated[list[float], AfterValidator(_falling)]
 Name = Annotated[str, Field(min_length=1)]
-PeakRatio = Annotated[
-    float,
-    Field(
-        ge=1,
-        description="without max_force, forces stay below this multiple of the least peak force that holds",
-    ),
-]
-Reserve = Annotated[float, Field(ge=0, lt=1, description="fraction of the friction that planning keeps back")]
 Method = Annotated[str, AfterValidator(_known_method)]
+
+
+def option(options: type, name: str, **constraints: Any) -> Any:
+    """The key of an option that planning verbs take: its default and its words, spelled there."""
+    default, words = described(options)[name][1]
+    return Field(default, description=words, **constraints)
 
 
 class Load(Strict):

@@ -14,19 +14,18 @@ from regrasp.planning.changes.finger_change import plan_addition, plan_removal
 from regrasp.planning.changes.rotation import plan_rotation
 from regrasp.planning.holds.sequences import MAX_TURN
 from regrasp.planning.regrasps.verbs import plan_regrasp
+from regrasp.planning.states.options import ChangeOptions, LimitOptions, PlanOptions, described
 from regrasp.plans.loads import LoadSeries
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 
 # Keys of a task that the planner takes under the same name.
-_STATE_OPTIONS = ("objective", "method", "max_force", "peak_ratio", "reserve", "balance_tolerance")
+_CLOCK = ("duration", "scaling", "rate_limit")  # which the task works out together
+_STATE_OPTIONS = ("objective", *(name for name in described(PlanOptions) if name not in _CLOCK))
 _CHANGE_OPTIONS = (
-    *_STATE_OPTIONS,
+    "objective",
     "whole_objective",
-    "min_normal",
-    "path_objective",
-    "instants",
-    "facets",
+    *(name for name in described(ChangeOptions) if name not in _CLOCK),
 )
 _REGRASP_OPTIONS = (
     "orientations",
@@ -34,9 +33,7 @@ _REGRASP_OPTIONS = (
     "objective",
     "states",
     "min_distance",
-    "max_force",
-    "peak_ratio",
-    "reserve",
+    *described(LimitOptions),
     "step_duration",
 )
 _SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
@@ -98,7 +95,7 @@ def _rotation(scenario: Scenario, task: Rotation) -> Transition:
     whole = scenario.grasp
     return plan_rotation(
         _given(scenario, whole, "force") or whole,
-        task.angle,
+        degrees=task.degrees,
         axis=task.unit_axis,
         load=scenario.wrench("start"),
         end=_given(scenario, whole, "end_force"),

@@ -7,25 +7,25 @@ from typing import Any, Literal
 from pydantic import Field
 
 from regrasp.errors import InvalidInput
-from regrasp.files.scenarios.keys import PeakRatio, Positive, Reserve
+from regrasp.files.scenarios.keys import Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.reserve import RESERVE
-from regrasp.planning.states.criteria import PEAK_RATIO, Objective
+from regrasp.planning.states.objectives import ObjectiveName
+from regrasp.planning.states.options import LimitOptions
 
 
 class CommonTask(Strict):
     """How states are chosen, what every hold must have, and the timing."""
 
     kind: Literal["regrasp"]
-    objective: Objective = Field("angle", description="what the state of every hold is chosen for")
+    objective: ObjectiveName = Field("angle", description="what the state of every hold is chosen for")
     states: Literal["each", "joint"] = Field("each", description="chosen each by itself, or all together")
     least_margin_degrees: float = Field(0.0, ge=0, description="angle margin every hold must have")
     min_distance: float = Field(0.0, ge=0, description="[m], between two fingers that hold the object")
-    max_force: Positive | None = Field(None, description="limit on every force [N]")
-    peak_ratio: PeakRatio = PEAK_RATIO
-    reserve: Reserve = RESERVE
+    max_force: Positive | None = option(LimitOptions, "max_force")
+    peak_ratio: float = option(LimitOptions, "peak_ratio", ge=1)
+    reserve: float = option(LimitOptions, "reserve", ge=0, lt=1)
     step_duration: Positive = Field(1.0, description="[s] of each step")
     rate: Positive = Field(1000.0, description="set-points per second")
 

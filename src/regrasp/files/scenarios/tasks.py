@@ -6,37 +6,32 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from regrasp.files.scenarios.keys import Control, Method, Name, PeakRatio, Positive, Reserve
+from regrasp.files.scenarios.keys import Control, Method, Name, Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.orientation.rotations import unit_axis
-from regrasp.mechanics.reserve import RESERVE
-from regrasp.planning.changes.given_ends import BALANCE_TOLERANCE
 from regrasp.planning.changes.joining import PathObjective
-from regrasp.planning.states.criteria import PEAK_RATIO, Objective
+from regrasp.planning.states.objectives import ObjectiveName
+from regrasp.planning.states.options import ChangeOptions, PlanOptions
 from regrasp.plans.timing import PAPER_CONTROL, TimeScaling
 
 
 class Task(Strict):
     """What all changes of one grasp have in common."""
 
-    objective: Objective = Field("angle", description="what states are chosen for")
-    method: Method = Field("auto", description="'auto', 'closed-form' or a back end's name")
-    duration: Positive | None = Field(None, description="[s]; 1 unless something else sets it")
+    objective: ObjectiveName = Field("angle", description="what states are chosen for")
+    method: Method = option(PlanOptions, "method")
+    duration: Positive | None = option(PlanOptions, "duration")
     rate: Positive = Field(1000.0, description="set-points per second")
     scaling: Literal["spline", "minimum_jerk", "linear"] = Field("spline", description="shape of T(t)")
     control: Control | None = Field(
         None,
         description=f"control values of the spline, falling from 1 to 0; {list(PAPER_CONTROL)} if absent",
     )
-    max_force: Positive | None = Field(None, description="limit on every force [N]")
-    peak_ratio: PeakRatio = PEAK_RATIO
-    reserve: Reserve = RESERVE
-    balance_tolerance: float = Field(
-        BALANCE_TOLERANCE,
-        ge=0,
-        description="given forces may change by this fraction of the largest to reach exact equilibrium",
-    )
+    max_force: Positive | None = option(PlanOptions, "max_force")
+    peak_ratio: float = option(PlanOptions, "peak_ratio", ge=1)
+    reserve: float = option(PlanOptions, "reserve", ge=0, lt=1)
+    balance_tolerance: float = option(PlanOptions, "balance_tolerance", ge=0)
 
     @cached_property
     def time_scaling(self) -> TimeScaling:
@@ -62,25 +57,17 @@ class Change(Task):
     """What removal and addition have in common."""
 
     contact: Name = Field(description="name of the finger that leaves or arrives")
-    objective: Objective = Field("angle", description="what the state without the finger is chosen for")
-    whole_objective: Objective = Field("force", description="what the state with it is chosen for")
-    duration: Positive | None = Field(None, description="[s]; 1 unless rate_limit or the load sets it")
-    rate_limit: Positive | None = Field(
-        None,
-        description="fastest change of any force [N/s]; without a duration the shortest is used",
-    )
-    min_normal: Annotated[float, Field(ge=0)] | None = Field(
-        None, description="least normal force of the fingers that stay [N]"
-    )
-    path_objective: PathObjective | None = Field(
-        None, description="what the path is planned for, instant by instant; Eq. 1-3 if absent and enough"
-    )
+    objective: ObjectiveName = Field("angle", description="what the state without the finger is chosen for")
+    whole_objective: ObjectiveName = Field("force", description="what the state with it is chosen for")
+    rate_limit: Positive | None = option(ChangeOptions, "rate_limit")
+    min_normal: Annotated[float, Field(ge=0)] | None = option(ChangeOptions, "min_normal")
+    path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
     idle_time: Positive | None = Field(
         None,
         description="time [s] from which the leaving finger, or up to which the arriving one, has no force",
     )
-    instants: int = Field(101, ge=3, description="instants of a path that is not straight")
-    facets: int | None = Field(None, ge=3, description="sides of polygons in the place of circles")
+    instants: int = option(ChangeOptions, "instants", ge=3)
+    facets: int | None = option(ChangeOptions, "facets", ge=3)
 
 
 class Removal(Change):

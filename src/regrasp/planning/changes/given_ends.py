@@ -1,6 +1,7 @@
 """What planning starts from: given states balanced, limits carried along, the clock."""
 
 from functools import lru_cache
+from typing import TypeVar
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import number
@@ -8,12 +9,13 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.criteria import ChosenState, Criteria
 from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import PlanOptions
 from regrasp.plans.timing import TimeScaling
 
-BALANCE_TOLERANCE = 1e-3
-"""Default largest change of a typed-in force, as a fraction of the largest force, to reach equilibrium."""
+Options = TypeVar("Options", bound=PlanOptions)
 
 
 def balanced_start(state: GraspState, criteria: Criteria, tolerance: float, label: str) -> GraspState:
@@ -46,6 +48,18 @@ def grasp_and_load(start: GraspState | Grasp, load: Wrench | None) -> tuple[Gras
         raise InvalidInput("a plan from a grasp needs the load: load=Wrench(force=[...])")
     check_load(start, load)
     return start, load
+
+
+def kept_limits(
+    start: GraspState | Grasp, objective: str | Objective | Criteria, options: Options
+) -> Options:
+    """The options of a call, with the force limit that a start was chosen under unless one is given."""
+    if "max_force" in options or isinstance(objective, Criteria) or not isinstance(start, ChosenState):
+        return options
+    limit = start.criteria.max_force
+    if limit is None:
+        return options
+    return {**options, "max_force": limit}  # type: ignore[return-value]
 
 
 def limited(grasp: Grasp, max_force: float | None) -> Grasp:

@@ -1,8 +1,9 @@
 """From one end to the other: Eq. 1-3 where that serves, else a path program."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,16 +12,18 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, choice, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.changes.ends import Change
+from regrasp.planning.changes.given_ends import scaling_of
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.options import INSTANTS, ChangeOptions, PlanOptions
 from regrasp.plans.loads import LoadSeries
-from regrasp.plans.record import Record
 from regrasp.plans.sampled import SampledPath
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
 
-_INSTANTS = 101
-
+LoadFunction = Callable[[float], Wrench]
 PathObjective = Literal["change", "effort", "force", "peak"]
 PATH_OBJECTIVES = get_args(PathObjective)
 
@@ -35,8 +38,9 @@ class Demands:
     rate_limit: ArrayLike | None = None
     min_normal: float | None = None
     path_objective: str | None = None
-    idle_time: float | None = None
-    instants: int = _INSTANTS
+    idle_from: float | None = None
+    idle_until: float | None = None
+    instants: int = INSTANTS
     method: str = "auto"
     facets: int | None = None
 
@@ -48,25 +52,16 @@ class Demands:
         if isinstance(self.instants, bool) or not isinstance(self.instants, int) or self.instants < 3:
             raise InvalidInput(f"instants must be a whole number of at least 3, got {self.instants!r}")
         check_facets(self.facets)
-        if self.idle_time is not None:
-            number(self.idle_time, "idle_from or idle_until", least=0)
+        for name in ("idle_from", "idle_until"):
+            if getattr(self, name) is not None:
+                number(getattr(self, name), name, least=0)
 
     @classmethod
-    def of(
-        cls,
-        rate_limit: ArrayLike | None,
-        min_normal: float | None,
-        path_objective: str | None,
-        idle_time: float | None,
-        instants: int,
-        method: str,
-        facets: int | None,
-    ) -> "Demands":
+    def of(cls, options: ChangeOptions, **idle: float | None) -> "Demands":
         """The demands of a call; one value for the many calls without any, which take microseconds."""
-        given = (rate_limit, min_normal, path_objective, idle_time, facets)
-        if all(demand is None for demand in given) and instants == _INSTANTS and method == "auto":
-            return _NONE
-        return cls(rate_limit, min_normal, path_objective, idle_time, instants, method, facets)
+        given: dict[str, Any] = {name: value for name, value in options.items() if name in _DEMANDS}
+        given |= {name: time for name, time in idle.items() if time is not None}
+        return cls(**given) if given else _NONE
 
     @property
     def bends(self) -> bool:
@@ -75,8 +70,13 @@ class Demands:
             self.rate_limit is None
             and self.min_normal is None
             and self.path_objective is None
-            and self.idle_time is None
+            and not self.idle_times
         )
+
+    @property
+    def idle_times(self) -> tuple[float, ...]:
+        """When fingers are to become idle, or to start work [s]."""
+        return tuple(time for time in (self.idle_from, self.idle_until) if time is not None)
 
     def rates(self, grasp: Grasp) -> Array:
         """(n,) force-rate limits, infinite for none [N/s]."""
@@ -94,16 +94,13 @@ class Demands:
 
 
 _NONE = Demands()
+_DEMANDS = frozenset(("rate_limit", "min_normal", "path_objective", "instants", "method", "facets"))
 
 
 def joined(
-    kind: Literal["removal", "addition"],
-    contact: int,
-    start: GraspState,
-    end: GraspState,
+    change: Change,
     scaling: TimeScaling | None,
     load: LoadSeries | None,
-    record: Record,
     criteria: Criteria,
     demands: Demands,
 ) -> Transition:
@@ -111,14 +108,15 @@ def joined(
 
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
+    start, end, record = change.start, change.end, change.record
     grasp = start.grasp
-    who = (grasp.names[contact],)
-    leaving, arriving = (who, ()) if kind == "removal" else ((), who)
+    leaving = tuple(grasp.names[i] for i in change.leaving)
+    arriving = tuple(grasp.names[i] for i in change.arriving)
     if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
         return Transition(start, end, scaling, record, leaving, arriving)
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
-    stays = np.arange(len(grasp)) != contact
-    least[contact] = 0.0
+    stays = ~np.isin(np.arange(len(grasp)), (*change.leaving, *change.arriving))
+    least[~stays] = 0.0
     _refuse_weak_ends(start, end, least)
     has_rates = bool((rates < inf).any())
     record = replace(record, least_normals=tuple(least.tolist()) if least.any() else ())
@@ -127,7 +125,7 @@ def joined(
         if scaling is None:
             plan = plan.fastest(rates)
         fast_enough = not has_rates or scaling is None or bool((plan.steepest <= rates * (1 + 1e-12)).all())
-        if demands.path_objective is None and demands.idle_time is None and fast_enough:
+        if demands.path_objective is None and not demands.idle_times and fast_enough:
             return plan
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
         scaling = plan.scaling
@@ -142,7 +140,7 @@ def joined(
     if objective in ("effort", "peak") and not has_rates:
         raise InvalidInput(f"path_objective {objective!r} would jump at both ends; give rate_limit as well")
     backend = DEFAULT_BACKEND if demands.method == "auto" else demands.method
-    path = _path(kind, contact, start, end, scaling, load, rates, least, stays, criteria, demands, backend)
+    path = _path(change, scaling, load, rates, least, stays, criteria, demands, backend)
     record = replace(
         record,
         path=backend,
@@ -153,10 +151,7 @@ def joined(
 
 
 def _path(
-    kind: str,
-    contact: int,
-    start: GraspState,
-    end: GraspState,
+    change: Change,
     scaling: TimeScaling,
     load: LoadSeries,
     rates: Array,
@@ -169,17 +164,22 @@ def _path(
     from regrasp.planning.changes.path_program import PathTask
     from regrasp.planning.changes.path_search import planned_path
 
-    grasp, idle = start.grasp, demands.idle_time
-    if idle is not None and not (1e-6 < idle / scaling.duration < 1 - 1e-6):
-        raise InvalidInput(
-            f"the finger's idle time must lie inside (0, {scaling.duration:g}) s, got {idle:g}"
-        )
-    fine = load.refined(demands.instants, *(() if idle is None else (idle,)))
+    start, end = change.start, change.end
+    grasp = start.grasp
+    for idle in demands.idle_times:
+        if not (1e-6 < idle / scaling.duration < 1 - 1e-6):
+            raise InvalidInput(
+                f"the finger's idle time must lie inside (0, {scaling.duration:g}) s, got {idle:g}"
+            )
+    fine = load.refined(demands.instants, *demands.idle_times)
     times = fine.times
     active = np.ones((times.size, len(grasp)), dtype=bool)
-    active[-1 if kind == "removal" else 0, contact] = False
-    if idle is not None:
-        active[times >= idle if kind == "removal" else times <= idle, contact] = False
+    gone = times >= (times[-1] if demands.idle_from is None else demands.idle_from)
+    away = times <= (times[0] if demands.idle_until is None else demands.idle_until)
+    for i in change.leaving:
+        active[gone, i] = False
+    for i in change.arriving:
+        active[away, i] = False
     steps = np.maximum(-np.diff(scaling(times)), _LEAST_PACE * np.diff(times) / scaling.duration)
     phases = np.append(0.0, np.cumsum(steps) / steps.sum())
     size = grasp.size or 1.0
@@ -213,3 +213,25 @@ def _refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
                     f"{label}: {name} pushes with a normal force of {has:.4g}, below min_normal {needs:g}; "
                     f"give another state, choose it for 'force' with a higher max_force, or lower min_normal"
                 )
+
+
+def series_and_clock(
+    load: Wrench | LoadSeries | LoadFunction | None, options: PlanOptions, demands: Demands
+) -> tuple[LoadSeries | None, TimeScaling | None]:
+    """The load in time, None if it is constant, and T(t); None where the rate limit sets the duration."""
+    duration, scaling = options.get("duration"), options.get("scaling")
+    if isinstance(load, LoadSeries):
+        if duration is None and scaling is None:
+            duration = load.duration
+        clock = scaling_of(duration, scaling)
+        if clock.duration != load.duration:
+            raise InvalidInput(
+                f"the load series lasts {load.duration:g} s, the plan {clock.duration:g} s; make them equal"
+            )
+        return load, clock
+    if demands.rate_limit is not None and duration is None and scaling is None and not callable(load):
+        return None, None
+    clock = scaling_of(duration, scaling)
+    if callable(load):
+        return LoadSeries.sampled(load, clock.duration, demands.instants, also=demands.idle_times), clock
+    return None, clock

@@ -1,11 +1,12 @@
 """Planning the turn of an object in its fingers' hold."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from math import ceil, cos, pi
-from typing import NamedTuple
+from math import ceil, cos, pi, radians
+from typing import NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,22 +15,22 @@ from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import unit_axis
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.rotated_loads import load_between, still_part, turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import (
-    BALANCE_TOLERANCE,
     balanced_start,
     eased,
     grasp_and_load,
+    kept_limits,
     limited,
     scaling_of,
 )
 from regrasp.planning.states.choosing import choose_forces
-from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, Criteria
+from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import BALANCE_TOLERANCE, PlanOptions, criteria_of, takes
 from regrasp.plans.record import Choice, Record
-from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
 from regrasp.plans.turning import TurningPath
 
@@ -42,29 +43,27 @@ _HALVINGS = 4
 _NEARLY_PI = 0.95 * pi
 
 
+@takes(PlanOptions)
 def plan_rotation(
     start: GraspState | Grasp,
-    angle: float,
+    angle: float | None = None,
     *,
+    degrees: float | None = None,
     axis: ArrayLike | None = None,
     load: Wrench | None = None,
     end: GraspState | None = None,
-    objective: str = "angle",
-    method: str = "auto",
-    duration: float | None = None,
-    scaling: TimeScaling | None = None,
-    max_force: float | None = None,
-    peak_ratio: float = PEAK_RATIO,
-    reserve: float = RESERVE,
-    balance_tolerance: float = BALANCE_TOLERANCE,
+    objective: str | Objective | Criteria = "angle",
+    **options: Unpack[PlanOptions],
 ) -> Transition:
     """Forces over time while the object turns and all fingers stay.
 
     start: the state to start from; or a grasp, whose state is then chosen under ``load``.
-    angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size.
+    angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size, with a
+    warning beyond a whole turn. degrees: the same in degrees, in the place of ``angle``, without a warning.
     axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in space
     only. The load is fixed in the world, such as a weight; in the object frame it turns the other way.
     end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
+    options
     Everything else is as for ``plan_removal``.
 
     Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
@@ -74,15 +73,15 @@ def plan_rotation(
     ``STEP`` / 16 until it does.
     Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
     """
-    criteria = Criteria(objective, max_force, peak_ratio, reserve)
-    turn = number(angle, "angle")
-    if turn == 0:
-        raise InvalidInput("angle must not be 0: there is nothing to turn")
-    number(balance_tolerance, "balance_tolerance", least=0)
-    clock = scaling_of(duration, scaling)
+    options = kept_limits(start, objective, options)
+    criteria = criteria_of(objective, options)
+    turn = _turn_asked(angle, degrees)
+    tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
+    clock = scaling_of(options.get("duration"), options.get("scaling"))
+    method = options.get("method", "auto")
     given, load = grasp_and_load(start, load)
     about = _axis(axis, given)
-    grasp = limited(given, max_force)
+    grasp = limited(given, criteria.max_force)
     count = max(ceil(abs(turn) / STEP - 1e-9), 1)
     chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9), about)
     choices: list[Choice] = []
@@ -90,21 +89,21 @@ def plan_rotation(
     first: Array
     if isinstance(start, GraspState):
         state = GraspState(grasp, load, start.forces)
-        balanced = balanced_start(state, criteria, balance_tolerance, "start")
+        balanced = balanced_start(state, criteria, tolerance, "start")
         first, change = balanced.forces, float(abs(balanced.forces - start.forces).max())
     else:
         best = chooser.at(0.0)
         first = np.array(best.forces)
-        choices.append(Choice("start", objective, best.method, best.force_limits))
+        choices.append(Choice("start", criteria.objective.name, best.method, best.force_limits))
     last_load = turned_load(load, turn, about)
     if end is None:
         best = chooser.at(turn)
         last = np.array(best.forces)
-        choices.append(Choice("end", objective, best.method, best.force_limits))
+        choices.append(Choice("end", criteria.objective.name, best.method, best.force_limits))
     else:
         _refuse_other_end(end, given, last_load)
         state = GraspState(grasp, last_load, end.forces)
-        balanced = balanced_start(state, criteria, balance_tolerance, "end")
+        balanced = balanced_start(state, criteria, tolerance, "end")
         last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
     if still_part(load, about) is None:
         knots = TurningPath(*_on_the_way(chooser, turn, count, first, last), about)
@@ -114,11 +113,30 @@ def plan_rotation(
         GraspState(grasp, load, first),
         GraspState(grasp, last_load, last),
         clock,
-        Record(reserve, tuple(choices), change),
+        Record(criteria.reserve, tuple(choices), change),
         path=knots,
     )
     _refuse_high_forces(plan)
     return plan
+
+
+def _turn_asked(angle: float | None, degrees: float | None) -> float:
+    """The turn [rad], from one of two units."""
+    if (angle is None) == (degrees is None):
+        raise InvalidInput("give the turn as angle [rad] or as degrees=..., one of them")
+    if degrees is not None:
+        turn = radians(number(degrees, "degrees"))
+    else:
+        turn = number(angle, "angle")
+        if abs(turn) > 2 * pi:
+            warnings.warn(
+                f"angle is in radians, so {turn:g} is {turn / (2 * pi):.4g} whole turns; "
+                f"write degrees={turn:g} if degrees were meant",
+                stacklevel=4,
+            )
+    if turn == 0:
+        raise InvalidInput("angle must not be 0: there is nothing to turn")
+    return turn
 
 
 def _refuse_other_end(end: GraspState, grasp: Grasp, load: Wrench) -> None:

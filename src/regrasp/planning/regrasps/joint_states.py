@@ -18,6 +18,7 @@ from regrasp.errors import Infeasible, InvalidInput, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.objectives import FORCE
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import SLACK, Chooser
 from regrasp.programs import Program, Status, solve
@@ -55,8 +56,7 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
     if len(states) < 2:
         raise InvalidInput(f"a sequence has two states or more, got {len(states)}")
     parts = [
-        state_program(s.grasp, s.load, "force", s.frictions, s.limits, unit, weights=s.weights)
-        for s in states
+        state_program(s.grasp, s.load, FORCE, s.frictions, s.limits, unit, weights=s.weights) for s in states
     ]
     forces = sparse.block_diag([part.A[:, :-1] for part in parts], format="csc")
     distances = sparse.vstack([part.A[:, -1] for part in parts], format="csc")

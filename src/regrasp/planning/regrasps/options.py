@@ -1,7 +1,7 @@
 """The options of a regrasp, in the plane and in space, and what both ask of them."""
 
 from math import pi
-from typing import Required, TypedDict
+from typing import Any, Required
 
 from numpy.typing import ArrayLike
 
@@ -11,9 +11,12 @@ from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs
+from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import LimitOptions, criteria_of, described
 
 
-class RegraspOptions(TypedDict, total=False):
+class RegraspOptions(LimitOptions, total=False):
     """The options of a regrasp; what they mean stands in ``RegraspProblem`` and ``SpaceRegraspProblem``.
 
     ``goal_rotation``, ``facets`` and ``seed`` are of solids; ``goal_orientation``, ``arcs``, ``one_finger``
@@ -24,7 +27,7 @@ class RegraspOptions(TypedDict, total=False):
     orientations: int
     goal_orientation: float
     candidates: int
-    objective: str
+    objective: str | Objective | Criteria
     states: str
     max_turn: float
     least_margin: float
@@ -33,9 +36,6 @@ class RegraspOptions(TypedDict, total=False):
     arcs: Arcs | None
     one_finger: bool
     weights: RegraspWeights | None
-    max_force: float | None
-    peak_ratio: float
-    reserve: float
     step_duration: float
     goal_rotation: ArrayLike | None
     facets: int
@@ -49,3 +49,17 @@ def check_steps(step_duration: float, states: str, max_turn: float, least_margin
     if not 0 < number(max_turn, "max_turn") < pi:
         raise InvalidInput(f"max_turn must be above 0 and below pi, got {max_turn!r}")
     number(least_margin, "least_margin", least=0)
+
+
+def settled(problem: Any) -> Criteria:
+    """The criteria of a problem's ``objective``, ``max_force``, ``peak_ratio`` and ``reserve``.
+
+    Where the objective is ``Criteria``, they hold the limits; the problem's fields then say the same.
+    """
+    entries = described(LimitOptions)
+    given = {name: getattr(problem, name) for name in entries}
+    changed = {name: value for name, value in given.items() if value != entries[name][1].default}
+    criteria = criteria_of(problem.objective, changed)
+    for name in ("objective", *entries):
+        object.__setattr__(problem, name, getattr(criteria, name))
+    return criteria

@@ -24,11 +24,12 @@ from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs, arc_lengths, on_arcs
 from regrasp.planning.regrasps.ends import Ends
-from regrasp.planning.regrasps.options import check_steps
+from regrasp.planning.regrasps.options import check_steps, settled
 from regrasp.planning.regrasps.remedies import allowed
 from regrasp.planning.regrasps.steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.regrasps.why_not import why_not
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
+from regrasp.planning.states.objectives import Objective
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.timing import TimeScaling
 
@@ -66,7 +67,7 @@ class RegraspProblem:
     orientations: int = 72
     goal_orientation: float = 0.0
     candidates: int = 120
-    objective: str = "angle"
+    objective: str | Objective | Criteria = "angle"
     states: str = "each"
     max_turn: float = MAX_TURN
     least_margin: float = 0.0
@@ -96,7 +97,7 @@ class RegraspProblem:
     @cached_property
     def criteria(self) -> Criteria:
         """Objective and limits of every choice of a state."""
-        return Criteria(self.objective, self.max_force, self.peak_ratio, self.reserve)
+        return settled(self)
 
     @cached_property
     def ends(self) -> Ends:

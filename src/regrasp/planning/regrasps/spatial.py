@@ -1,6 +1,6 @@
 """What a regrasp in space is to do: candidates on a mesh, directions of the load, plans on its holds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
 from math import atan2, cos, pi
@@ -20,9 +20,10 @@ from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.triples import FACETS, TripleFilter, TripleGraph, directions
 from regrasp.planning.regrasps.ends import Ends
-from regrasp.planning.regrasps.options import check_steps
+from regrasp.planning.regrasps.options import check_steps, settled
 from regrasp.planning.regrasps.steps import chosen_state, kept, spread_states, step_between
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
+from regrasp.planning.states.objectives import FORCE, Objective
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
@@ -63,7 +64,7 @@ class SpaceRegraspProblem:
     orientations: int = 42
     goal_rotation: ArrayLike | None = None
     candidates: int = 40
-    objective: str = "angle"
+    objective: str | Objective | Criteria = "angle"
     states: str = "each"
     max_turn: float = MAX_TURN
     least_margin: float = 0.0
@@ -89,7 +90,7 @@ class SpaceRegraspProblem:
     @cached_property
     def criteria(self) -> Criteria:
         """Objective and limits of every choice of a state."""
-        return Criteria(self.objective, self.max_force, self.peak_ratio, self.reserve)
+        return settled(self)
 
     @cached_property
     def rotation(self) -> Array:
@@ -162,7 +163,7 @@ class SpaceRegraspProblem:
 
     def _plan(self, sequence: Sequence) -> SpaceRegraspPlan:
         ways = [o for *_, o in sequence.holds]
-        whole = Criteria("force", self.max_force, self.peak_ratio, self.reserve)
+        whole = replace(self.criteria, objective=FORCE)
         start, goal, _ = self.places
         states = [chosen_state(start, self.contacts, self._seen(0), whole)]
         for k, (*places, o) in enumerate(sequence.holds):

@@ -17,6 +17,7 @@ from regrasp.planning.changes.given_ends import eased
 from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.objectives import ANGLE, FORCE
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.straight import STRAIGHT
@@ -77,7 +78,7 @@ def chosen_states(
     margin [rad] that every hold keeps, whatever it is chosen for.
     """
     turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
-    whole = replace(criteria, objective="force")
+    whole = replace(criteria, objective=FORCE)
     states = [chosen_state(start, contacts, load, whole)]
     for k, ((i, j, _), angle) in enumerate(zip(sequence.holds, turned, strict=True)):
         beside = [abs(b - a) for a, b in pairwise(turned[max(k - 1, 0) : k + 2])]
@@ -97,7 +98,7 @@ def kept(
     """The state, or the one of the widest angle margin where it does not keep the ``least`` [rad]."""
     if least == 0 or state.margin >= least:
         return state
-    widest = chosen_state(state.places, contacts, state.load, replace(criteria, objective="angle"), ease)
+    widest = chosen_state(state.places, contacts, state.load, replace(criteria, objective=ANGLE), ease)
     return widest if widest.margin > state.margin else state
 
 
@@ -154,7 +155,7 @@ def chosen_state(
     grasp = Grasp(contacts[i] for i in places)
     best = choose_forces(eased(grasp, ease), load, replace(criteria, max_force=None))
     return Chosen(
-        places, load, grasp, np.array(best.forces), best.force_limits, criteria.objective, best.method
+        places, load, grasp, np.array(best.forces), best.force_limits, criteria.objective.name, best.method
     )
 
 

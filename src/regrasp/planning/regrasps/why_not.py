@@ -28,6 +28,7 @@ from regrasp.planning.regrasps.remedies import (
 )
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.objectives import FORCE
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,7 @@ def _unheld_end(problem: Asked) -> Infeasible | None:
 
 def _refusal(contacts: list[Contact], load: Wrench, criteria: Criteria) -> RegraspError | None:
     try:
-        choose_forces(Grasp(contacts), load, replace(criteria, objective="force"))
+        choose_forces(Grasp(contacts), load, replace(criteria, objective=FORCE))
     except (Infeasible, SolverFailed) as error:  # at the very edge of its cones a grasp may be undecided
         return error
     return None

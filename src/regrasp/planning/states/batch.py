@@ -5,10 +5,10 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
-from regrasp.planning.states.criteria import PEAK_RATIO, UNBOUNDED
+from regrasp.mechanics.checks import Array, number
+from regrasp.planning.states.criteria import PEAK_RATIO
+from regrasp.planning.states.objectives import Objective, objective_of
 
 # The arguments of a batch in order, each with the size of its last axis (1: a number).
 _SIZES = {
@@ -54,7 +54,7 @@ def best_squeezes(
     force: ArrayLike,
     torque: ArrayLike = 0.0,
     *,
-    objective: str = "angle",
+    objective: str | Objective = "angle",
     max_force: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
     peak_ratio: float = PEAK_RATIO,
 ) -> Array:
@@ -65,7 +65,9 @@ def best_squeezes(
     them to ``peak_ratio`` times the least peak force of each pair. The full friction is used: pass
     ``mu * (1 - reserve)`` to keep a reserve.
     """
-    choice(objective, "objective", OBJECTIVES)
+    sought = objective_of(objective)
+    if sought.closed_form is None:
+        raise InvalidInput(f"objective {sought.name!r} has no closed form, so it has no batch")
     number(peak_ratio, "peak_ratio", least=1)
     limits: tuple[ArrayLike, ...] = max_force if isinstance(max_force, tuple) else (max_force, max_force)
     if len(limits) != 2:
@@ -76,10 +78,10 @@ def best_squeezes(
 
     x = np.empty(shape)
     blocks = _blocks(arrays, compiled.BLOCK)
-    if compiled.squeezes(*blocks, OBJECTIVES.index(objective), float(peak_ratio), whole, x.reshape(-1)):
+    if compiled.squeezes(*blocks, sought.closed_form, float(peak_ratio), whole, x.reshape(-1)):
         _refuse_bad_values(arrays)
-        if objective in UNBOUNDED:
-            _refuse_endless(objective, *arrays[6:])
+        if sought.unbounded:
+            _refuse_endless(sought.name, *arrays[6:])
     return x
 
 

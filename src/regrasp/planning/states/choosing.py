@@ -1,40 +1,34 @@
 """Choosing the forces of a grasp under a load."""
 
+from typing import Unpack
+
 from regrasp.errors import Infeasible, InvalidInput, RegraspError
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria, criteria_of
+from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import StateOptions, criteria_of, takes
 from regrasp.planning.states.two_fingers import best_forces, is_one_point
 
 DEFAULT_BACKEND = "clarabel"
 
 
+@takes(StateOptions)
 def choose_state(
     grasp: Grasp,
     load: Wrench,
-    objective: str = "angle",
-    *,
-    method: str = "auto",
-    facets: int | None = None,
-    max_force: float | None = None,
-    peak_ratio: float = PEAK_RATIO,
-    reserve: float = RESERVE,
+    objective: str | Objective | Criteria = "angle",
+    **options: Unpack[StateOptions],
 ) -> ChosenState:
     """The best forces of a grasp under a load.
 
     objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
-    ``peak``, the least largest force; ``peak_normal``, the least largest normal force; ``friction_use``, the
-    least largest fraction of the friction available.
-    method: ``closed-form`` (two planar contacts), a back end's name, or ``auto``: the closed form where it
-    exists, else Clarabel.
-    facets: let an inner polygon of so many sides stand for every circle, for back ends that take no
-    second-order cones: in the plane that of a force limit and of ``peak``; in space those across the friction
-    cones, too (inner pyramids, see ``pyramid_losses``). Safe; limits lose up to the fraction
-    1 - cos(pi / facets).
-    max_force, peak_ratio, reserve: limits of the choice, see ``Criteria``; what they came to is in the
-    result's ``force_limits``.
+    ``peak``, the least largest force; ``peak_normal`` and ``sum_normal``, the least largest normal force and
+    the least sum of them; ``friction_use``, the least largest fraction of the friction available; an
+    objective of one's own, such as a ``ForceCost``; or ``Criteria``, which hold the limits, too.
+    options
+    What limits came to is in the result's ``force_limits``; what facets cost, ``pyramid_losses`` tells.
 
     Returns a ``GraspState`` with the record of its choice. Raises ``Infeasible`` with the escape twist when
     no forces exist, ``InvalidInput`` for arguments that are not what they must be.
@@ -42,7 +36,8 @@ def choose_state(
     if not isinstance(grasp, Grasp):
         raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
     check_load(grasp, load)
-    criteria = criteria_of(objective, max_force, peak_ratio, reserve)
+    criteria = criteria_of(objective, options)
+    method, facets = options.get("method", "auto"), options.get("facets")
     return ChosenState(grasp, load, criteria, choose_forces(grasp, load, criteria, method, facets))
 
 
@@ -60,6 +55,9 @@ def choose_forces(
     if not isinstance(method, str):
         raise InvalidInput(f"method must be text, such as 'auto', got {method!r}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
+    closed = planar_pair and criteria.objective.closed_form is not None
+    if method == "closed-form" and planar_pair and not closed:
+        raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use method='auto'")
     if method == "closed-form" and not planar_pair:
         raise InvalidInput(
             f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
@@ -68,12 +66,12 @@ def choose_forces(
     if planar_pair and is_one_point(grasp):
         if method == "closed-form":
             raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
-        planar_pair = False
+        closed = False
     if len(grasp) < 2:
         raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
     if method == "closed-form" and facets is not None:
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
-    if method == "closed-form" or (method == "auto" and planar_pair and facets is None):
+    if method == "closed-form" or (method == "auto" and closed and facets is None):
         try:
             return best_forces(grasp, load, criteria)
         except Infeasible as reason:

@@ -10,6 +10,7 @@ from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
+from regrasp.planning.states.objectives import FORCE
 from regrasp.planning.states.solving import FEASIBLE, Chooser, Found
 from regrasp.programs import Status
 
@@ -30,7 +31,7 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
     Of the states within the tolerance, that of the widest force margin is taken. Raises ``SolverFailed``
     where the back end cannot tell what the highest level is.
     """
-    if narrowing.objective == "friction_use":  # four contacts and more often need none
+    if narrowing.objective.may_reach_top:  # four contacts and more often need none
         straight = _at_level(chooser, narrowing.narrowed(narrowing.top), limits, None).forces
         forces = forces if straight is None else straight
     held, lost = narrowing.level(forces), narrowing.top
@@ -128,7 +129,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     if known is not None:
         weights = np.maximum(grasp.cones.normal(known), 0.0)[list(cones)] / chooser.unit
     try:
-        answer = used.solved("force", frictions, bounds, weights)
+        answer = used.solved(FORCE, frictions, bounds, weights)
     except SolverFailed as failed:
         answer = failed.solution  # whether it is near enough is seen below
     if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -FEASIBLE:

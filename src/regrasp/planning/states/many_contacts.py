@@ -13,17 +13,17 @@ from regrasp.mechanics.exact.membership import vertex_forces
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.criteria import ChosenForces, Criteria, objective_value
+from regrasp.planning.states.criteria import ChosenForces, Criteria
 from regrasp.planning.states.degenerate.flat_minima import polished
 from regrasp.planning.states.degenerate.no_load import best_squeeze
 from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
+from regrasp.planning.states.objectives import EFFORT, FORCE, PEAK, ConvexObjective, LevelObjective
 from regrasp.planning.states.separation import edge_of
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
 
-_NARROWS = ("angle", "friction_use")
 _SAME = 1e-6  # of a margin [rad, N or -]
 _BESIDE = 1e4  # forces so many times a load are beside it in one program
 _FAR = 1e3  # forces so much larger than the load are the better unit
@@ -39,7 +39,8 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
-    if not criteria.unbounded and not any(load.plain):  # nothing to hold: the least of everything is zero
+    objective = criteria.objective
+    if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
     try:
         return _solved(grasp, load, criteria, backend, facets)
@@ -68,7 +69,7 @@ def _by_newton(
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
     forces = chooser.nearest(np.zeros((len(grasp), grasp.width)), frictions, limits)
-    is_least = forces is not None and criteria.objective == "effort"
+    is_least = forces is not None and criteria.objective is EFFORT
     if forces is None and grasp.dimension == 2:
         vertex = vertex_forces(grasp, load, frictions)
         near = vertex is not None and abs(vertex).max() <= NEVER * chooser.load_size
@@ -82,7 +83,7 @@ def _by_newton(
     if criteria.unbounded and inf in limits:
         peak = _radius(grasp, frictions, forces, facets)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
-    if criteria.objective in _NARROWS:
+    if isinstance(criteria.objective, LevelObjective):
         with suppress(SolverFailed):
             found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), forces, limits)
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
@@ -111,27 +112,27 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
     least = None
     if criteria.unbounded and inf in limits:
-        least = chooser.best("peak", frictions, limits)
+        least = chooser.best(PEAK, frictions, limits)
         if least is None:
             raise infeasible(grasp, load, criteria)
         peak = _radius(grasp, frictions, least.forces, facets)
         if peak > _FAR * chooser.unit:
             chooser.rescale(peak)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
-    narrows = criteria.objective in _NARROWS
+    objective = criteria.objective
     try:
-        found = chooser.best("force" if narrows else criteria.objective, frictions, limits)
+        found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
     except SolverFailed:
-        if least is None or not narrows:
+        if least is None or not isinstance(objective, LevelObjective):
             raise
         found = least  # forces far larger than the load; the search goes on from the smallest
     if found is None:
         raise infeasible(grasp, load, criteria)
     forces, gap = found
-    if narrows:
-        forces, gap = highest(chooser, Narrowing(grasp, criteria.objective, frictions), forces, limits)
-    elif facets is None:
-        forces = polished(chooser, criteria.objective, forces, frictions, limits)
+    if isinstance(objective, LevelObjective):
+        forces, gap = highest(chooser, Narrowing(grasp, objective, frictions), forces, limits)
+    elif isinstance(objective, ConvexObjective) and facets is None:
+        forces = polished(chooser, objective, forces, frictions, limits)
     return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
 
 
@@ -139,7 +140,7 @@ def _changes_nothing(grasp: Grasp, criteria: Criteria, squeezed: Array, loaded: 
     """Whether a squeeze that holds a load, too, is as good as before."""
     none = Wrench.from_vector(np.zeros(len(grasp.matrix)))
     before, after = (
-        objective_value(GraspState(grasp, none, grasp.cones.forces(forces)), criteria.objective)
+        criteria.objective.value(GraspState(grasp, none, grasp.cones.forces(forces)))
         for forces in (squeezed, loaded)
     )
     return abs(after - before) <= _SAME * max(1.0, abs(before))

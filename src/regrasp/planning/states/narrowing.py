@@ -13,13 +13,14 @@ decided in exact arithmetic. So the best level lies between that of forces in ha
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan, isnan, tan
+from math import isnan
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import margins
+from regrasp.planning.states.objectives import LevelObjective
 
 LEVEL_TOLERANCE = 1e-7
 """The chosen angle margin [rad] or friction use [-] is within this of the best one."""
@@ -34,23 +35,20 @@ class Narrowing:
     """
 
     grasp: Grasp
-    objective: str
+    objective: LevelObjective
     frictions: list[float]
 
     @cached_property
     def top(self) -> float:
         """A level that no forces exceed."""
-        return max(atan(mu) for mu in self.frictions) if self.objective == "angle" else 1.0
+        return self.objective.top(self.frictions)
 
     def narrowed(self, level: float) -> dict[int, float]:
         """Friction by contact at a level; contacts that have no cone left are missing."""
-        if self.objective == "friction_use":
-            return {i: mu * (1 - level) for i, mu in enumerate(self.frictions)}
-        left = {i: atan(mu) - level for i, mu in enumerate(self.frictions)}
-        return {i: tan(angle) for i, angle in left.items() if angle >= 0}
+        left = ((i, self.objective.narrowed(mu, level)) for i, mu in enumerate(self.frictions))
+        return {i: mu for i, mu in left if mu is not None}
 
     def level(self, forces: Array) -> float:
         """The level of forces (n, d), over the contacts that carry any."""
-        reached = margins(forces, self.grasp.cones.normals, np.array(self.frictions))
-        level = reached.least_angle if self.objective == "angle" else 1 - reached.largest_friction_use
+        level = self.objective.level(margins(forces, self.grasp.cones.normals, np.array(self.frictions)))
         return self.top if isnan(level) else level  # nothing is used of nothing

@@ -6,9 +6,9 @@ from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.states.objectives import Bound
 from regrasp.programs import Block, Cone, Pattern
 
 Index = NDArray[np.intp]
@@ -20,6 +20,7 @@ class StateForm:
 
     constants: entries of A that no number of the grasp changes; they come first in ``pattern``.
     rough, smooth, limited: the contacts with friction, without it, and with a force limit.
+    q: cost of the unknown besides the forces, if there is one.
     is_round: whether cones are of second order; otherwise they have faces. limit_rows: rows of b that hold
     the limits, a contact after the other.
     """
@@ -27,7 +28,6 @@ class StateForm:
     pattern: Pattern
     constants: Array
     blocks: tuple[Block, ...]
-    P: sparse.csc_matrix
     q: Array
     rough: Index
     smooth: Index
@@ -43,7 +43,7 @@ class StateForm:
 
 @lru_cache(maxsize=256)
 def state_form(
-    objective: str,
+    bound: Bound,
     has_friction: tuple[bool, ...],
     has_limit: tuple[bool, ...],
     facets: int | None,
@@ -51,7 +51,8 @@ def state_form(
 ) -> StateForm:
     """The form of a program: constant entries, then those that ``state_program`` fills, in its order.
 
-    width: numbers per force, 2 in the plane, 3 in space, 4 with soft fingers.
+    bound: what the unknown besides the forces bounds. width: numbers per force, 2 in the plane, 3 in space, 4
+    with soft fingers.
     """
     n, w, d = len(has_friction), width, min(width, 3)
     rough, smooth = np.flatnonzero(has_friction), np.flatnonzero(np.logical_not(has_friction))
@@ -59,7 +60,7 @@ def state_form(
     is_round = d == 3 and facets is None
     sides = w if is_round else 2 if d == 2 else facets or 0  # rows of a friction cone
     t = w * n
-    unknowns = t if objective == "effort" else t + 1
+    unknowns = t if bound is Bound.NONE else t + 1
     force = np.arange(t).reshape(n, w)  # columns of each force
     places = _Places()
     balance = places.block(Cone.ZERO, 3 if d == 2 else 6)
@@ -71,38 +72,33 @@ def state_form(
     pushing = places.block(Cone.NONNEGATIVE, 1, smooth.size)
     for axis in range(d):
         places.constant(np.full(n, balance[axis]), force[:, axis], -1.0)
-    if objective == "force" and not rough.size:  # no cone bounds the margin of rays: it is zero
+    if bound is Bound.MARGIN and not rough.size:  # no cone bounds the margin of rays: it is zero
         places.constant(places.block(Cone.NONNEGATIVE, 1), [t], 1.0)
-    if objective == "peak_normal":
+    if bound is Bound.NORMAL:
         below = places.block(Cone.NONNEGATIVE, 1, n)
         places.constant(below, np.full(n, t), -1.0)
     varying = [_torques(balance, force)]
     varying.append(_each(inside, force[rough]))
     if smooth.size:
         varying += [_each(straight, force[smooth]), _each(pushing[:, None], force[smooth])]
-    if objective == "peak_normal":
+    if bound is Bound.NORMAL:
         varying.append(_each(below[:, None], force))
-    if objective == "force":
+    if bound is Bound.MARGIN:
         margin = inside[:, 0] if is_round else inside.ravel()
         varying.append((margin, np.full(margin.size, t)))
-    if objective == "peak":
+    if bound is Bound.FORCE:
         _, moving = _balls(places, force, facets, t)
         varying += moving
     limit_rows, moving = _balls(places, force[limited], facets, None)
     varying += moving
     rows, columns, constants = places.all(varying)
     q = np.zeros(unknowns)
-    q[t:] = -1.0 if objective == "force" else 1.0
-    P = sparse.csc_matrix((unknowns, unknowns))
-    if objective == "effort":
-        P = sparse.csc_matrix(2 * np.eye(unknowns))
-    for shared in (q, P.data, P.indices, P.indptr):  # all programs of this form have them in common
-        shared.setflags(write=False)
+    q[t:] = -1.0 if bound is Bound.MARGIN else 1.0
+    q.setflags(write=False)  # all programs of this form have it in common
     return StateForm(
         Pattern((places.rows, unknowns), rows, columns),
         constants,
         tuple(places.blocks),
-        P,
         q,
         rough,
         smooth,

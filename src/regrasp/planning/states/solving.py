@@ -13,6 +13,7 @@ from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.escape import escape_twist
+from regrasp.planning.states.objectives import Bound, ConvexObjective
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Solution, Status, solve
 
@@ -70,7 +71,7 @@ class Chooser:
 
     def solved(
         self,
-        objective: str,
+        objective: ConvexObjective,
         frictions: list[float],
         limits: list[float],
         weights: Array | None = None,
@@ -93,7 +94,7 @@ class Chooser:
 
     def _program(
         self,
-        objective: str,
+        objective: ConvexObjective,
         frictions: list[float],
         limits: list[float],
         weights: Array | None,
@@ -111,7 +112,7 @@ class Chooser:
             weights,
         )
 
-    def best(self, objective: str, frictions: list[float], limits: list[float]) -> Found | None:
+    def best(self, objective: ConvexObjective, frictions: list[float], limits: list[float]) -> Found | None:
         """The best forces for a convex objective; None where the back end says there are none."""
         answer = self.solved(objective, frictions, limits)
         if answer.status is Status.INFEASIBLE:  # at the limit of what can be held the slack may be missed
@@ -120,7 +121,7 @@ class Chooser:
             return None
         if answer.status is Status.UNBOUNDED:
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
-        if objective == "force" and answer.value[-1] < -FEASIBLE:
+        if objective.bound is Bound.MARGIN and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
         wanted = self.wanted(answer)
         forces = self.settled(wanted, frictions, limits)
@@ -133,8 +134,7 @@ class Chooser:
                 answer.program,
                 answer,
             )
-        squared = objective == "effort"
-        return Found(forces, answer.absolute_gap * (self.unit**2 if squared else self.unit))
+        return Found(forces, answer.absolute_gap * objective.scale(self.unit))
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
         """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are."""

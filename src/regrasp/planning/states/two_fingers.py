@@ -3,24 +3,25 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite, isnan
-from typing import cast
+from typing import Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.closed_form.choice import OBJECTIVES, best_squeeze
+from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array, array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench, torque
-from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria
+from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
 ONE_POINT = 1e-13
 """Contacts nearer than this fraction of the largest coordinate are at one point: a load through it is
@@ -124,16 +125,15 @@ class EquilibriumLocus(ArrayValue):
         """The squeeze of a state of this grasp [N]."""
         return float(state.forces[0] @ self.direction)
 
+    @takes(LimitOptions)
     def best(
-        self,
-        objective: str = "angle",
-        *,
-        max_force: float | None = None,
-        peak_ratio: float = PEAK_RATIO,
-        reserve: float = RESERVE,
+        self, objective: str | Objective | Criteria = "angle", **options: Unpack[LimitOptions]
     ) -> ChosenState:
-        """The best state on the locus for an objective, in closed form; see ``choose_state``."""
-        criteria = Criteria(objective, max_force, peak_ratio, reserve)
+        """The best state on the locus for an objective, in closed form; see ``choose_state``.
+
+        options
+        """
+        criteria = criteria_of(objective, options)
         return ChosenState(self.grasp, self.load, criteria, best_forces(self.grasp, self.load, criteria))
 
     @cached_property
@@ -157,6 +157,9 @@ def is_one_point(grasp: Grasp) -> bool:
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
     criteria.demand_limit(grasp, load)
+    code = criteria.objective.closed_form
+    if code is None:
+        raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use choose_state")
     mu1, mu2 = criteria.frictions(grasp)
     bound1, bound2 = criteria.limits(grasp)
     x, (f1x, f1y, f2x, f2y), limits = best_squeeze(
@@ -165,7 +168,7 @@ def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
         *_plain(grasp.contacts[1])[:4],
         mu2,
         *_load(load),
-        OBJECTIVES.index(criteria.objective),
+        code,
         bound1,
         bound2,
         criteria.peak_ratio,

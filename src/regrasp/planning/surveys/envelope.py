@@ -1,9 +1,9 @@
 """How the optimum of a state program moves with everything that shapes it: the envelope theorem.
 
-    V(p) = min 1/2 x'Px + q'x  subject to  A(p) x + s = b(p), s in K        P and q do not depend on p
-    dV/dp = z'(dA/dp x - db/dp)                                             z the duals at the optimum x
+    V(p) = min 1/2 x'Px + q(p)'x  subject to  A(p) x + s = b(p), s in K     P does not depend on p
+    dV/dp = x'dq/dp + z'(dA/dp x - db/dp)                                   z the duals at the optimum x
 
-The data A and b are smooth functions of p written down once, in ``state_program``; they are differenced
+The data q, A and b are smooth functions of p written down once, in ``state_program``; they are differenced
 there, the solution is not, so nothing is solved again and the error is that of the duals.
 """
 
@@ -16,6 +16,7 @@ from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.objectives import ConvexObjective
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Status, solve
 
@@ -38,7 +39,7 @@ class Setting:
     frictions: Array
     limits: Array
 
-    def program(self, objective: str, unit: float, weights: Array | None) -> Program:
+    def program(self, objective: ConvexObjective, unit: float, weights: Array | None) -> Program:
         """``state_program`` here."""
         frictions, limits = self.frictions.tolist(), self.limits.tolist()
         return state_program(self.grasp, self.load, objective, frictions, limits, unit, weights=weights)
@@ -74,7 +75,9 @@ class Setting:
         }
 
 
-def optimum_rates(setting: Setting, objective: str, unit: float, weights: Array | None = None) -> Array:
+def optimum_rates(
+    setting: Setting, objective: ConvexObjective, unit: float, weights: Array | None = None
+) -> Array:
     """Derivatives (4n + 3,) of the least value of ``state_program``, in the order of ``PARAMETERS``.
 
     The value is that of the program, in units of ``unit`` [N] and with the sign of a minimum; ``weights`` as
@@ -91,7 +94,8 @@ def optimum_rates(setting: Setting, objective: str, unit: float, weights: Array 
         ahead, behind = (
             setting.moved(parameter, i, by).program(objective, unit, weights) for by in (step, -step)
         )
-        return float(z @ ((ahead.A - behind.A) @ x - (ahead.b - behind.b))) / (2 * step)
+        moved = z @ ((ahead.A - behind.A) @ x - (ahead.b - behind.b)) + x @ (ahead.q - behind.q)
+        return float(moved) / (2 * step)
 
     steps = setting.steps(unit)
     return np.array([rate(p, i, step) for p in (*PARAMETERS, "load") for i, step in enumerate(steps[p])])

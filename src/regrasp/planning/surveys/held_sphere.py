@@ -9,6 +9,7 @@ one along which a known escape twist does work is not.
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan, pi, sqrt
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,24 +19,16 @@ from regrasp.mechanics.checks import Array, array, number, read_only
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_forces
-from regrasp.planning.states.criteria import PEAK_RATIO, ChosenState, Criteria, criteria_of
+from regrasp.planning.states.criteria import ChosenState, Criteria
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
 COUNT = 400
 """Default number of directions."""
-_UNITS = {"angle": "deg", "effort": "N^2", "friction_use": "-"}
-_WORDS = {
-    "angle": "least angle margin",
-    "force": "least force margin",
-    "effort": "least sum of squares",
-    "peak": "least largest force",
-    "peak_normal": "least largest normal force",
-    "friction_use": "least largest use of friction",
-}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,14 +69,14 @@ class HeldSphere(ArrayValue):
     @property
     def shown(self) -> Array:
         """(m,) values to draw, angles in degrees: ``plot_load_sphere(directions, shown, label=label)``."""
-        return np.degrees(self.values) if self.criteria.objective == "angle" else self.values
+        return np.degrees(self.values) if self.criteria.objective.unit == "rad" else self.values
 
     @property
     def label(self) -> str:
         """What ``shown`` is, with its unit."""
         objective = self.criteria.objective
-        unit = _UNITS.get(objective, "N")
-        return _WORDS[objective] + ("" if unit == "-" else f" [{unit}]")
+        unit = {"rad": "deg", "-": ""}.get(objective.unit, objective.unit)
+        return objective.words + (f" [{unit}]" if unit else "")
 
     def state(self, direction: ArrayLike) -> GraspState:
         """A state that holds the load in a direction (3,), of any length but zero.
@@ -150,20 +143,20 @@ class HeldSphere(ArrayValue):
         )
 
 
+@takes(LimitOptions)
 def held_sphere(
     grasp: Grasp,
     magnitude: float = 1.0,
     *,
-    objective: str = "force",
+    objective: str | Objective | Criteria = "force",
     count: int = COUNT,
-    max_force: float | None = None,
-    peak_ratio: float = PEAK_RATIO,
-    reserve: float = RESERVE,
+    **options: Unpack[LimitOptions],
 ) -> HeldSphere:
     """What ``choose_state`` reaches for loads of one magnitude [N] in ``count`` directions, evenly spread.
 
-    The load is a force through the centre of mass. objective, max_force, peak_ratio, reserve: as for
-    ``choose_state``; ``angle`` and ``friction_use`` take tens of programs for each direction.
+    The load is a force through the centre of mass. objective: as for ``choose_state``; ``angle`` and
+    ``friction_use`` take tens of programs for each direction.
+    options
     Raises ``InvalidInput`` for a planar grasp, whose held directions are known exactly, and bad numbers.
     """
     if not isinstance(grasp, Grasp) or grasp.dimension != 3:
@@ -173,7 +166,7 @@ def held_sphere(
     number(magnitude, "magnitude", above=0)
     if not isinstance(count, int) or isinstance(count, bool) or count < 1:
         raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
-    criteria = criteria_of(objective, max_force, peak_ratio, reserve)
+    criteria = criteria_of(objective, options)
     directions = even_directions(count)
     values, forces = np.full(count, nan), np.full((count, len(grasp), grasp.width), nan)
     twists: list[EscapeTwist] = []

@@ -16,6 +16,7 @@ from scipy import sparse
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import choice
 from regrasp.planning.states.choosing import DEFAULT_BACKEND
+from regrasp.planning.states.objectives import EFFORT
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import force_unit
 from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -26,7 +27,7 @@ def locus_program(locus: EquilibriumLocus, end: Literal["lo", "hi"]) -> Program:
     """The program whose least value is lo, or -hi, of the squeeze; forces in units of the load, or 1 N."""
     choice(end, "end", ("lo", "hi"))
     grasp = locus.grasp
-    held = state_program(grasp, locus.load, "effort", grasp.frictions.tolist(), [inf, inf], _unit(locus))
+    held = state_program(grasp, locus.load, EFFORT, grasp.frictions.tolist(), [inf, inf], _unit(locus))
     q = np.zeros(4)
     q[:2] = locus.direction if end == "lo" else -locus.direction
     return replace(held, P=sparse.csc_matrix((4, 4)), q=q)

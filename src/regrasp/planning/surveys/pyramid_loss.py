@@ -1,18 +1,18 @@
 """What inner pyramids cost against exact friction cones."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isnan, nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import check_facets, choose_state
-from regrasp.planning.states.criteria import PEAK_RATIO, UNBOUNDED
-from regrasp.planning.surveys.sensitivity import UNITS
+from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
 if TYPE_CHECKING:
     import pandas
@@ -28,7 +28,7 @@ class PyramidLosses:
     cost nothing there but for force limits and ``peak``, where they stand for the circle |f| = r.
     """
 
-    objective: str
+    objective: Objective
     exact: float
     values: Mapping[int, float]
     dimension: int
@@ -36,12 +36,12 @@ class PyramidLosses:
     @property
     def unit(self) -> str:
         """Of the values."""
-        return UNITS.get(self.objective, "N")
+        return self.objective.unit
 
     @property
     def losses(self) -> dict[int, float]:
         """By number of facets, how much worse than the exact value, as a fraction of it; NaN: not held."""
-        better = -1.0 if self.objective in ("angle", "force") else 1.0
+        better = -1.0 if self.objective.maximise else 1.0
         return {m: _share(better * (v - self.exact), abs(self.exact)) for m, v in self.values.items()}
 
     @property
@@ -69,18 +69,17 @@ class PyramidLosses:
         return "\n".join(lines)
 
 
+@takes(LimitOptions)
 def pyramid_losses(
     grasp: Grasp,
     load: Wrench,
-    objective: str = "peak",
+    objective: str | Objective | Criteria = "peak",
     facets: Sequence[int] = (4, 8, 16, 32),
-    *,
-    max_force: float | None = None,
-    peak_ratio: float = PEAK_RATIO,
-    reserve: float = RESERVE,
+    **options: Unpack[LimitOptions],
 ) -> PyramidLosses:
     """The value of ``choose_state`` with exact cones and with inner pyramids of each number of ``facets``.
 
+    options
     All are chosen under the same force limits, those of the exact choice. A pyramid's first vertex lies along
     the first tangent, so that its loss depends on the frame; the exact value does not.
     Raises ``Infeasible`` where exact cones do not hold the load, ``InvalidInput`` as ``choose_state`` does.
@@ -91,18 +90,17 @@ def pyramid_losses(
         check_facets(m)
         if m is None:
             raise InvalidInput("facets must be whole numbers of at least 3, got None")
-    exact = choose_state(grasp, load, objective, max_force=max_force, peak_ratio=peak_ratio, reserve=reserve)
-    if objective in UNBOUNDED:  # pyramids have a larger least peak force, which would loosen the limits
-        max_force = max(exact.force_limits)
+    criteria = criteria_of(objective, options)
+    exact = choose_state(grasp, load, criteria)
+    if criteria.unbounded:  # pyramids have a larger least peak force, which would loosen the limits
+        criteria = replace(criteria, max_force=max(exact.force_limits), peak_ratio=PEAK_RATIO)
     values = {}
     for m in facets:
         try:
-            values[m] = choose_state(
-                grasp, load, objective, facets=m, max_force=max_force, reserve=reserve
-            ).value
+            values[m] = choose_state(grasp, load, criteria, facets=m).value
         except Infeasible:
             values[m] = nan
-    return PyramidLosses(objective, exact.value, MappingProxyType(values), grasp.dimension)
+    return PyramidLosses(criteria.objective, exact.value, MappingProxyType(values), grasp.dimension)
 
 
 def _share(amount: float, whole: float) -> float:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from math import nan
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
@@ -10,17 +10,17 @@ from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number, read_only
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_state
-from regrasp.planning.states.criteria import PEAK_RATIO, ChosenState, objective_value
+from regrasp.planning.states.criteria import ChosenState, Criteria
+from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
 if TYPE_CHECKING:
     import pandas
 
-UNITS = {"angle": "rad", "effort": "N^2", "friction_use": "-"}
 """Units of the objectives' values; the others are forces [N]."""
 
 # What is less than this fraction of the largest effect prints as 0.
@@ -63,19 +63,19 @@ class Sensitivity(ArrayValue, Pictured):
         return self.state.grasp
 
     @property
-    def objective(self) -> str:
+    def objective(self) -> Objective:
         """What the state was chosen for."""
         return self.state.criteria.objective
 
     @property
     def unit(self) -> str:
         """Of the value."""
-        return UNITS.get(self.objective, "N")
+        return self.objective.unit
 
     @property
     def larger_is_better(self) -> bool:
         """Whether the value is a margin; effort, forces and friction use are better small."""
-        return self.objective in ("angle", "force")
+        return self.objective.maximise
 
     def steps(self, fraction: float = 0.01) -> dict[str, Array]:
         """Comparable changes of all parameters, (n,) for contacts and (3,) for the load, whatever the units.
@@ -154,18 +154,18 @@ class Sensitivity(ArrayValue, Pictured):
     __repr__ = __str__
 
 
+@takes(LimitOptions)
 def sensitivity(
     grasp: Grasp,
     load: Wrench,
-    objective: str = "angle",
-    *,
-    max_force: float | None = None,
-    peak_ratio: float = PEAK_RATIO,
-    reserve: float = RESERVE,
+    objective: str | Objective | Criteria = "angle",
+    **options: Unpack[LimitOptions],
 ) -> Sensitivity:
     """How much the best margin or the least effort changes per unit of friction, position, normal and load.
 
-    The arguments are those of ``choose_state``, for planar grasps of two contacts or more. By the envelope
+    The arguments are those of ``choose_state``, for planar grasps of two contacts or more.
+    options
+    By the envelope
     theorem, from the duals of the programs that Clarabel solves (docs/sensitivity.md); a force limit set by
     ``peak_ratio`` moves with the least peak force.
 
@@ -180,12 +180,14 @@ def sensitivity(
     check_load(grasp, load)
     if grasp.dimension != 2:
         raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
-    if number(peak_ratio, "peak_ratio", least=1) == 1:
+    criteria = criteria_of(objective, options)
+    if criteria.peak_ratio == 1:
         raise InvalidInput("peak_ratio must be greater than 1 for a sensitivity: 1 leaves nothing to choose")
-    state = choose_state(grasp, load, objective, max_force=max_force, peak_ratio=peak_ratio, reserve=reserve)
+    state = choose_state(grasp, load, criteria)
     if not state.forces.any():
         raise InvalidInput(
-            f"no finger pushes in the state best for {objective!r}, so its value has no rates; give a load"
+            f"no finger pushes in the state best for {criteria.objective.name!r}, so its value has no rates; "
+            f"give a load"
         )
     from regrasp.planning.surveys.value_rates import value_rates
 
@@ -197,8 +199,8 @@ def sensitivity(
     friction, position, normal, limit = rates[: 4 * n].reshape(4, n)
     return Sensitivity(
         state,
-        objective_value(best, objective),
-        read_only(np.where(grasp.frictions > 0, (1 - reserve) * friction, nan)),
+        criteria.objective.value(best),
+        read_only(np.where(grasp.frictions > 0, (1 - criteria.reserve) * friction, nan)),
         read_only(position),
         read_only(normal),
         read_only(np.where(np.isfinite(limits), limit, nan)),

@@ -19,6 +19,7 @@ from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.objectives import EFFORT
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import force_unit
 from regrasp.programs import Program, Status, solve
@@ -29,7 +30,7 @@ _GAINS = 1e-6
 
 def bound_program(grasp: Grasp, load: Wrench, limits: list[float], cost: Array, unit: float) -> Program:
     """The least ``cost`` . f, cost (n, d), of forces in units of ``unit`` [N], full friction."""
-    held = state_program(grasp, load, "effort", grasp.frictions.tolist(), limits, unit)
+    held = state_program(grasp, load, EFFORT, grasp.frictions.tolist(), limits, unit)
     return replace(held, P=sparse.csc_matrix((cost.size, cost.size)), q=np.array(cost.ravel()))
 
 

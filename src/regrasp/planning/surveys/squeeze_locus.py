@@ -18,6 +18,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, choose_forces, choose_state
 from regrasp.planning.states.criteria import PEAK_RATIO, ChosenState, Criteria
 from regrasp.planning.states.escape import infeasible, loose_twist
+from regrasp.planning.states.objectives import Objective
 from regrasp.planning.surveys.squeeze_basis import SqueezeBasis, squeeze_basis
 
 
@@ -185,7 +186,11 @@ class SqueezeLocus(ArrayValue):
         return margins(self.forces(squeezes), self.grasp.normals, self.grasp.frictions)
 
     def best(
-        self, objective: str = "angle", *, peak_ratio: float = PEAK_RATIO, reserve: float = RESERVE
+        self,
+        objective: str | Objective = "angle",
+        *,
+        peak_ratio: float = PEAK_RATIO,
+        reserve: float = RESERVE,
     ) -> ChosenState:
         """The best state on the locus for an objective; see ``choose_state``."""
         return choose_state(
@@ -221,7 +226,7 @@ class SqueezeLocus(ArrayValue):
             held = self._some
         return walked(self.grasp, held, limits, count, np.random.default_rng(seed), DEFAULT_BACKEND)
 
-    def _criteria(self, objective: str, peak_ratio: float = PEAK_RATIO) -> Criteria:
+    def _criteria(self, objective: str | Objective, peak_ratio: float = PEAK_RATIO) -> Criteria:
         return Criteria(objective, self.max_force, peak_ratio, reserve=0.0)
 
     def __repr__(self) -> str:

@@ -9,10 +9,12 @@ times ``peak_ratio`` times the rates of the peak, a program of its own.
 
 import numpy as np
 
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
+from regrasp.planning.states.objectives import FORCE, PEAK, ConvexObjective, LevelObjective
 from regrasp.planning.surveys.envelope import PARAMETERS, Setting, optimum_rates
 
 
@@ -25,26 +27,27 @@ def value_rates(state: GraspState, criteria: Criteria, limits: Array) -> Array:
     unit = float(state.magnitudes.max())
     setting = Setting(grasp, load, grasp.frictions, limits)
     n = len(grasp)
-    if objective == "force" and not grasp.frictions.all():
+    if objective == FORCE and not grasp.frictions.all():
         return np.zeros(4 * n + 3)  # the distance of a force to the boundary of a ray is zero, whatever else
-    if objective in ("angle", "friction_use"):
+    if isinstance(objective, LevelObjective):
         rates = _level_rates(state, setting, objective, unit)
-    elif objective == "effort":
-        rates = unit**2 * optimum_rates(setting, objective, unit)
+    elif isinstance(objective, ConvexObjective):
+        sign = -1 if objective.maximise else 1
+        rates = sign * objective.scale(unit) * optimum_rates(setting, objective, unit)
     else:
-        rates = (-unit if objective == "force" else unit) * optimum_rates(setting, objective, unit)
+        raise InvalidInput(f"rates are known of convex and of level objectives, got {objective!s}")
     own = np.array(criteria.limits(grasp))
     follows = limits < own
     if follows.any():
         by_limit = rates[3 * n : 4 * n]
         share = criteria.peak_ratio * by_limit[follows].sum()
         by_limit[follows] = 0.0
-        of_peak = unit * optimum_rates(Setting(grasp, load, grasp.frictions, own), "peak", unit)
+        of_peak = unit * optimum_rates(Setting(grasp, load, grasp.frictions, own), PEAK, unit)
         rates = rates + share * of_peak
     return rates
 
 
-def _level_rates(state: GraspState, setting: Setting, objective: str, unit: float) -> Array:
+def _level_rates(state: GraspState, setting: Setting, objective: LevelObjective, unit: float) -> Array:
     """Rates of the angle margin or the friction use; fingers whose cones are gone at that level are idle."""
     grasp, n = setting.grasp, len(setting.grasp)
     narrowing = Narrowing(grasp, objective, setting.frictions.tolist())
@@ -54,17 +57,13 @@ def _level_rates(state: GraspState, setting: Setting, objective: str, unit: floa
     used, narrowed, whole = list(cones), np.array(list(cones.values())), setting.frictions[list(cones)]
     some = Setting(grasp.subset(used), setting.load, narrowed, setting.limits[used])
     weights = np.maximum((state.forces * grasp.normals).sum(axis=1), 0.0)[used] / unit
-    of_margin = optimum_rates(some, "force", unit, weights)
+    of_margin = optimum_rates(some, FORCE, unit, weights)
     by_friction = of_margin[: len(used)].copy()
-    if objective == "angle":  # tan(atan mu - m)
-        slope = 1 + narrowed**2
-        of_margin[: len(used)] *= slope / (1 + whole**2)
-        fall = float(by_friction @ slope)
-    else:  # mu (1 - m)
-        of_margin[: len(used)] *= 1 - level
-        fall = float(by_friction @ whole)
+    rise, slope = objective.slopes(whole, narrowed, level)
+    of_margin[: len(used)] *= rise
+    fall = float(by_friction @ slope)
     rates = np.zeros(4 * n + 3)
     places = [k * n + i for k in range(len(PARAMETERS)) for i in used] + [4 * n, 4 * n + 1, 4 * n + 2]
-    # fall is -dv/dm; friction use is 1 - m.
-    rates[places] = of_margin / fall * (1.0 if objective == "angle" else -1.0)
+    # fall is -dv/dm; what is small where the level is high falls with it.
+    rates[places] = of_margin / fall * (1.0 if objective.maximise else -1.0)
     return rates

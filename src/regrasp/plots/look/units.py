@@ -14,6 +14,10 @@ class Units(NamedTuple):
     force: str = "N"
     time: str = "s"
 
+    def of(self, unit: str) -> str:
+        """The unit of an objective, given in terms of N, by these names."""
+        return {"N": self.force, "N^2": rf"{self.force}$^2$"}.get(unit, unit)
+
     @property
     def torque(self) -> str:
         """Of a torque or of work: force times length."""

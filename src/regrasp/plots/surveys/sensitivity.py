@@ -24,14 +24,6 @@ from regrasp.plots.look.style import (
 )
 from regrasp.plots.look.units import SI, Units
 
-_VALUES = {
-    "angle": "least angle margin",
-    "force": "least force margin",
-    "effort": "least effort",
-    "peak": "least peak force",
-    "peak_normal": "least peak normal force",
-    "friction_use": "least friction use",
-}
 _BAR, _GAP = 1.0, 0.8
 _LINE = 36  # letters that fit above the axes
 
@@ -43,8 +35,8 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
     limit, where one is given; below them the load's force and torque. Angles are in degrees.
     """
     steps, effects = sensitivity.steps(), sensitivity.effects()
-    degrees = sensitivity.objective == "angle"
-    factor, unit = (np.degrees(1.0), "deg") if degrees else (1.0, _unit(sensitivity, units))
+    degrees = sensitivity.unit == "rad"
+    factor, unit = (np.degrees(1.0), "deg") if degrees else (1.0, units.of(sensitivity.unit))
     rows = _rows(sensitivity, steps, effects, units)
     height = sum(len(values) * _BAR + _GAP for _, values, _ in rows)
     names = contact_colours(sensitivity.grasp)
@@ -70,7 +62,7 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
         Line2D([], [], color=colour, linewidth=5, solid_capstyle="butt", label=literal(name))
         for name, colour in names.items()
     ]
-    title = f"{_VALUES[sensitivity.objective]} {value}"
+    title = f"{sensitivity.objective.words} {value}"
     legend(ax, handles, ncols=columns, title=title, title_fontsize=TEXT, alignment="left")
     return ax
 
@@ -104,7 +96,3 @@ def _rows(
     ):
         rows.append((f"{name} +{quantity(float(step), of, 2)}", np.array([effect]), [GREY]))
     return rows
-
-
-def _unit(sensitivity: Sensitivity, units: Units) -> str:
-    return {"effort": rf"{units.force}$^2$", "friction_use": "-"}.get(sensitivity.objective, units.force)

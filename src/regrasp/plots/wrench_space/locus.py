@@ -6,10 +6,10 @@ from math import inf, isfinite, nan
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import Infeasible
-from regrasp.mechanics.checks import Array, choice
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.state import GraspState
+from regrasp.planning.states.objectives import Objective, objective_of
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plots.look.style import (
     GREY,
@@ -26,22 +26,14 @@ from regrasp.plots.look.units import SI, Units
 from regrasp.plots.wrench_space.force_limits import draw_limits, limited_interval, limits_of
 
 _SAMPLES = 401
-# Label and unit of each objective, and how the contacts' values make one.
-_SHOWN = {
-    "angle": ("angle margin", "deg", np.fmin, "least"),
-    "force": ("force margin", "{force}", np.fmin, "least"),
-    "effort": ("$|f|^2$", "{force}$^2$", np.add, "sum"),
-    "peak": ("$|f|$", "{force}", np.maximum, "largest"),
-    "friction_use": ("friction use", "-", np.fmax, "largest"),
-    "peak_normal": ("normal force", "{force}", np.maximum, "largest"),
-}
+_COMBINED = {"least": np.fmin, "largest": np.fmax, "sum": np.add}
 
 
 def plot_locus(
     locus: EquilibriumLocus,
     ax: Axes | None = None,
     *,
-    objective: str = "angle",
+    objective: str | Objective = "angle",
     chosen: GraspState | None = None,
     colours: Colours | None = None,
     force_limits: Sequence[float] | None = None,
@@ -57,27 +49,29 @@ def plot_locus(
     records them as ``locus.best`` does; else the contacts' own.
     Raises ``Infeasible`` for an empty locus.
     """
-    choice(objective, "objective", OBJECTIVES)
+    sought = objective_of(objective)
     if locus.is_empty:
         raise Infeasible(f"the equilibrium locus of {', '.join(locus.grasp.names)} is empty: nothing to draw")
     ax = axes_or_new(ax)
     colours = contact_colours(locus.grasp) if colours is None else colours
-    label, unit, combine, together = _SHOWN[objective]
+    combine = _COMBINED[sought.together]
     limited = limited_interval(locus, limits_of(locus, chosen) if force_limits is None else force_limits)
     lo, hi = shown_interval(locus, chosen, limited)
     pad = 0.08 * (hi - lo) or 0.05 * abs(lo) or 1.0
     ends = locus.interval
     x = np.linspace(lo - pad * isfinite(ends[0]), hi + pad * isfinite(ends[1]), _SAMPLES)
-    values = _values(locus, x, objective)
+    values = _values(locus, x, sought)
     ax.axvspan(lo, hi, color=PALE, linewidth=0, zorder=0)
-    ax.plot(x, combine.reduce(values, axis=1), color=INK, linewidth=4, alpha=0.25, label=together, zorder=1)
+    ax.plot(
+        x, combine.reduce(values, axis=1), color=INK, linewidth=4, alpha=0.25, label=sought.together, zorder=1
+    )
     for name, column in zip(locus.grasp.names, values.T, strict=True):
         ax.plot(x, column, color=colours[name], linewidth=1.3, label=literal(name))
-    if objective in ("angle", "force"):
+    if sought.maximise:
         ax.axhline(0, color=GREY, linewidth=0.7)
         bottom, top = ax.get_ylim()
         ax.set_ylim(max(bottom, -0.4 * abs(top)), top)  # far outside the cones there is nothing to read
-    if objective == "friction_use":
+    if sought.unit == "-":
         ax.axhline(1, color=GREY, linewidth=0.7)
         ax.set_ylim(0, 1.3)
     for end in ends:
@@ -87,10 +81,10 @@ def plot_locus(
     ax.set_xlim(x[0], x[-1])
     if chosen is not None:
         at = locus.squeeze(chosen)
-        value = combine.reduce(_values(locus, np.array([at]), objective), axis=1)[0]
+        value = combine.reduce(_values(locus, np.array([at]), sought), axis=1)[0]
         ax.plot(at, value, "o", color=INK, markersize=5, zorder=5, label="chosen", gid="chosen")
     label_axis(ax.xaxis, "squeeze $x$", units.force, max(abs(x)))
-    label_axis(ax.yaxis, label, unit.format(force=units.force), float(np.nanmax(abs(values))))
+    label_axis(ax.yaxis, sought.quantity, _unit(sought, units), float(np.nanmax(abs(values))))
     legend(ax)
     return ax
 
@@ -115,20 +109,12 @@ def shown_interval(
     return max(lo, -reach), min(hi, reach)
 
 
-def _values(locus: EquilibriumLocus, x: Array, objective: str) -> Array:
-    """(m, 2) what each contact adds to an objective."""
-    values: Array
-    if objective == "angle":
-        values = np.degrees(locus.margins(x).angle)
-    elif objective == "force":
-        values = locus.margins(x).force
-    elif objective == "friction_use":
-        use = locus.margins(x).friction_use
-        values = np.where(np.isfinite(use), use, nan)
-    elif objective == "peak_normal":
-        values = (locus.forces(x) * locus.grasp.normals).sum(axis=-1)
-    else:
-        values = np.linalg.norm(locus.forces(x), axis=-1)
-        if objective == "effort":
-            values = values**2
-    return values
+def _values(locus: EquilibriumLocus, x: Array, objective: Objective) -> Array:
+    """(m, 2) what each contact adds to an objective, angles in degrees."""
+    values = objective.of_contacts(locus.forces(x), locus.grasp)
+    values = np.where(np.isfinite(values), values, nan)
+    return np.degrees(values) if objective.unit == "rad" else values
+
+
+def _unit(objective: Objective, units: Units) -> str:
+    return "deg" if objective.unit == "rad" else units.of(objective.unit)

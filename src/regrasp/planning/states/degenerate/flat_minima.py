@@ -15,6 +15,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.planning.states.objectives import Bound, ConvexObjective
 from regrasp.planning.states.solving import Chooser
 
 _STEPS = 6
@@ -36,28 +37,27 @@ class _Active(NamedTuple):
 
 
 def polished(
-    chooser: Chooser, objective: str, forces: Array, frictions: list[float], limits: list[float]
+    chooser: Chooser, objective: ConvexObjective, forces: Array, frictions: list[float], limits: list[float]
 ) -> Array:
-    """The forces (n, w) nearer to the minimum of ``effort``, ``peak`` or ``peak_normal``, or as they are.
+    """The forces (n, w) nearer to the minimum, or as they are.
 
-    Nothing is done for ``force`` and where no finger carries a trace of force only.
+    Nothing is done for force margins, and where no finger carries a trace of force only.
     """
     sizes = np.sqrt((forces**2).sum(axis=1))
     largest = float(sizes.max())
+    grasp = chooser.grasp
     used = np.flatnonzero(sizes > _NOTHING * largest).tolist()
     if 0 < len(used) < np.count_nonzero(sizes):
         rest = chooser.of(used).settled(forces[used], [frictions[i] for i in used], [limits[i] for i in used])
-        if rest is not None and _value(chooser.grasp.subset(used), rest, objective) <= (
-            1 + _NOTHING
-        ) * _value(chooser.grasp, forces, objective):
-            forces = np.zeros_like(forces)
-            forces[used] = rest
-            sizes = np.sqrt((forces**2).sum(axis=1))
-    if objective == "force" or not ((sizes > 0) & (sizes < TRACE * largest)).any():
+        idle = np.zeros_like(forces)
+        if rest is not None:
+            idle[used] = rest
+            if _is_no_worse(grasp, objective, idle, forces, largest, _NOTHING):
+                forces, sizes = idle, np.sqrt((idle**2).sum(axis=1))
+    if objective.bound is Bound.MARGIN or not ((sizes > 0) & (sizes < TRACE * largest)).any():
         return forces
-    grasp = chooser.grasp
     x = forces.ravel() / largest
-    x = np.append(x, _value(grasp, forces / largest, objective))
+    x = np.append(x, _value(grasp, objective, forces, largest))
     mu, bounds = np.array(frictions), np.array(limits) / largest
     balance = np.column_stack([chooser.matrix, np.zeros(len(chooser.matrix))])
     multipliers = None
@@ -65,9 +65,10 @@ def polished(
         active = list(_active(grasp, objective, x, mu, bounds))
         gradient = np.zeros(x.size)
         hessian = np.zeros((x.size, x.size))
-        if objective == "effort":
-            gradient[:-1], hessian = 2 * x[:-1], 2 * np.eye(x.size)
-            hessian[-1, -1] = 0
+        if objective.bound is Bound.NONE:
+            squares, linear = _costs(objective, grasp, largest)
+            np.fill_diagonal(hessian[:-1, :-1], 2 * squares)
+            gradient[:-1] = 2 * squares * x[:-1] + linear
         else:
             gradient[-1] = 1.0
         jacobian = np.array([a.gradient for a in active]).reshape(-1, x.size)
@@ -88,22 +89,45 @@ def polished(
         return forces
     wanted[np.sqrt((wanted**2).sum(axis=1)) < 1e-12 * largest] = 0.0
     found = chooser.settled(wanted, frictions, limits)
-    if found is None or _value(grasp, found, objective) > _value(grasp, forces, objective) * (1 + 1e-12):
-        return forces
-    return found
+    return (
+        found
+        if found is not None and _is_no_worse(grasp, objective, found, forces, largest, _DONE)
+        else forces
+    )
 
 
-def _value(grasp: Grasp, forces: Array, objective: str) -> float:
-    if objective == "effort":
-        return float((forces**2).sum())
-    if objective == "peak":
-        return float(np.sqrt((forces**2).sum(axis=1)).max())
-    if objective == "force":
-        return 0.0  # of no finger less than before
-    return float(grasp.cones.normal(forces).max())
+def _is_no_worse(
+    grasp: Grasp, objective: ConvexObjective, found: Array, forces: Array, unit: float, tolerance: float
+) -> bool:
+    after, before = (_value(grasp, objective, f, unit) for f in (found, forces))
+    return after <= before + tolerance * abs(before)
 
 
-def _active(grasp: Grasp, objective: str, x: Array, mu: Array, bounds: Array) -> Iterator[_Active]:
+def _costs(objective: ConvexObjective, grasp: Grasp, unit: float) -> tuple[Array, Array]:
+    """(n w,) factors of squares and of forces in the cost, forces in units of ``unit``."""
+    squares, linear = objective.squares(grasp), objective.linear(grasp, unit)
+    size = grasp.width * len(grasp)
+    return (
+        np.zeros(size) if squares is None else np.repeat(squares, grasp.width),
+        np.zeros(size) if linear is None else linear.ravel(),
+    )
+
+
+def _value(grasp: Grasp, objective: ConvexObjective, forces: Array, unit: float) -> float:
+    """What is minimised, forces in units of ``unit``; of force margins nothing."""
+    x = forces / unit
+    if objective.bound is Bound.NONE:
+        squares, linear = _costs(objective, grasp, unit)
+        return float(squares @ x.ravel() ** 2 + linear @ x.ravel())
+    if objective.bound is Bound.MARGIN:
+        return 0.0
+    sizes = np.sqrt((x**2).sum(axis=1)) if objective.bound is Bound.FORCE else grasp.cones.normal(x)
+    return float(sizes.max())
+
+
+def _active(
+    grasp: Grasp, objective: ConvexObjective, x: Array, mu: Array, bounds: Array
+) -> Iterator[_Active]:
     """The active constraints at forces x[:-1] and a peak x[-1], in units of the largest force."""
     w, cones, size = grasp.width, grasp.cones, x.size
     for i in range(len(grasp)):
@@ -125,12 +149,14 @@ def _active(grasp: Grasp, objective: str, x: Array, mu: Array, bounds: Array) ->
             gradient[here] = direction - mu[i] * n
             hessian[here, here] = (np.eye(w) - np.outer(n, n) - np.outer(direction, direction)) / sideways
             yield _Active(sideways - mu[i] * along, gradient, hessian)
-        of_peak = length if objective == "peak" else along if objective == "peak_normal" else -1.0
+        of_peak = {Bound.FORCE: length, Bound.NORMAL: along}.get(objective.bound)
         for is_peak, value, bound in ((True, of_peak, x[-1]), (False, length, bounds[i])):
+            if value is None:
+                continue
             if not abs(value - bound) < _ACTIVE or length < TRACE:
                 continue
             gradient, hessian = zero.copy(), none.copy()
-            if is_peak and objective == "peak_normal":
+            if is_peak and objective.bound is Bound.NORMAL:
                 gradient[here] = n
             else:
                 gradient[here] = f / length

@@ -22,6 +22,7 @@ from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.faces import cone_faces
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
+from regrasp.planning.states.objectives import ConvexObjective, LevelObjective
 from regrasp.planning.states.solving import Chooser, Found
 from regrasp.programs import Program, Rows, solve
 
@@ -41,7 +42,7 @@ class Squeezer(Chooser):
 
     def _program(
         self,
-        objective: str,
+        objective: ConvexObjective,
         frictions: list[float],
         limits: list[float],
         weights: Array | None,
@@ -153,11 +154,11 @@ def best_squeeze(
     if start is None:
         return None
     start = _scaled(start, bounds)
-    if criteria.objective == "force":
-        widest = Chooser(some, none, backend, facets, bounds).best("force", mu, bounds)
+    if isinstance(criteria.objective, ConvexObjective):
+        widest = Chooser(some, none, backend, facets, bounds).best(criteria.objective, mu, bounds)
         is_none = widest is None or not abs(widest.forces).max() > _APART * min(bounds)
         found = Found(start, 0.0) if widest is None or is_none else widest
-    else:
+    elif isinstance(criteria.objective, LevelObjective):
         found = highest(squeezer, Narrowing(some, criteria.objective, mu), start, [inf] * len(part))
         found = Found(_scaled(found.forces, bounds), found.gap)
     whole = np.zeros((len(grasp), grasp.width))

@@ -1,0 +1,115 @@
+"""Mesh files as trimesh reads them: one encoding, honest counts, no textures, absolute indices."""
+
+import re
+
+from regrasp.errors import InvalidInput
+from regrasp.outline.opening import decoded
+
+MOST_FACES = 1_100_000
+_MOST_LINES = 3_000_000
+_FACE = 50  # bytes of a binary STL
+_SIZES = {
+    "char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2,
+    "float16": 2, "int": 4, "uint": 4, "int32": 4, "uint32": 4, "float": 4, "float32": 4,
+    "double": 8, "float64": 8, "int64": 8, "uint64": 8,
+}  # fmt: skip
+
+
+def prepared(data: bytes, kind: str) -> bytes:
+    """The same mesh. Raises ``InvalidInput`` where the file holds less than it says, or too much."""
+    return {"stl": _stl, "obj": _obj, "ply": _ply}[kind](data)
+
+
+def check_count(count: int) -> None:
+    """Raise ``InvalidInput`` for more faces than are read."""
+    if count > MOST_FACES:
+        raise InvalidInput(f"there are {count} faces, more than {MOST_FACES}; simplify the mesh")
+
+
+def _stl(data: bytes) -> bytes:
+    count, held = int.from_bytes(data[80:84], "little"), (len(data) - 84) / _FACE
+    if len(data) >= 84 and count == held:
+        check_count(count)
+        return (
+            data[:80].replace(b"\0", b" ").decode("ascii", "replace").encode("ascii", "replace") + data[80:]
+        )
+    if b"\0" in data and b"facet" not in data[:4096].lower() and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
+        raise InvalidInput(
+            f"the file is damaged: its header says {count} faces, its bytes hold {max(held, 0.0):.6g}"
+        )
+    check_count(data.count(b"vertex") // 3)
+    return decoded(data).encode()
+
+
+def _obj(data: bytes) -> bytes:
+    """Only vertices and faces: groups and materials do not part a body, textures and normals are not used."""
+    text = decoded(data).encode().replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
+    check_count(len(re.findall(rb"^[ \t]*f[ \t]", text, re.MULTILINE)))
+    lines = re.findall(rb"^[ \t]*[vf][ \t][^\r\n#]*", text, re.MULTILINE)
+    if len(lines) > _MOST_LINES:
+        raise InvalidInput(f"there are {len(lines)} vertices and faces, more than {_MOST_LINES}")
+    return re.sub(rb"(?<=\d)/[-+/\d]*", b"", b"\n".join(_absolute(lines)) + b"\n")
+
+
+def _absolute(lines: list[bytes]) -> list[bytes]:
+    """Faces by numbers from the first vertex: -1 is the last so far."""
+    result, count = [], 0
+    for line in lines:
+        if line.lstrip()[:1] == b"v":
+            count += 1
+        elif b"-" in line:
+            try:
+                corners = [int(corner.split(b"/", 1)[0]) for corner in line.split()[1:]]
+            except ValueError:
+                raise InvalidInput(f"a face must be f with numbers of vertices, got {_shown(line)}") from None
+            if any(corner < -count for corner in corners):
+                raise InvalidInput(
+                    f"a face names a vertex before the first, {_shown(line)}; there are {count} so far"
+                )
+            line = b"f " + b" ".join(b"%d" % (c if c >= 0 else count + 1 + c) for c in corners)
+        result.append(line)
+    return result
+
+
+def _shown(line: bytes) -> str:
+    """A line to show."""
+    return ascii(line[:60].decode("utf-8", "replace").strip())
+
+
+def _ply(data: bytes) -> bytes:
+    found = re.search(rb"(?:^|[\r\n])end_header[ \t]*(\r\n|\n|\r)", data)
+    if not found or not data[:3].lower() == b"ply":
+        raise InvalidInput("the file cannot be read as PLY: its header does not begin with ply or has no end")
+    lines = [line.decode("latin-1").strip() for line in data[: found.start()].splitlines()]
+    kept = [line for line in lines if line and line.split()[0] not in ("comment", "obj_info")]
+    body = data[found.end() :]
+    is_text = any(line.startswith("format") and "ascii" in line for line in kept)
+    least = _least_size(kept, is_text)
+    if least > len(body) + 1:
+        raise InvalidInput(
+            f"the file is damaged: its header says {least} bytes or more, there are {len(body)}"
+        )
+    if is_text:
+        body = decoded(body).encode()
+    head = "\n".join([*kept, "end_header"]) + "\n"
+    return head.encode("ascii", "replace") + body
+
+
+def _least_size(header: list[str], is_text: bool) -> int:
+    """How many bytes the elements of a header need, if every list is empty."""
+    total, count, each = 0, 0, 0
+    for line in [*header, "element end 0"]:
+        words = line.split()
+        if words[0] == "element":
+            total += count * each
+            if len(words) != 3 or not words[2].isdigit():
+                raise InvalidInput(f"the file cannot be read as PLY: its header has {line[:60]!r}")
+            count, each = int(words[2][:20]), 0
+            if words[1] == "face":
+                check_count(count)
+        elif words[0] == "property" and len(words) > 2:
+            size = _SIZES.get(words[2] if words[1] == "list" else words[1])
+            if size is None:
+                raise InvalidInput(f"the file cannot be read as PLY: its header has {line[:60]!r}")
+            each += 2 if is_text else size
+    return total

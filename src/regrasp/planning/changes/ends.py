@@ -1,0 +1,111 @@
+"""The two ends of a transition: given states balanced, others chosen, in a grasp of all contacts."""
+
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.changes.given_ends import balanced_start
+from regrasp.planning.states.choosing import choose_forces
+from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.states.options import BALANCE_TOLERANCE
+from regrasp.plans.record import Choice, Record
+
+
+class End(NamedTuple):
+    """One end of a transition: the state given for its fingers, or what to choose it for.
+
+    idle: the places of the fingers that carry no force there.
+    """
+
+    label: Literal["start", "end"]
+    load: Wrench
+    given: GraspState | None
+    criteria: Criteria
+    idle: tuple[int, ...]
+
+    def found(
+        self, grasp: Grasp, method: str, facets: int | None, tolerance: float
+    ) -> tuple[GraspState | ChosenForces, Choice | None, float]:
+        """The forces of the fingers at work, the record of their choice and the change of given ones [N]."""
+        rest = grasp
+        if self.idle:
+            rest = grasp.without(self.idle[0]) if len(self.idle) == 1 else _without(grasp, self.idle)
+        if self.given is None:
+            best = choose_forces(rest, self.load, self.criteria, method, facets)
+            choice = Choice(self.label, self.criteria.objective.name, best.method, best.force_limits)
+            return best, choice, 0.0
+        given = self.given if self.given.grasp is rest else GraspState(rest, self.load, self.given.forces)
+        state = balanced_start(given, self.criteria, tolerance, self.label)
+        return state, None, 0.0 if state is given else float(abs(state.forces - given.forces).max())
+
+    def among(self, grasp: Grasp, found: GraspState | ChosenForces) -> GraspState:
+        """The state of all contacts, the idle ones without force."""
+        if not self.idle:
+            return found if isinstance(found, GraspState) else GraspState(grasp, self.load, found.forces)
+        width = grasp.width
+        # Where no soft finger is left, forces are narrower.
+        rows = [[*force, *[0.0] * (width - len(force))] for force in found.forces]
+        for place in sorted(self.idle):
+            rows.insert(place, [0.0] * width)
+        return GraspState(grasp, self.load, rows)
+
+
+class Change(NamedTuple):
+    """Two ends of one grasp, which fingers leave and arrive by place, and the record of both choices."""
+
+    start: GraspState
+    end: GraspState
+    leaving: tuple[int, ...]
+    arriving: tuple[int, ...]
+    record: Record
+
+    @classmethod
+    def between(cls, grasp: Grasp, first: End, last: End, options: Mapping[str, Any]) -> "Change":
+        """The change from one end to the other, states balanced or chosen by the options of a call."""
+        tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
+        how = options.get("method", "auto"), options.get("facets"), tolerance
+        # The state of fewer fingers first: it is the one that may not exist.
+        ends = sorted((first, last), key=lambda end: -len(end.idle))
+        found = {end.label: end.found(grasp, *how) for end in ends}
+        return cls(
+            first.among(grasp, found["start"][0]),
+            last.among(grasp, found["end"][0]),
+            last.idle,
+            first.idle,
+            Record(
+                reserve=first.criteria.reserve,
+                choices=tuple(c for end in ends if (c := found[end.label][1]) is not None),
+                balancing=max(change for _, _, change in found.values()),
+            ),
+        )
+
+
+def state_among(
+    state: GraspState, grasp: Grasp, load: Wrench, gone: tuple[int, ...], label: str
+) -> GraspState:
+    """The state of the fingers that stay, from one of theirs or of the whole grasp with idle fingers."""
+    rest = _without(grasp, gone)
+    if isinstance(state, GraspState) and state.load == load:
+        if state.grasp == rest:
+            return state
+        if state.grasp == grasp:
+            for i in gone:
+                if state.forces[i].any():
+                    raise InvalidInput(
+                        f"{label}: {grasp.names[i]} must carry no force, got {state.forces[i].tolist()}"
+                    )
+            stay = [i for i in range(len(grasp)) if i not in gone]
+            return GraspState(rest, load, state.forces[stay][:, : rest.width])
+    names = ", ".join(grasp.names[i] for i in gone)
+    raise InvalidInput(
+        f"{label} must be a GraspState of {', '.join(rest.names)}, or of the whole grasp with {names} idle, "
+        f"under the start's load; got {state!r}"
+    )
+
+
+def _without(grasp: Grasp, gone: tuple[int, ...]) -> Grasp:
+    return grasp.subset(i for i in range(len(grasp)) if i not in gone)
