@@ -45,8 +45,7 @@ def solved_forces(
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except (SolverFailed, Infeasible) as failure:
-        # Solvers fail at the limit of what can be held, or call it infeasible. That is no verdict; a proof
-        # is.
+        # At the limit of what can be held solvers fail or guess. That is no verdict; a proof is.
         reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
         if reason is None or reason.certificate is None:
             anyway = _by_newton(grasp, load, criteria, backend, facets)
@@ -121,7 +120,8 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     objective = criteria.objective
     try:
-        found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
+        convex = objective if isinstance(objective, ConvexObjective) else FORCE
+        found = chooser.best(convex, frictions, limits)
     except SolverFailed:
         if least is None or not isinstance(objective, LevelObjective):
             raise
