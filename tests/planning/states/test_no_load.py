@@ -174,6 +174,21 @@ def test_fingers_that_do_not_squeeze_hold_a_load_next_to_none() -> None:
         assert state.is_balanced()
 
 
+def test_a_load_next_to_none_that_takes_large_forces() -> None:
+    """A wedge of 2e-6 rad needs half a million times the load: far below a limit of 1e10 of it, and held."""
+    wedge = rg.Grasp(
+        [
+            rg.Contact([-1, 0, 0], [1, 0, 1e-6], 0.0),
+            rg.Contact([1, 0, 0], [-1, 0, 1e-6], 0.0),
+            rg.Contact([0, 0, 1], [0, 0, -1], 0.5),
+        ]
+    )
+    for objective in MARGINS:
+        state = rg.choose_state(wedge, rg.Wrench([0, 0, -1e-10]), objective, max_force=1.0)
+        assert state.is_balanced()
+        assert state.magnitudes.max() > 4e-5
+
+
 def test_a_larger_load_is_continuous_with_it() -> None:
     grasp = ring(radians(15))
     for power in range(-12, -2):

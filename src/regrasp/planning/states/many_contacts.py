@@ -106,7 +106,8 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
             return ChosenForces(grasp.cones.forces(loaded), tuple(limits), backend, squeezed.gap)
         # Fingers that take no part in the squeeze must hold the load, with forces of its size.
         capped = replace(criteria, max_force=_BESIDE * chooser.load_size)
-        return _solved(grasp, load, capped, backend, facets)._replace(force_limits=tuple(limits))
+        with suppress(Infeasible, SolverFailed):  # what the cap forbids is no verdict
+            return _solved(grasp, load, capped, backend, facets)._replace(force_limits=tuple(limits))
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
     least = None

@@ -56,7 +56,8 @@ class Squeezer(Chooser):
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Internal forces near to ``wanted``; None if only zero is."""
         found = super().settled(wanted, frictions, [inf] * len(limits))
-        return found if found is not None and found.any() else None
+        is_left = found is not None and abs(found).max() > _APART * abs(wanted).max()
+        return found if is_left else None
 
     def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:
         """Whether every force in the cones works along a motion."""
