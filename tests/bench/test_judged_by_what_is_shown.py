@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from regrasp.bench.answer import Answer
-from regrasp.bench.contests import contests
-from regrasp.bench.judgement import CERTIFICATE, is_near, is_proof, judged
-from regrasp.bench.outcomes import Kind, outcomes
-from regrasp.bench.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
-from regrasp.bench.residual import row_residual
-from regrasp.bench.tables import contest_table, summary_table
 from scipy import sparse
 from test_bench_report import LIMIT, WRONG, row, written
 
 from regrasp.bench.families import FAMILIES
+from regrasp.bench.judging.judgement import CERTIFICATE, is_near, is_proof, judged
+from regrasp.bench.judging.outcomes import Kind, outcomes
+from regrasp.bench.judging.residual import row_residual
+from regrasp.bench.reporting.contests import contests
+from regrasp.bench.reporting.tables import contest_table, summary_table
+from regrasp.bench.running.answer import Answer
+from regrasp.bench.running.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
 from regrasp.programs import Block, Cone, Program
 
 INFEASIBLE = list(FAMILIES["infeasible"].problems())[::4]

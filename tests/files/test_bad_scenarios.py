@@ -133,7 +133,10 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         ["contacts: contacts of one grasp must have different names, 'P1' came twice"],
     ),
     "coincident contacts": (
-        edited(("position = [4.0, -5.0]", "position = [-4.0, -4.0]")),
+        edited(
+            ("position = [4.0, -5.0]", "position = [-4.0, -4.0]"),
+            ("normal = [-1.0, 2.0]", "normal = [1.0, 1.0]"),
+        ),
         2,
         ["contacts: contacts 'P1' and 'P2' coincide at [-4.0, -4.0]; place them at different points"],
     ),
@@ -526,7 +529,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         "contacts of one grasp must have different names, 'P1' came twice",
     ),
     "Grasp: coincident": (
-        lambda: rg.Grasp([P1, rg.Contact([-4, -4], [0, 1], 0.3, name="Q")]),
+        lambda: rg.Grasp([P1, rg.Contact([-4, -4], [1, 1], 0.3, name="Q")]),
         rg.InvalidInput,
         "contacts 'P1' and 'Q' coincide at [-4.0, -4.0]; place them at different points",
     ),
@@ -728,7 +731,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         "contact must be the Contact that arrives, got 'P3'",
     ),
     "plan_addition: where a finger is": (
-        lambda: rg.plan_addition(TWO, rg.Contact([-4, -4], [1, 0], 0.3, name="Q"), load=LOAD),
+        lambda: rg.plan_addition(TWO, rg.Contact([-4, -4], [1, 1], 0.3, name="Q"), load=LOAD),
         rg.InvalidInput,
         "contacts 'P1' and 'Q' coincide at [-4.0, -4.0]; place them at different points",
     ),

@@ -12,8 +12,8 @@ def row_residual(program: Program, x: Array) -> float:
     """The largest violation of a row or second-order cone, relative to its |b_i| + max_j |a_ij x_j|; x: (n,).
 
     An unknown near zero counts as large as its unit (``regrasp.programs.judging.units``), but no larger than
-    the largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count alike,
-    and what is large elsewhere hides nothing. NaN if x is not finite or so large that the rows are not.
+    the largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count
+    alike, and what is large elsewhere hides nothing. NaN if x is not finite or so large that the rows are not.
     """
     if not np.isfinite(x).all():
         return nan
