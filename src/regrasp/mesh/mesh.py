@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number, read_only
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, array, file_path, finite, number, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mesh.arrays import Indices, checked_faces, checked_vertices, merged
@@ -79,9 +78,12 @@ class Mesh(ArrayValue):
         from regrasp.mesh.files import read
         from regrasp.outline.readers import naming
 
+        if not isinstance(smooth, bool):
+            raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
         factor = number(scale, "scale", above=0)
+        path = file_path(path)
         with naming(path):
-            vertices, faces = read(Path(path))
+            vertices, faces = read(path)
             return cls(factor * vertices, faces, smooth=smooth, crease=crease)
 
     @classmethod
@@ -110,7 +112,10 @@ class Mesh(ArrayValue):
         """
         from regrasp.mesh.build import ball
 
-        return cls(*ball(number(radius, "radius", above=0), whole(divisions, "divisions", 2)), smooth=True)
+        return cls(
+            *ball(number(radius, "radius", above=0), whole(divisions, "divisions", least=2, most=500)),
+            smooth=True,
+        )
 
     @classmethod
     def extruded(cls, outline: Outline, height: float) -> "Mesh":
@@ -135,7 +140,7 @@ class Mesh(ArrayValue):
         """
         from regrasp.mesh.build import revolution
 
-        return cls(*revolution(profile, whole(segments, "segments", 3)), smooth=True)
+        return cls(*revolution(profile, whole(segments, "segments", least=3, most=100_000)), smooth=True)
 
     # -- the object -------------------------------------------------------------------------------------
 
@@ -167,7 +172,11 @@ class Mesh(ArrayValue):
         """Write a binary STL, in the coordinates given, rounded to single precision."""
         from regrasp.mesh.files import stl
 
-        Path(path).write_bytes(stl(self.vertices, self.faces))
+        path = file_path(path)
+        try:
+            path.write_bytes(stl(self.vertices, self.faces))
+        except OSError as error:
+            raise InvalidInput(f"{path}: cannot be written: {error.strerror or error}") from None
 
     # -- contacts ---------------------------------------------------------------------------------------
 
@@ -252,14 +261,14 @@ class Mesh(ArrayValue):
         return tuple(Contact(r, n, friction, max_force=max_force) for r, n in places)
 
     def _sample(self, count: int, seed: int, clearance: float | None) -> tuple[Array, Array]:
-        n = whole(count, "count", 1)
+        n = whole(count, "count", least=1, most=1_000_000)
         keep = None if clearance is None else number(clearance, "clearance", least=0)
         shading = self._shading
         starts, ends = (np.concatenate([shading.edges[:, k], shading.points]) for k in (0, 1))
         sharp = self.vertices[starts], self.vertices[ends]
         surface = Surface(self._corners, doubled_areas(self._corners) / 2, self._flat, sharp)
         least = 2 * _AT_EDGE * float(self.size.max())
-        faces, weights = spread(surface, n, whole(seed, "seed", 0), keep, least)
+        faces, weights = spread(surface, n, whole(seed, "seed", least=0), keep, least)
         return at(self._corners[faces], weights), self._normals_at(faces, weights)
 
     # -- what they stand on -----------------------------------------------------------------------------
@@ -298,18 +307,5 @@ class Mesh(ArrayValue):
         return f"Mesh({len(self.faces)} faces{kind}, size {size}, volume {self.volume:.6g})"
 
 
-def whole(value: int, what: str, least: int) -> int:
-    """A whole number of at least ``least``."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidInput(f"{what} must be a whole number of at least {least}, got {value!r}")
-    return int(value)
-
-
 def _points(points: ArrayLike) -> Array:
-    try:
-        result = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"points must be numbers of shape (..., 3), got {points!r}") from None
-    if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
-        raise InvalidInput(f"points must be finite, of shape (..., 3); got shape {result.shape}: {points!r}")
-    return result
+    return finite(points, "points", (3,))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from regrasp.closed_form.straight_path import straight_path
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
@@ -219,6 +219,7 @@ class Transition(ArrayValue, Documented, Pictured):
 
     def retimed(self, scaling: TimeScaling) -> "Transition":
         """The same path under another time function."""
+        instance(scaling, "scaling", TimeScaling)
         return replace(self, scaling=scaling)
 
     def fastest(self, rate_limit: ArrayLike) -> "Transition":

@@ -13,7 +13,9 @@ from regrasp.mechanics.orientation.rotations import unit_axis
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.planning.changes.given_ends import BALANCE_TOLERANCE
 from regrasp.planning.changes.joining import PathObjective
+from regrasp.planning.states.choosing import MOST_FACETS
 from regrasp.planning.states.criteria import PEAK_RATIO, Objective
+from regrasp.plans.loads import MOST_INSTANTS
 from regrasp.plans.timing import PAPER_CONTROL, TimeScaling
 
 
@@ -80,8 +82,10 @@ class Change(Task):
         None,
         description="time [s] from which the leaving finger, or up to which the arriving one, has no force",
     )
-    instants: int = Field(101, ge=3, description="instants of a path that is not straight")
-    facets: int | None = Field(None, ge=3, description="sides of polygons in the place of circles")
+    instants: int = Field(101, ge=3, le=MOST_INSTANTS, description="instants of a path that is not straight")
+    facets: int | None = Field(
+        None, ge=3, le=MOST_FACETS, description="sides of polygons in the place of circles"
+    )
 
 
 class Removal(Change):

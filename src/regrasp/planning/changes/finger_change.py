@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple, cast
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import number
+from regrasp.mechanics.checks import instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -140,6 +140,8 @@ def plan_addition(
     before, first = grasp_and_load(start, first)
     last = series(series.duration) if series is not None else first
     grasp = before.with_contact(contact)
+    if end is not None:
+        instance(end, "end", GraspState)
     if end is not None and (end.grasp != grasp or end.load != last):
         raise InvalidInput(
             f"end must be a state of the start's contacts and the new one, in that order "

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, choice, limits, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
 from regrasp.plans.course import Course
-from regrasp.plans.loads import LoadSeries
+from regrasp.plans.loads import MOST_INSTANTS, LoadSeries
 from regrasp.plans.sampled import SampledTransition
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Record, Transition
@@ -45,8 +45,7 @@ class Demands:
             number(self.min_normal, "min_normal", least=0)
         if self.path_objective is not None:
             choice(self.path_objective, "path_objective", PATH_OBJECTIVES)
-        if isinstance(self.instants, bool) or not isinstance(self.instants, int) or self.instants < 3:
-            raise InvalidInput(f"instants must be a whole number of at least 3, got {self.instants!r}")
+        whole(self.instants, "instants", least=3, most=MOST_INSTANTS)
         check_facets(self.facets)
         if self.idle_time is not None:
             number(self.idle_time, "idle_from or idle_until", least=0)
@@ -64,7 +63,8 @@ class Demands:
     ) -> "Demands":
         """The demands of a call; one value for the many calls without any, which take microseconds."""
         given = (rate_limit, min_normal, path_objective, idle_time, facets)
-        if all(demand is None for demand in given) and instants == _INSTANTS and method == "auto":
+        usual = type(instants) is int and instants == _INSTANTS and method == "auto"
+        if usual and all(demand is None for demand in given):
             return _NONE
         return cls(rate_limit, min_normal, path_objective, idle_time, instants, method, facets)
 
@@ -82,15 +82,7 @@ class Demands:
         """(n,) force-rate limits, infinite for none [N/s]."""
         if self.rate_limit is None:
             return np.full(len(grasp), inf)
-        try:
-            rates = np.broadcast_to(np.asarray(self.rate_limit, dtype=float), (len(grasp),))
-        except (TypeError, ValueError):
-            raise InvalidInput(
-                f"rate_limit must be a number or have shape ({len(grasp)},), got {self.rate_limit!r}"
-            ) from None
-        if not (rates > 0).all():
-            raise InvalidInput(f"rate_limit must be greater than 0, got {self.rate_limit!r}")
-        return rates
+        return limits(self.rate_limit, "rate_limit", len(grasp))
 
 
 _NONE = Demands()

@@ -5,12 +5,17 @@ from typing import Required, TypedDict
 
 from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import choice, number
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs
+
+MOST_CANDIDATES = 100_000
+"""Points where fingers may touch; the memory of a graph ends before that."""
+MOST_EXTRA = 1000
+"""Moves that a sequence may have more than the fewest."""
 
 
 class RegraspOptions(TypedDict, total=False):
@@ -46,6 +51,12 @@ def check_steps(step_duration: float, states: str, max_turn: float, least_margin
     """Raises ``InvalidInput`` for options of the steps that are not what they must be."""
     number(step_duration, "step_duration", above=0)
     choice(states, "states", ("each", "joint"))
-    if not 0 < number(max_turn, "max_turn") < pi:
-        raise InvalidInput(f"max_turn must be above 0 and below pi, got {max_turn!r}")
+    turn_below_pi(max_turn)
     number(least_margin, "least_margin", least=0)
+
+
+def turn_below_pi(max_turn: float) -> float:
+    """A checked ``max_turn`` [rad]."""
+    if not 0 < number(max_turn, "max_turn") < pi:
+        raise InvalidInput(f"max_turn must be above 0 and below pi, got {shown(max_turn)}")
+    return max_turn

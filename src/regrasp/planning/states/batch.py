@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, choice, number, numbers_in
 from regrasp.planning.states.criteria import PEAK_RATIO, UNBOUNDED
 
 # The arguments of a batch in order, each with the size of its last axis (1: a number).
@@ -87,10 +87,10 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
     """Flat arrays of one value, or one for every grasp; which of them are whole; the common shape."""
     arrays, leading = [], []
     for (name, size), argument in zip(_SIZES.items(), arguments, strict=False):
-        try:
-            value = np.asarray(argument, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InvalidInput(f"{name} must be an array of numbers, got {type(argument).__name__}") from None
+        if isinstance(argument, np.ndarray) and argument.dtype == np.float64:
+            value = argument  # millions of numbers are not copied
+        else:
+            value = numbers_in(argument, f"{name} must be an array of numbers")
         if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
             raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
         arrays.append(value)

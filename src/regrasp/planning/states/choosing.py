@@ -1,6 +1,7 @@
 """Choosing the forces of a grasp under a load."""
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import check_load
@@ -8,6 +9,8 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO, ChosenForces, ChosenState, Criteria, criteria_of
 from regrasp.planning.states.two_fingers import best_forces
 
+MOST_FACETS = 10_000
+"""Sides of a polygon that stands for a circle: one of so many is a circle to eight digits."""
 DEFAULT_BACKEND = "clarabel"
 
 
@@ -48,8 +51,8 @@ def choose_state(
 
 def check_facets(facets: int | None) -> None:
     """Raise ``InvalidInput`` unless ``facets`` is a number of sides, or None."""
-    if facets is not None and (not isinstance(facets, int) or isinstance(facets, bool) or facets < 3):
-        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
+    if facets is not None:
+        whole(facets, "facets", least=3, most=MOST_FACETS)
 
 
 def choose_forces(

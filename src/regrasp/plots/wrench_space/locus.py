@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import Infeasible
-from regrasp.mechanics.checks import Array, choice
+from regrasp.mechanics.checks import Array, choice, instance
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plots.look.style import (
@@ -57,6 +57,7 @@ def plot_locus(
     records them as ``locus.best`` does; else the contacts' own.
     Raises ``Infeasible`` for an empty locus.
     """
+    instance(locus, "locus", EquilibriumLocus)
     choice(objective, "objective", OBJECTIVES)
     if locus.is_empty:
         raise Infeasible(f"the equilibrium locus of {', '.join(locus.grasp.names)} is empty: nothing to draw")
