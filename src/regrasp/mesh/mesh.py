@@ -23,6 +23,7 @@ CREASE = float(np.radians(35.0))
 
 _AMBIGUOUS = np.radians(5.0)  # normals of faces that meet may differ by this where a finger touches
 _AT_EDGE = 1e-9  # of the largest side
+_FARTHEST = 1e150  # whose square is a number
 _FAR = 0.1  # of the largest side
 
 
@@ -308,4 +309,7 @@ class Mesh(ArrayValue):
 
 
 def _points(points: ArrayLike) -> Array:
-    return finite(points, "points", (3,))
+    result = finite(points, "points", (3,))
+    if result.size and abs(result).max() > _FARTHEST:
+        raise InvalidInput(f"points must be nearer than {_FARTHEST:g}, got {shown(points)}")
+    return result

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _MOST_BYTES = 2**24  # of a file that people write
 # Keys a.b.c of many parts: reading them takes time with the square of their number.
 _DEEP = 50
-_DEEP_KEY = re.compile(rf"(?>[\w\"'-]+\s*\.\s*){{{_DEEP}}}")
+_DEEP_KEY = re.compile(rf"(?<![\w\"'-])(?>[\w\"'-]+[ \t]*\.[ \t]*){{{_DEEP}}}")
 
 
 class ContactEntry(Strict):
