@@ -278,7 +278,6 @@ def rows() -> dict[str, Row]:
         "Transition.from_dict": Row(rg.Transition.from_dict, {"data": transition.to_dict()}),
         "bent Transition.forces": Row(bent().forces, {"t": 0.1}),
         "bent Transition.rates": Row(bent().rates, {"t": 0.1}),
-        "bent Transition.retimed": Row(bent().retimed, {"scaling": bent().scaling}),
         "turning Transition.forces": Row(turn.forces, {"t": 0.5}),
         "turning Transition.rates": Row(turn.rates, {"t": 0.5}),
         "turning Transition.rotations": Row(turn.rotations, {"t": 0.5}),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, file_path, finite, number, read_only, whole
+from regrasp.mechanics.checks import Array, array, file_path, number, numbers_in, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mesh.arrays import Indices, checked_faces, checked_vertices, merged
@@ -309,7 +309,11 @@ class Mesh(ArrayValue):
 
 
 def _points(points: ArrayLike) -> Array:
-    result = finite(points, "points", (3,))
+    result = numbers_in(points, "points must be numbers of shape (..., 3)")
+    if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
+        raise InvalidInput(
+            f"points must be finite, of shape (..., 3); got shape {result.shape}: {shown(points)}"
+        )
     if result.size and abs(result).max() > _FARTHEST:
         raise InvalidInput(f"points must be nearer than {_FARTHEST:g}, got {shown(points)}")
     return result

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from regrasp.closed_form.straight_path import fastest_duration
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, instance, limits, number, numbers_in, whole
+from regrasp.mechanics.checks import Array, array, instance, items, limits, number, numbers_in, whole
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -43,7 +43,7 @@ class TimeScaling(ArrayValue):
 
     def __post_init__(self) -> None:
         duration = number(self.duration, "duration", above=0)
-        values = tuple(array(self.control, "control values", (None,)).tolist())
+        values = tuple(number(c, "control value") for c in items(self.control, "control"))
         falls = all(a >= b for a, b in pairwise(values))
         if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
@@ -56,7 +56,7 @@ class TimeScaling(ArrayValue):
     @classmethod
     def spline(cls, duration: float, control: Sequence[float] = PAPER_CONTROL) -> "TimeScaling":
         """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default."""
-        values = tuple(array(control, "control values", (None,)).tolist())
+        values = items(control, "control")
         return cls(duration, values, min(3, len(values) - 1))
 
     @classmethod

@@ -90,7 +90,11 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
         if isinstance(argument, np.ndarray) and argument.dtype == np.float64:
             value = argument  # millions of numbers are not copied
         else:
-            value = numbers_in(argument, f"{name} must be an array of numbers")
+            try:
+                value = numbers_in(argument, name)
+            except InvalidInput:
+                kind = type(argument).__name__
+                raise InvalidInput(f"{name} must be an array of numbers, got {kind}") from None
         if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
             raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
         arrays.append(value)
