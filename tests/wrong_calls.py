@@ -280,7 +280,6 @@ def rows() -> dict[str, Row]:
         "bent Transition.rates": Row(bent().rates, {"t": 0.1}),
         "turning Transition.forces": Row(turn.forces, {"t": 0.5}),
         "turning Transition.rates": Row(turn.rates, {"t": 0.5}),
-        "turning Transition.rotations": Row(turn.rotations, {"t": 0.5}),
         "turning Transition.fastest": Row(
             turn.fastest, {"rate_limit": 10.0}, {"rate_limit": "limits of two"}
         ),
