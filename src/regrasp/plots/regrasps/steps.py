@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, instance
+from regrasp.mechanics.checks import Array
 from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
@@ -51,7 +51,6 @@ def plot_regrasp(plan: RegraspPlan, outline: Outline | Any = None, *, units: Uni
     Without it the hull of all contacts stands for the object.
     Raises ``InvalidInput`` for anything else.
     """
-    instance(plan, "plan", RegraspPlan)
     if not isinstance(plan, RegraspPlan):
         raise InvalidInput(f"plan must be a RegraspPlan, got {type(plan).__name__}; see plot_transition")
     if isinstance(plan, SpaceRegraspPlan):
