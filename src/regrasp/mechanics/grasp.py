@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array, finite, items, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.tangents import tangents_of
@@ -33,7 +33,7 @@ class Grasp(ArrayValue):
     contacts: tuple[Contact, ...]
 
     def __init__(self, contacts: Iterable[Contact]) -> None:
-        given = tuple(contacts)
+        given = items(contacts, "contacts of a grasp")
         if not given:
             raise InvalidInput("a grasp needs at least one contact, got none")
         for contact in given:
@@ -103,7 +103,7 @@ class Grasp(ArrayValue):
 
     def subset(self, contacts: Iterable[str | int]) -> "Grasp":
         """The grasp of the contacts named, in the order named."""
-        return Grasp(self[contact] for contact in contacts)
+        return Grasp(self[contact] for contact in items(contacts, "contacts"))
 
     def without(self, contact: str | int) -> "Grasp":
         """The grasp after one finger left."""
@@ -217,6 +217,8 @@ class Grasp(ArrayValue):
 
     def wrenches(self, forces: Array) -> Array:
         """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces."""
+        if not isinstance(forces, np.ndarray) or forces.shape[-2:] != (len(self), self.width):
+            forces = finite(forces, "forces", (len(self), self.width))
         pushed = forces[..., : self.dimension]
         torques = torque(self.positions, pushed)
         if self.is_soft:

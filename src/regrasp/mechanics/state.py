@@ -118,6 +118,7 @@ class GraspState(ArrayValue):
 
         Judged once for each reserve, so that many plans may start from one state.
         """
+        reserve = reserve_fraction(reserve)
         if reserve not in self._verdicts:
             self._verdicts[reserve] = self._judged(reserve)
         return self._verdicts[reserve]

@@ -10,18 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, choice, number, read_only
+from regrasp.mechanics.checks import Array, array, choice, finite, items, number, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary
 from regrasp.outline.curves import EllipseBoundary, SplineBoundary
 from regrasp.outline.plain import holes_of, outline_data, shape_of
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.outline.region import check_holes, checked_ring, checked_size
+from regrasp.outline.region import check_holes, check_spread, checked_ring, checked_size
 
 # Chords of a smooth outline stay this near to it, as a fraction of its length, where a polygon stands for it.
 _FLATNESS = 1e-4
 _AT_CORNER = 1e-9
+MOST_SAMPLED = 10_000_000
+"""Points of a boundary."""
 
 Hole = Union[ArrayLike, "Outline"]
 
@@ -54,6 +56,7 @@ class Outline(ArrayValue):
     def smooth(cls, points: ArrayLike, holes: Iterable[Hole] = ()) -> "Outline":
         """The periodic cubic spline through points (k, 2) [m], three or more."""
         through = checked_ring(points, "outline")
+        check_spread(through, "outline")
         boundary = SplineBoundary(through)
         if boundary.moments[0] < 0:  # few points can turn against the curve through them
             boundary = SplineBoundary(read_only(np.roll(through[::-1], 1, axis=0)))
@@ -116,7 +119,7 @@ class Outline(ArrayValue):
         return outline
 
     def _set(self, boundary: Boundary, holes: Iterable[Hole]) -> None:
-        inner = tuple(_hole(hole, f"hole {i}") for i, hole in enumerate(holes))
+        inner = tuple(_hole(hole, f"hole {i}") for i, hole in enumerate(items(holes, "holes")))
         check_holes(_chords(boundary), [_chords(hole) for hole in inner])
         object.__setattr__(self, "boundary", boundary)
         object.__setattr__(self, "holes", inner)
@@ -222,8 +225,7 @@ class Outline(ArrayValue):
 
         clearance: least distance to a corner along the boundary [m]; a quarter of the spacing if not given.
         """
-        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
-            raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
+        whole(count, "count", least=1, most=MOST_SAMPLED)
         spacing = self.length / count
         keep = spacing / 4 if clearance is None else number(clearance, "clearance", least=0)
         s: Array = (np.arange(count, dtype=np.float64) + 0.5) * spacing
@@ -259,10 +261,4 @@ def _chords(boundary: Boundary, tolerance: float | None = None) -> Array:
 
 
 def _finite(s: ArrayLike) -> Array:
-    try:
-        values = np.asarray(s, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"arc lengths must be numbers, got {s!r}") from None
-    if not np.isfinite(values).all():
-        raise InvalidInput(f"arc lengths must be finite, got {s!r}")
-    return values
+    return finite(s, "arc lengths")

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
@@ -210,6 +210,7 @@ class Transition(ArrayValue, Documented, Pictured):
 
     def retimed(self, scaling: TimeScaling) -> "Transition":
         """The same path under another time function; refused where the load is tied to the clock."""
+        instance(scaling, "scaling", TimeScaling)
         if self.path.timed:
             raise InvalidInput(
                 "a path planned through instants keeps its times; plan it with another duration"

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -41,6 +41,7 @@ class EquilibriumLocus(ArrayValue):
     load: Wrench
 
     def __post_init__(self) -> None:
+        instance(self.grasp, "grasp", Grasp)
         if len(self.grasp) != 2 or self.grasp.dimension != 2:
             raise InvalidInput(
                 f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
@@ -60,6 +61,10 @@ class EquilibriumLocus(ArrayValue):
         The given wrench acts like a part of the load: the locus is that of the other two contacts under
         ``load`` plus w = (f, r x f).
         """
+        instance(grasp, "grasp", Grasp)
+        check_load(grasp, load)
+        if grasp.dimension != 2:
+            raise InvalidInput("an equilibrium locus is of planar contacts, got some in space")
         f = array(force, "force", (2,))
         fixed = grasp[contact]
         wrench = Wrench(f, torque=float(torque(fixed.position, f)[0]))
@@ -85,7 +90,7 @@ class EquilibriumLocus(ArrayValue):
     def forces(self, squeeze: ArrayLike) -> Array:
         """Forces (2, 2) at a squeeze, (m, 2, 2) at m of them [N]; in equilibrium for any squeeze."""
         ux, uy, phi, a, b, _ = self._frame
-        x = np.asarray(squeeze, dtype=float)[..., None]
+        x = finite(squeeze, "squeeze")[..., None]
         u, p = np.array([ux, uy]), np.array([-uy, ux])
         return np.stack([x * u + a * p, -(x + phi) * u + b * p], axis=-2)
 
@@ -104,6 +109,8 @@ class EquilibriumLocus(ArrayValue):
         An infinite end is cut off ``reach`` [N] beyond the finite one; beyond zero if both are infinite.
         """
         lo, hi = self.interval
+        if not (isinstance(reach, float) and reach == inf):
+            number(reach, "reach", least=0)
         if self.is_empty:
             raise Infeasible(f"the equilibrium locus of {', '.join(self.grasp.names)} is empty")
         start = lo if isfinite(lo) else (hi if isfinite(hi) else 0.0) - reach
@@ -116,6 +123,7 @@ class EquilibriumLocus(ArrayValue):
     def state(self, squeeze: float) -> GraspState:
         """The state at a squeeze inside the interval; ``InvalidInput`` outside it."""
         lo, hi = self.interval
+        squeeze = number(squeeze, "squeeze")
         if not lo <= squeeze <= hi:
             where = "the locus is empty" if self.is_empty else f"the locus is [{lo:.9g}, {hi:.9g}]"
             raise InvalidInput(f"squeeze {squeeze!r} is not on the locus; {where}")
@@ -123,6 +131,9 @@ class EquilibriumLocus(ArrayValue):
 
     def squeeze(self, state: GraspState) -> float:
         """The squeeze of a state of this grasp [N]."""
+        instance(state, "state", GraspState)
+        if state.grasp != self.grasp:
+            raise InvalidInput("state must be of the grasp of this locus, got one of other contacts")
         return float(state.forces[0] @ self.direction)
 
     @takes(LimitOptions)

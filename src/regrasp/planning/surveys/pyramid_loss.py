@@ -85,7 +85,7 @@ def pyramid_losses(
     the first tangent, so that its loss depends on the frame; the exact value does not.
     Raises ``Infeasible`` where exact cones do not hold the load, ``InvalidInput`` as ``choose_state`` does.
     """
-    if not isinstance(facets, Sequence) or isinstance(facets, str) or not facets:
+    if not isinstance(facets, Sequence) or isinstance(facets, (str, bytes)) or not facets:
         raise InvalidInput(f"facets must be whole numbers, such as (4, 8, 16), got {facets!r}")
     for m in facets:
         check_facets(m)

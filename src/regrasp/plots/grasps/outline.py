@@ -9,7 +9,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.outline.outline import Outline
 from regrasp.plots.look.style import (
     GREY,
@@ -40,6 +40,7 @@ def plot_outline(
 
     arc_lengths: (m,) of candidate contacts [m], drawn as dots with their inward normals.
     """
+    instance(outline, "outline", Outline)
     outer = outline.polygon()
     size = float(np.ptp(outer, axis=0).max())
     outer, holes = outline.polygon(_DETAIL * size), outline.hole_polygons(_DETAIL * size)

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.plans.transition import Transition
@@ -62,6 +63,7 @@ def plot_state(
     frame with the centre of mass at the origin.
     Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
+    instance(state, "state", GraspState)
     triangles = surface_of(mesh, state.grasp)
     colours = contact_colours(state.grasp) if colours is None else colours
     scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
@@ -95,6 +97,7 @@ def plot_transition(
 
     Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
     """
+    instance(transition, "transition", Transition)
     triangles = surface_of(mesh, transition.grasp)
     colours = contact_colours(transition.grasp)
     scale = force_scale

@@ -18,6 +18,7 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.mechanics.grasp import Grasp
 
 # Okabe and Ito, "Color Universal Design", 2008; yellow, too pale for a line, is left out.
@@ -36,6 +37,7 @@ Colours = Mapping[str, str]
 
 def contact_colours(grasp: Grasp) -> dict[str, str]:
     """A colour for each contact, by its place in the grasp; a seventh contact begins the palette again."""
+    instance(grasp, "grasp", Grasp)
     return dict(zip(grasp.names, cycle(PALETTE), strict=False))
 
 

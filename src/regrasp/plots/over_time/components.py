@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import INK, PALETTE, axes_or_new, contact_colours, label_axis, legend, literal
 from regrasp.plots.look.units import SI, Units
@@ -18,6 +18,7 @@ _DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 
 def plot_force_components(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """f_x, f_y and in space f_z of every finger: a colour for each finger, a dash for each component."""
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     forces = transition.forces(t)
@@ -50,6 +51,7 @@ def plot_wrench_components(
     Six lines in space, three in the plane; a colour for each axis. Raises ``InvalidInput`` for an unknown
     contact.
     """
+    instance(transition, "transition", Transition)
     i = transition.grasp.index(contact)
     ax = axes_or_new(ax)
     t, d = _times(transition), transition.grasp.dimension

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.mechanics.checks import Array, choice
+from regrasp.mechanics.checks import Array, choice, instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import GREY, INK, axes_or_new, contact_colours, label_axis, legend, literal
 from regrasp.plots.look.units import SI, Units
@@ -13,6 +13,7 @@ _SAMPLES = 201
 
 def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """|f_i(t)| of every finger (Fig. 9a)."""
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
@@ -27,6 +28,7 @@ def plot_angles(transition: Transition, ax: Axes | None = None, *, units: Units 
 
     A limit that all contacts share is one grey line. A finger without force has no angle there.
     """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     limits = np.array([contact.half_angle for contact in transition.grasp])
@@ -54,6 +56,7 @@ def plot_margins(
     The dashed line is the least margin at both ends, or at any instant of a path through instants: no margin
     falls below it in between (fact 1).
     """
+    instance(transition, "transition", Transition)
     choice(objective, "objective", ("angle", "force"))
     ax = axes_or_new(ax)
     t = _times(transition)

@@ -4,6 +4,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from regrasp.mechanics.checks import instance
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plans.transition import Transition
 from regrasp.plots.grasps.state import force_scale_of, plot_state, plot_transition
@@ -34,6 +35,7 @@ def transition_figure(transition: Transition, *, mesh: Any = None, units: Units 
 
     mesh: the object of a grasp in space, as for ``plot_state``.
     """
+    instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
     ax = _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition)
@@ -61,6 +63,7 @@ def _panel(
 
 def transition_png(transition: Transition) -> bytes:
     """``transition_figure`` as a PNG image, for display in notebooks."""
+    instance(transition, "transition", Transition)
     return png(transition_figure(transition))
 
 
@@ -72,6 +75,7 @@ def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> d
     ``wrench_paths``, and ``locus`` where two contacts remain; in space ``components`` and ``wrenches``.
     mesh: the object of a grasp in space, as for ``plot_state``.
     """
+    instance(transition, "transition", Transition)
     drawn: dict[str, Any] = {
         "overview": transition_figure(transition, mesh=mesh, units=units),
         "states": states_figure(transition, mesh=mesh, units=units),
@@ -115,6 +119,7 @@ def _of_one_finger(transition: Transition, moves: str, units: Units) -> dict[str
 
 def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
     """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not."""
+    instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 3.4)
     grid = figure.add_gridspec(1, 2)
     if transition.grasp.dimension == 3:
@@ -133,6 +138,7 @@ def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI
 
 def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
     """The wrench of every finger about the centre of mass over time, a panel for each."""
+    instance(transition, "transition", Transition)
     columns = min(2, len(transition.grasp))
     rows = -(-len(transition.grasp) // columns)
     figure = new_figure(WIDTH * columns, 2.4 * rows)
@@ -143,6 +149,7 @@ def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
 
 def iso_torque_figure(transition: Transition, *, units: Units = SI) -> Figure:
     """Iso-torque lines of every contact, with its forces at the state of all fingers (Fig. 2)."""
+    instance(transition, "transition", Transition)
     refuse_space(transition.grasp.dimension)
     state = transition.start if transition.leaving else transition.end
     colours = contact_colours(state.grasp)

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, choice, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_state
@@ -35,6 +35,7 @@ def plot_directions(
     chosen for each of them under a load of ``load_size`` [N], as ``choose_state`` does by default.
     objective: ``angle`` [deg] or ``force`` [N]. ax: polar. Raises ``InvalidInput`` for a grasp in space.
     """
+    instance(grasp, "grasp", Grasp)
     refuse_space(grasp.dimension)
     choice(objective, "objective", ("angle", "force"))
     number(load_size, "load_size", above=0)

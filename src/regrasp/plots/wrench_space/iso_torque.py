@@ -8,7 +8,7 @@ from matplotlib.patches import Wedge
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, iso_torque_line
 from regrasp.plots.look.arrows import arrow
@@ -47,6 +47,7 @@ def plot_iso_torque(
     force: (2,) a force at the contact to draw with its line [N].
     Raises ``InvalidInput`` for a contact in space and for one at the centre of mass, which makes no torque.
     """
+    instance(contact, "contact", Contact)
     refuse_space(contact.dimension)
     ax = axes_or_new(ax, height=3.0)
     shown = None if force is None else array(force, "force", (2,))

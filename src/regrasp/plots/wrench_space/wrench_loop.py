@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench_space import WrenchLoop
@@ -46,6 +46,7 @@ def plot_wrench_loop(
     New axes are seen from where no surface is edge-on; axes that are given keep their view.
     Raises ``InvalidInput`` for a grasp in space.
     """
+    instance(state, "state", GraspState)
     refuse_space(state.grasp.dimension)
     colours = contact_colours(state.grasp) if colours is None else colours
     loop = WrenchLoop(state, order)
@@ -67,6 +68,7 @@ def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = 
     shrinks, and the bold translucent lines are the paths of the others: of the heads of their wrenches, and
     for the last one, which ends at the origin, of its tail. Two other contacts show their LS_B.
     """
+    instance(transition, "transition", Transition)
     grasp = transition.grasp
     refuse_space(grasp.dimension)
     colours = contact_colours(grasp)
