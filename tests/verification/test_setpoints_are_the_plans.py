@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
-from foreign import Plan, Record, course, cross, soft_pair, solid_cross, turn
+from foreign import Plan, Record, Scaling, course, cross, soft_pair, solid_cross, turn
 from regrasp.verification import verify_setpoints
 
 EPS = 2.0**-40
@@ -203,6 +203,24 @@ def test_any_time_function_is_retraced(scaling) -> None:
         plan = PLANS[name].retimed(scaling)
         t = np.linspace(0, plan.duration, 201)
         assert told(plan, t, plan.forces(t)) == ()
+
+
+CONTROLS = [(1, 0), (1, 0.5, 0), (1, 0.7, 0.1, 0), (1, 1, 0.5, 0, 0), (1, 1, 1, 0.5, 0.2, 0, 0)]
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_time_function_without_a_degree_is_cubic(control) -> None:
+    """Or of one less than it has control values."""
+    spline = rg.TimeScaling.spline(2.0, control)
+    plan = PLANS["removal"].retimed(spline)
+
+    class Foreign(Plan):
+        def forces(self, t):
+            return plan.forces(t)
+
+    bare = Foreign("removal", "P3", plan.start, plan.end, scaling=Scaling(2.0, spline.control))
+    t = np.linspace(0, 2, 33)
+    assert told(bare, t, plan.forces(t)) == ()
 
 
 def test_turns_in_many_steps_are_retraced() -> None:
