@@ -208,7 +208,7 @@ def test_instants_of_any_number_are_looked_at() -> None:
 
 @pytest.mark.parametrize("length", [2.0**-20, 1.0, 2.0**20])
 def test_forces_and_torques_of_a_load_are_sizes_of_their_own(length) -> None:
-    """A load whose torque, or whose force, is a large number in these units hides no residual of the other."""
+    """A load whose torque, or whose force, is a large number in these units hides nothing."""
     grasp, squeeze = cross((1e3,) * 4, length=length)
     squeeze[:, 1] = 0
     for force, torque in ((0.5, 0.0), (0.0, 0.5 * length), (0.5, 0.5 * length)):
@@ -244,4 +244,4 @@ def test_a_torque_whose_product_is_hardly_a_number() -> None:
     grasp = rg.Grasp(rg.Contact([x, 0, 0], [-x, 0, 0], 0.5, torsion=4 * least) for x in (-1, 1))
     for push, good in (1.1, False), (1.3, True):
         forces = [[push, 0, 0, 5 * least], [-push, 0, 0, 5 * least]]
-        assert set(all_verdicts(grasp, forces)) == {good}
+        assert {rg.verify(plan).ok for _, plan in places(grasp, forces)} == {good}
