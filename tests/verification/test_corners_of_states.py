@@ -171,3 +171,23 @@ def test_turning_loads_that_are_far_smaller_than_the_forces() -> None:
         end = rg.GraspState(solid, rg.Wrench([1e-12 * np.sin(0.5), 1e-12 * np.cos(0.5), still]), forces)
         found = rg.verify(Plan("rotation", None, state, end, turn=turn([0, 0.5], [forces] * 2, [0, 0, 1.0])))
         assert ("no states between angles hold it" not in "; ".join(found.violations)) == fine
+
+
+@pytest.mark.parametrize("row", [10, 8500])
+def test_summaries_are_of_all_blocks_of_rows(row) -> None:
+    """A row of more slope than the others, a little out of balance, in the first block and in the second."""
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    bent = forces * [1, 1 + EPS / 4]
+    bent[0, 0] += EPS / 4
+    rows = np.broadcast_to(forces, (9000, 4, 2)).copy()
+    rows[row] = bent
+    found = verify_setpoints(Plan("rotation", None, state, state), rows)
+    assert found.ok
+    assert found.worst_residual == pytest.approx(EPS / 4 / np.hypot(1, 0.5), rel=1e-3)
+    steep = forces * [1, 1.25]
+    rows[row] = steep
+    found = verify_setpoints(Plan("rotation", None, state, state), rows)
+    assert not found.ok
+    assert found.least_angle == pytest.approx(atan(0.75) - atan(0.625))
+    assert found.least_cone_slack == pytest.approx(0.75**2 - 0.625**2)
