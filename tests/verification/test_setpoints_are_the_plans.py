@@ -380,3 +380,35 @@ def test_a_load_in_time_is_taken_at_the_time_of_each_row() -> None:
     moved = t.copy()
     moved[20] += 1e-9
     assert told(plan, moved, rows)[0].startswith("set-point 20: not in equilibrium")
+
+
+@pytest.mark.parametrize("bad", [3, 8192, 9998])
+def test_rows_are_named_by_their_number(bad) -> None:
+    """In the first block of rows and in the next: what is not the plan's, pushes too little, moves too fast."""
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    t = np.linspace(0, 1, 9999)
+    rows = np.broadcast_to(forces, (t.size, 4, 2)).copy()
+    rows[bad] *= 1 - 1e-9
+
+    class As(Plan):
+        """A plan that answers as the rows are, so that nothing but its record is broken."""
+
+        def forces(self, t):
+            return np.interp(t, times, 1 - 1e-9 * (np.arange(times.size) == bad))[:, None, None] * forces
+
+    times = t
+    plain = Plan("rotation", None, state, state)
+    (found,) = told(plain, t, rows)
+    assert found.startswith(f"set-point {bad}: force of A is not the plan's")
+    path = course(t, rows, [[0, 0, 0]] * t.size)
+    end = rg.GraspState(grasp, state.load, rows[-1])
+    least = As(
+        "rotation", None, state, end, course=path, record=Record(least_normals=(0.0, 1 - 1e-10, 0.0, 0.0))
+    )
+    (found,) = told(least, t, rows)
+    assert found.startswith(f"set-point {bad}: B pushes along its normal")
+    fast = As("rotation", None, state, end, course=path, record=Record(rate_limits=(inf, inf, 1e-6, inf)))
+    numbers = [bad, bad + 1] if bad + 1 < t.size else [bad]
+    assert [v.split(":")[0] for v in told(fast, t, rows)] == [f"set-point {k}" for k in numbers]
+    assert all("C changes faster than 1e-06" in v for v in told(fast, t, rows))
