@@ -82,6 +82,7 @@ def _run(area: str, fresh: bool) -> int:
 
     again = (SURVIVED, UNSEEN) if "--survivors" in sys.argv else ()
     known = {key: row["verdict"] for key, row in found.items() if row["verdict"] not in again}
+    known |= {key: SURVIVED for key, reason in reasons.items() if reason.startswith("=")}
     engine = Engine(modules, known, told)
     quiet = ["-qq", "-p", "no:cacheprovider", "--capture=no", "--hypothesis-seed=0"]
     pytest.main([*quiet, *wanted], plugins=[engine])

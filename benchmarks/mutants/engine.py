@@ -94,6 +94,8 @@ class Engine:
             swap(path, _instrumented(path))
         for item in items:
             entered: set[str] = set()
+            for path in self.modules:
+                _forget(path)
             builtins.__entered__ = entered.add  # type: ignore[attr-defined]
             start = time.perf_counter()
             if not _run(item):
@@ -187,9 +189,16 @@ def swap(path: Path, tree: ast.Module) -> bool:
         if code is not None and code != function.__code__:
             function.__code__ = code
             changed = True
-        if hasattr(function, "cache_clear"):
-            function.cache_clear()
+    _forget(path)
     return _swap_constants(module, new) or changed
+
+
+def _forget(path: Path) -> None:
+    """Clear what functions of a module remember."""
+    for function in gc.get_objects():
+        inner = getattr(function, "__wrapped__", None) if hasattr(function, "cache_clear") else None
+        if isinstance(inner, FunctionType) and inner.__code__.co_filename == str(path):
+            function.cache_clear()
 
 
 def _swap_constants(module: ModuleType, new: CodeType) -> bool:

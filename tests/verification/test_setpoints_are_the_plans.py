@@ -384,7 +384,7 @@ def test_a_load_in_time_is_taken_at_the_time_of_each_row() -> None:
 
 @pytest.mark.parametrize("bad", [3, 8192, 9998])
 def test_rows_are_named_by_their_number(bad) -> None:
-    """In the first block of rows and in the next: what is not the plan's, pushes too little, moves too fast."""
+    """In the first block of rows and in the next: what is not the plan's, pushes little, moves fast."""
     grasp, forces = cross((0.75,) * 4)
     state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
     t = np.linspace(0, 1, 9999)
@@ -412,3 +412,43 @@ def test_rows_are_named_by_their_number(bad) -> None:
     numbers = [bad, bad + 1] if bad + 1 < t.size else [bad]
     assert [v.split(":")[0] for v in told(fast, t, rows)] == [f"set-point {k}" for k in numbers]
     assert all("C changes faster than 1e-06" in v for v in told(fast, t, rows))
+
+
+def test_torques_of_soft_fingers_are_no_size_of_forces() -> None:
+    """Torques of 2^30 beside pushes of 1: least normal forces and rates are judged by the pushes."""
+    grasp = rg.Grasp(
+        rg.Contact([x, 0, 0], [-x, 0, 0], 0.5, torsion=2.0**32, name=name)
+        for x, name in ((-1, "A"), (1, "B"))
+    )
+    first, last = (
+        np.array([[1, 0, 0, 0.0], [-1, 0, 0, 0.0]]),
+        np.array([[1.5, 0, 0, 2.0**30], [-1.5, 0, 0, 2.0**30]]),
+    )
+    start, end = (rg.GraspState(grasp, rg.Wrench([0, 0, 0]), f) for f in (first, last))
+    path, t = course([0, 1], [first, last], [[0.0] * 6] * 2), np.linspace(0, 1, 5)
+    for record, good in (
+        (Record(), True),
+        (Record(least_normals=(1.0, 1.0)), True),
+        (Record(least_normals=(1.001, 1.0)), False),
+        (Record(rate_limits=(0.5, 0.5)), True),
+        (Record(rate_limits=(0.5, 0.499)), False),
+    ):
+        plan = Plan("rotation", None, start, end, record=record, course=path)
+        assert (told(plan, t, plan.forces(t)) == ()) == good
+        assert rg.verify(plan).ok == good
+
+
+def test_growth_of_rounding_over_many_turns() -> None:
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    angles = np.linspace(0, 100.0, 101)
+
+    class Still(Plan):
+        def forces(self, t):
+            return np.broadcast_to(forces, (*np.shape(t), 4, 2))
+
+    plan = Still("rotation", None, state, state, turn=turn(angles, [forces] * 101))
+    t = np.linspace(0, 1, 101)
+    rows = np.broadcast_to(forces, (101, 4, 2))
+    for off, good in (50.0, True), (150.0, False):
+        assert (told(plan, t, rows * (1 + off * EPS), 100 * t) == ()) == good
