@@ -6,6 +6,7 @@ place, runs the tests that enter it, the likeliest and quickest first, and says 
 
 import ast
 import builtins
+import functools
 import gc
 import os
 import signal
@@ -24,6 +25,7 @@ from changes import Change, changes
 SLOW = float(os.environ.get("SLOW", "1"))
 # A part of all changes, chosen by their names, gives an estimate.
 SHARE = float(os.environ.get("SHARE", "1"))
+_CACHED = type(functools.cache(lambda: None))
 NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
 
 
@@ -92,10 +94,11 @@ class Engine:
         found = []
         for path in self.modules:
             swap(path, _instrumented(path))
+        remembering = [function for path in self.modules for function in _caches(path)]
         for item in items:
             entered: set[str] = set()
-            for path in self.modules:
-                _forget(path)
+            for function in remembering:
+                function.cache_clear()
             builtins.__entered__ = entered.add  # type: ignore[attr-defined]
             start = time.perf_counter()
             if not _run(item):
@@ -189,16 +192,19 @@ def swap(path: Path, tree: ast.Module) -> bool:
         if code is not None and code != function.__code__:
             function.__code__ = code
             changed = True
-    _forget(path)
+    for function in _caches(path):
+        function.cache_clear()
     return _swap_constants(module, new) or changed
 
 
-def _forget(path: Path) -> None:
-    """Clear what functions of a module remember."""
-    for function in gc.get_objects():
-        inner = getattr(function, "__wrapped__", None) if hasattr(function, "cache_clear") else None
-        if isinstance(inner, FunctionType) and inner.__code__.co_filename == str(path):
-            function.cache_clear()
+def _caches(path: Path) -> list[Any]:
+    """The functions of a module that remember what they returned."""
+    return [
+        function
+        for function in gc.get_objects()
+        if isinstance(function, _CACHED)
+        and getattr(getattr(function.__wrapped__, "__code__", None), "co_filename", "") == str(path)
+    ]
 
 
 def _swap_constants(module: ModuleType, new: CodeType) -> bool:
