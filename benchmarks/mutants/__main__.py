@@ -21,7 +21,11 @@ SURVIVORS = HERE / "survivors.txt"
 
 # Area -> modules, tests (patterns), and the least share of changes noticed.
 AREAS: dict[str, tuple[list[str], list[str], float]] = {
-    "verification": (["verification/*.py"], ["verification/test_[!c]*.py", "**/test_verif*.py"], 0.95),
+    "verification": (
+        ["verification/*.py"],
+        ["verification/test_[!c]*.py", "verification/test_co*.py", "**/test_verification.py"],
+        0.95,
+    ),
     "programs": (["programs/*.py"], ["programs/test_*.py", "**/test_programs.py"], 0.95),
     "path": (["planning/**/path.py", "planning/**/path_program.py"], ["**/test_paths.py"], 0.85),
     "rotation": (["planning/**/rotation.py"], ["**/test_rotation.py"], 0.85),

@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 from changes import Change, changes
 
-# Tests that take longer are left out: a change that only they notice counts as not noticed [s].
+# Tests that take longer, of a processor, are left out: a change that only they notice counts as not noticed [s].
 SLOW = float(os.environ.get("SLOW", "1"))
 # A part of all changes, chosen by their names, gives an estimate.
 SHARE = float(os.environ.get("SHARE", "1"))
@@ -100,10 +100,10 @@ class Engine:
             for function in remembering:
                 function.cache_clear()
             builtins.__entered__ = entered.add  # type: ignore[attr-defined]
-            start = time.perf_counter()
+            start = time.process_time()
             if not _run(item):
                 raise SystemExit(f"{item.nodeid} fails without a change")
-            found.append((item, entered, time.perf_counter() - start))
+            found.append((item, entered, time.process_time() - start))
         for path in self.modules:
             swap(path, ast.parse(path.read_text(encoding="utf-8")))
         return sorted(found, key=lambda entry: entry[2])
