@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 from changes import Change, changes
 
-# Tests that take longer, of a processor, are left out: a change that only they notice counts as not noticed [s].
+# Tests that take longer [s] are left out: a change that only they notice counts as not noticed.
 SLOW = float(os.environ.get("SLOW", "1"))
 # A part of all changes, chosen by their names, gives an estimate.
 SHARE = float(os.environ.get("SHARE", "1"))

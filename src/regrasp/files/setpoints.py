@@ -86,7 +86,7 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
 
     rate: rows per second that the file must have; None for any even one.
     Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
-    to the duration, and angles, steps and finger positions that are not the plan's. ``checked`` is for forces.
+    to the duration, and angles, steps and finger positions that are not the plan's (``checked``: forces).
     """
     path = Path(path)
     if rate is not None:
