@@ -191,3 +191,10 @@ def test_summaries_are_of_all_blocks_of_rows(row) -> None:
     assert not found.ok
     assert found.least_angle == pytest.approx(atan(0.75) - atan(0.625))
     assert found.least_cone_slack == pytest.approx(0.75**2 - 0.625**2)
+
+
+def test_an_object_turns_on_one_finger_at_its_centre() -> None:
+    grasp, load = rg.Grasp([rg.Contact([0, 0], [0, 1], 1.0)]), rg.Wrench([0, -1.0])
+    rows = [-load.rotated(-angle).force[None] for angle in (0.0, 0.5)]
+    states = [rg.GraspState(grasp, load.rotated(-a), f) for a, f in zip((0.0, 0.5), rows, strict=True)]
+    assert rg.verify(Plan("rotation", None, *states, turn=turn([0, 0.5], rows))).ok
