@@ -72,7 +72,7 @@ def _run(area: str, fresh: bool) -> int:
         kept.unlink(missing_ok=True)
     prints = {str(path): hashlib.sha256(path.read_bytes()).hexdigest()[:12] for path in modules}
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
-    found = {row["key"]: row for row in rows if prints.get(row["module"]) == row["print"]}
+    found = {row["key"].strip(): row for row in rows if prints.get(row["module"]) == row["print"]}
     reasons = _reasons()
 
     def told(key: str, change: object, verdict: str) -> None:

@@ -135,7 +135,7 @@ def _named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]
     count: dict[str, int] = {}
     short = module.split("/src/regrasp/")[-1]
     for change in found:
-        key = f"{short} {change.key}"
+        key = f"{short} {change.key}".strip()
         count[key] = count.get(key, 0) + 1
         yield change, key if count[key] == 1 else f"{key}  ({count[key]})"
 

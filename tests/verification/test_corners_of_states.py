@@ -64,7 +64,7 @@ def test_slack_and_residual_are_the_worst_of_all_instants() -> None:
         bent[0, 0] += off
         path = course([0, 0.5, 1], [forces, bent, forces], [[0, 0, 0]] * 3)
         verdict = rg.verify(Plan("rotation", None, state, state, course=path))
-        assert verdict.worst_residual == pytest.approx(off / np.hypot(1, 0.5), rel=1e-3)
+        assert verdict.worst_residual == pytest.approx(off / np.hypot(1, 0.5), rel=1e-3, abs=0)
 
 
 def test_a_residual_of_exactly_the_tolerance() -> None:
@@ -184,7 +184,7 @@ def test_summaries_are_of_all_blocks_of_rows(row) -> None:
     rows[row] = bent
     found = verify_setpoints(Plan("rotation", None, state, state), rows)
     assert found.ok
-    assert found.worst_residual == pytest.approx(EPS / 4 / np.hypot(1, 0.5), rel=1e-3)
+    assert found.worst_residual == pytest.approx(EPS / 4 / np.hypot(1, 0.5), rel=1e-3, abs=0)
     steep = forces * [1, 1.25]
     rows[row] = steep
     found = verify_setpoints(Plan("rotation", None, state, state), rows)
