@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, choice, file_path, number, numbers_in, read_only
+from regrasp.mechanics.checks import Array, array, choice, file_path, number, numbers_in, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged, whole
+from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
 from regrasp.mesh.closest import at, touching
 from regrasp.mesh.doubts import warn_of_distance, warn_of_unit, warn_of_walls
 from regrasp.mesh.rays import entry, outermost

@@ -94,7 +94,7 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
 
     rate: rows per second that the file must have; None for any even one.
     Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
-    to the duration, and angles, steps and finger positions not the plan's. ``checked`` is for forces.
+    to the duration, and angles, steps and finger positions that are not the plan's (``checked``: forces).
     """
     path = file_path(path)
     _check_plan(plan)
