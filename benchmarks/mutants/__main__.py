@@ -27,7 +27,11 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         0.95,
     ),
     "programs": (["programs/*.py", "programs/judging/*.py"], ["programs/test_*.py"], 0.95),
-    "path": (["planning/changes/path_search.py", "planning/changes/path_program.py"], ["**/test_paths.py"], 0.85),
+    "path": (
+        ["planning/changes/path_search.py", "planning/changes/path_program.py"],
+        ["**/test_paths.py"],
+        0.85,
+    ),
     "rotation": (["planning/**/rotation.py"], ["**/test_rotation.py"], 0.85),
     "files": (
         [

@@ -70,8 +70,6 @@ def choose_forces(
         if method == "closed-form":
             raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
         closed = False
-    if len(grasp) < 2:
-        raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
     if method == "closed-form" and facets is not None:
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
     if method == "closed-form" or (method == "auto" and closed and facets is None):
