@@ -91,7 +91,7 @@ def _of_those_that_push(
     if len(used) in (0, len(forces)) or not np.isfinite(forces).all():
         return None
     mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
-    rest = chooser.of(used).settled(forces[used], mu, bounds)
+    rest = chooser.of(used).shifted(forces[used], mu, bounds)
     return None if rest is None else _whole(chooser.grasp, used, rest)
 
 
@@ -142,7 +142,11 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
             return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
     twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
-    if (is_twist and used.proves(twist, frictions, bounds)) or used.is_lost(frictions, bounds):
+    if is_twist and used.proves(twist, frictions, bounds):
+        return _Level(None, True, True)
+    # Within a solver's tolerance of the best level a proof costs much and is rarely found: one above it serves.
+    is_near = answer.status is Status.SOLVED and answer.value[-1] >= -FEASIBLE
+    if not is_near and used.is_lost(frictions, bounds):
         return _Level(None, True, True)
     if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
         return _Level(None, False, True)
