@@ -226,12 +226,18 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "kind missing": (
         edited(('kind = "removal"', "")),
         2,
-        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', found no such key"],
+        [
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "found no such key"
+        ],
     ),
     "kind not planned yet": (
         edited(('kind = "removal"', 'kind = "juggling"')),
         2,
-        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', got 'juggling'"],
+        [
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "got 'juggling'"
+        ],
     ),
     "unknown contact": (
         edited(('contact = "P3"', 'contact = "P4"')),
@@ -256,8 +262,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         [
             "task.time: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, contact, whole_objective, rate_limit, "
-            "min_normal, path_objective, idle_time, instants, facets, kind"
+            "max_force, peak_ratio, reserve, balance_tolerance, contact, rate_limit, min_normal, "
+            "path_objective, instants, facets, whole_objective, idle_time, kind"
         ],
     ),
     "no duration": (
@@ -351,8 +357,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "contacts[0].friction: expected a number of at least 0, got -1",
             "task.rate: expected a number greater than 0, got 0",
             "task.kin: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, contact, whole_objective, rate_limit, "
-            "min_normal, path_objective, idle_time, instants, facets, kind",
+            "max_force, peak_ratio, reserve, balance_tolerance, contact, rate_limit, min_normal, "
+            "path_objective, instants, facets, whole_objective, idle_time, kind",
         ],
     ),
     # -- infeasible -------------------------------------------------------------------------------------

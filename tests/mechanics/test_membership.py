@@ -49,7 +49,7 @@ def test_beside_the_edge(kind: str) -> None:
         )
         for beyond in (1e-3, -1e-3, 1e-9, -1e-9):
             held = check(grasp, rg.Wrench.from_vector(at.load(beyond)))
-            # Where a contact stands still beside another that slides, rounding of both may hold by huge forces.
+            # Where a contact stands still beside one that slides, rounding of both may hold by huge forces.
             assert held == (beyond < 0) or kind == "both"
 
 

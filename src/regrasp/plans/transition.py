@@ -15,6 +15,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.document import Documented
 from regrasp.plans.path import Path
 from regrasp.plans.record import Record
 from regrasp.plans.sampled import SampledPath
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Transition(ArrayValue, Pictured):
+class Transition(ArrayValue, Documented, Pictured):
     """Finger forces that carry a grasp from one equilibrium to another while fingers leave or arrive.
 
         f(t) = f_end + (f_start - f_end) T(t)
@@ -242,11 +243,11 @@ class Transition(ArrayValue, Pictured):
         return f"{self.kind} of {who}{for_whom}" if who else self.kind
 
     def __str__(self) -> str:
-        record = self.record
+        record, width = self.record, max(8, *(len(name) + 1 for name in self.grasp.names))
         lines = [
             f"{self.in_words} in {self.duration:g} s under {self.path.load_in_words(self.start, self.end)}",
-            f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
-            *self._rows(),
+            f"{'':{width}}{'start force':>24}{'end force':>24}{'least margin':>14}",
+            *self._rows(width),
         ]
         for c in record.choices:
             limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
@@ -265,7 +266,7 @@ class Transition(ArrayValue, Pictured):
 
     __repr__ = __str__
 
-    def _rows(self) -> list[str]:
+    def _rows(self, width: int) -> list[str]:
         """A line for each contact: its forces at both ends and its least margin on the way."""
         cones, forces = self.grasp.cones, self.path.deciding(self.start, self.end)
         angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
@@ -278,7 +279,7 @@ class Transition(ArrayValue, Pictured):
             )
             margin = np.fmin.reduce(angles[:, i])
             shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
-            lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
+            lines.append(f"{name:{width}}{start:>24}{end:>24}{shown:>14}")
         return lines
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, TypeAdapter, model_validator
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.scenarios.keys import (
     AnyForce,
     AnyVector,
@@ -20,8 +20,8 @@ from regrasp.files.scenarios.keys import (
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
-from regrasp.files.scenarios.tasks import Addition, Change, Removal, Rotation
-from regrasp.files.source import text_of
+from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Removal, Rotation
+from regrasp.files.source import path_of, text_of
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -31,6 +31,8 @@ from regrasp.plans.loads import LoadSeries
 
 if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
+
+_MOST_BYTES = 2**24  # of a file that people write
 
 
 class ContactEntry(Strict):
@@ -100,7 +102,7 @@ class Scenario(Strict):
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
     contacts: list[ContactEntry] = Field(min_length=2)
-    task: Annotated[Removal | Addition | Rotation, Field(discriminator="kind")]
+    task: Annotated[Removal | Addition | Exchange | Rotation, Field(discriminator="kind")]
 
     @cached_property
     def grasp(self) -> Grasp:
@@ -134,15 +136,24 @@ class Scenario(Strict):
         except InvalidInput as error:
             raise ValueError(f"contacts: {error}") from None
         task = self.task
-        if isinstance(task, Change) and task.contact not in names:
-            raise ValueError(f"task.contact: expected one of {', '.join(names)}, got {task.contact!r}")
+        if isinstance(task, Change):
+            for key in ("contact", "arrival"):
+                finger = getattr(task, key, None)
+                if finger is not None and finger not in names:
+                    raise ValueError(f"task.{key}: expected one of {', '.join(names)}, got {finger!r}")
         try:
             external = self.external
         except InvalidInput as error:
             raise ValueError(f"load: {error}") from None
         problems = self._unfit_load(external)
-        idle = {"removal": "end_force", "addition": "force"}.get(task.kind)
-        problems += [*self._gaps("force", idle), *self._gaps("end_force", idle)]
+        limits = task.rate_limit if isinstance(task, Change) else None
+        if isinstance(limits, list) and len(limits) != len(self.contacts):
+            problems.append(
+                f"task.rate_limit: expected a number, or {len(self.contacts)} numbers, one for each contact; "
+                f"got {len(limits)}"
+            )
+        leaving, arriving = (task.leaving, task.arriving) if isinstance(task, Change) else ((), ())
+        problems += [*self._gaps("force", arriving), *self._gaps("end_force", leaving)]
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -203,13 +214,13 @@ class Scenario(Strict):
             ]
         return []
 
-    def _gaps(self, key: Literal["force", "end_force"], idle: str | None) -> list[str]:
+    def _gaps(self, key: Literal["force", "end_force"], idle: tuple[str, ...]) -> list[str]:
         """Forces given for some of the contacts that need one, or for the finger that has none."""
         place: dict[bool, list[int]] = {True: [], False: []}
         problems = []
         for i, entry in enumerate(self.contacts):
             given = getattr(entry, key) is not None
-            if key == idle and isinstance(self.task, Change) and entry.name == self.task.contact:
+            if entry.name in idle:
                 if given:
                     verb = "leaves, so it ends" if key == "end_force" else "arrives, so it starts"
                     problems.append(f"contacts[{i}].{key}: {entry.name} {verb} without force; leave it out")
@@ -232,8 +243,8 @@ def read_scenario(path: str | Path) -> AnyScenario:
     Raises one ``InvalidInput`` that names the file and lists every problem, each with its key, what was
     expected and what came.
     """
-    path = Path(path)
-    return parse_scenario(text_of(path, "a scenario in TOML"), path)
+    path = path_of(path)
+    return parse_scenario(text_of(path, "a scenario in TOML", most=_MOST_BYTES), path)
 
 
 def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
@@ -241,6 +252,8 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
 
     Files that the text names are relative to the folder of ``file``.
     """
+    if not isinstance(text, str):
+        raise InvalidInput(f"a scenario is parsed from text in TOML, got {shown(text)}")
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:

@@ -3,13 +3,15 @@
 from math import inf, sqrt
 
 import numpy as np
-from numba import njit
 
-from regrasp.programs.terms import ROUNDING
-from regrasp.programs.units import OWN, PASSES
+from regrasp.compilation import kept
+from regrasp.programs.judging.terms import ROUNDING
+from regrasp.programs.judging.units import OWN, PASSES
+
+# Numba keeps what it compiled until this file changes: touch it when one of these numbers does.
 
 
-@njit(cache=True)
+@kept()
 def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped-def]
     """A x, |A| sizes."""
     result, terms = np.zeros(rows), np.zeros(rows)
@@ -20,7 +22,7 @@ def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped
     return result, terms
 
 
-@njit(cache=True)
+@kept()
 def _length(values, start, stop):  # type: ignore[no-untyped-def]
     squares = 0.0
     for i in range(start, stop):
@@ -28,7 +30,7 @@ def _length(values, start, stop):  # type: ignore[no-untyped-def]
     return sqrt(squares)
 
 
-@njit(cache=True)
+@kept()
 def _inverse(values):  # type: ignore[no-untyped-def]
     inverse = np.zeros(values.size)
     for i in range(values.size):
@@ -37,7 +39,7 @@ def _inverse(values):  # type: ignore[no-untyped-def]
     return inverse
 
 
-@njit(cache=True)
+@kept()
 def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
     """The values of rows, of each second-order cone the length of its own, or the largest."""
     row = 0
@@ -54,11 +56,19 @@ def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
     return values
 
 
-@njit(cache=True)
+@kept()
 def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
     """Inverse units of columns, or of rows, passed on through rows, or columns, that have none: ``units``."""
     fixed = rows > 0 if of_rows else columns > 0
-    for _ in range(PASSES):
+    for number in range(PASSES):
+        if number > 0:  # what has a unit keeps it
+            had_rows, had_columns = rows > 0, columns > 0
+        else:
+            had_rows, had_columns = np.zeros(rows.size, np.bool_), np.zeros(columns.size, np.bool_)
+        if of_rows:
+            rows[:] = np.where(fixed, rows, 0.0)
+        else:
+            columns[:] = np.where(fixed, columns, 0.0)
         for j in range(ap.size - 1):  # where none is fixed, the largest that comes back
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
@@ -73,9 +83,9 @@ def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignor
         for j in range(ap.size - 1):
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
-                if of_rows and columns[j] < entry * rows[i]:
+                if of_rows and not had_columns[j] and columns[j] < entry * rows[i]:
                     columns[j], changed = entry * rows[i], True
-                elif not of_rows and rows[i] < entry * columns[j]:
+                elif not of_rows and not had_rows[i] and rows[i] < entry * columns[j]:
                     rows[i], changed = entry * columns[j], True
         if not of_rows:
             _of_cones(codes, rows, False)
@@ -83,7 +93,7 @@ def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignor
             break
 
 
-@njit(cache=True)
+@kept()
 def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[no-untyped-def]
     rows, columns = _inverse(_of_cones(codes, np.abs(b), True)), np.zeros(q.size)
     for j in range(q.size):
@@ -96,7 +106,7 @@ def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[
     return columns
 
 
-@njit(cache=True)
+@kept()
 def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore[no-untyped-def]
     rows, columns = np.zeros(m), _inverse(pulls)
     for j in range(pulls.size):
@@ -107,26 +117,26 @@ def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore
     return rows
 
 
-@njit(cache=True)
+@kept()
 def _ratio(amount, unit):  # type: ignore[no-untyped-def]
     if amount == 0:
         return 0.0
     return amount / unit if unit != 0 else inf
 
 
-@njit(cache=True)
+@kept()
 def _worse(worst, value):  # type: ignore[no-untyped-def]
     """The larger one, and NaN once there is one."""
     return worst if worst != worst or value <= worst else value
 
 
-@njit(cache=True)
+@kept()
 def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     inside, row = z.copy(), 0
     for kind, size, count in codes:
         if kind == 1:
             for i in range(row, row + size * count):
-                if z[i] < 0:
+                if -inf < z[i] < 0:
                     inside[i] = 0.0
             row += size * count
         elif kind == 2:
@@ -144,13 +154,14 @@ def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     return inside
 
 
-@njit(cache=True)
+@kept()
 def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ignore[no-untyped-def]
     """The fields of ``Audit``."""
     n, m = q.size, b.size
     noise = np.zeros(m)
     for k in range(ad.size):
         noise[ai[k]] = max(noise[ai[k]], ROUNDING * abs(ad[k]))
+    _of_cones(codes, noise, False)
     if size_of_x > 0:
         unknowns = np.full(n, 1 / size_of_x)
     else:
@@ -163,6 +174,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
     _, pulls = _products(pp, pi, pd, x, least, n)
     pulls += np.abs(q)
     ax, of_rows = _products(ap, ai, ad, x, np.abs(x), m)
+    own_rows = of_rows.copy()
     of_rows *= weight
     inside = _into_dual(codes, z)
     largest, duals = 0.0, np.zeros(m)
@@ -185,18 +197,21 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
             elif entry > noise[i]:
                 alone = max(alone, duals[i] / entry)
                 floor[i] = max(floor[i], unknowns[j] / entry)
-        unit = pulls[j] + largest + weight * own
+        unit = pulls[j] + largest
         if alone != 0:
             unit += 1 / alone
-        if unit != 0:
+        whole = unit + own
+        if whole != 0:
             for k in range(ap[j], ap[j + 1]):
-                per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / unit)
-        dual = _worse(dual, _ratio(abs(gradient), unit))
+                per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / whole)
+        dual = _worse(dual, _ratio(abs(gradient), unit + weight * own))
         stationarity = _worse(stationarity, abs(gradient))
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
         of_gap += sizes[j] * (of_sizes[j] + abs(q[j]))
-    of_rows += np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
+    units = np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
+    of_rows += units
+    own_rows += units
     for i in range(m):
         value += b[i] * inside[i]
         of_gap += abs(b[i] * inside[i])
@@ -212,14 +227,14 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
                     product += s[i] * inside[i]
                 excess = excess if excess > 0 or excess != excess else 0.0
                 primal = _worse(primal, _ratio(excess, unit))
-                both = _worse(both, _ratio(abs(product) * per, unit))
+                both = _worse(both, _ratio(abs(product) * per, _length(own_rows, row, row + size)))
                 violation = _worse(violation, excess)
             else:
                 for i in range(row, row + size):
                     excess = abs(s[i]) if kind == 0 else -s[i]
                     excess = excess if excess > 0 or excess != excess else 0.0
                     primal = _worse(primal, _ratio(excess, of_rows[i]))
-                    both = _worse(both, _ratio(abs(s[i] * inside[i]) * per_dual[i], of_rows[i]))
+                    both = _worse(both, _ratio(abs(s[i] * inside[i]) * per_dual[i], own_rows[i]))
                     violation = _worse(violation, excess)
             row += size
     gap = abs(quadratic + linear + value)
