@@ -144,7 +144,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     is_twist = bool(np.isfinite(twist).all() and twist.any())
     if is_twist and used.proves(twist, frictions, bounds):
         return _Level(None, True, True)
-    # Within a solver's tolerance of the best level a proof costs much and is rarely found: one above it serves.
+    # Within a solver's tolerance of the best level a proof is costly and rare: one above it serves.
     is_near = answer.status is Status.SOLVED and answer.value[-1] >= -FEASIBLE
     if not is_near and used.is_lost(frictions, bounds):
         return _Level(None, True, True)
