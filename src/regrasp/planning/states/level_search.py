@@ -92,7 +92,7 @@ def _of_those_that_push(
         return None
     mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
     some = chooser.of(used)
-    rest = some.settled(forces[used][:, : some.grasp.width], mu, bounds)
+    rest = some.shifted(forces[used][:, : some.grasp.width], mu, bounds)
     return None if rest is None else _whole(chooser.grasp, used, rest)
 
 
@@ -143,7 +143,11 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
             return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
     twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
-    if (is_twist and used.proves(twist, frictions, bounds)) or used.is_lost(frictions, bounds):
+    if is_twist and used.proves(twist, frictions, bounds):
+        return _Level(None, True, True)
+    # Within a solver's tolerance of the best level a proof is costly and rare: one above it serves.
+    is_near = answer.status is Status.SOLVED and answer.value[-1] >= -FEASIBLE
+    if not is_near and used.is_lost(frictions, bounds):
         return _Level(None, True, True)
     if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
         return _Level(None, False, True)
