@@ -404,8 +404,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited((P2, ""), NO_FORCES[0], NO_FORCES[2]),
         3,
         [
-            "no forces of P1 balance Wrench(force=(-1.5, -3.5), torque=0): none resists turning about P1, about "
-            "which the load has a torque; the object escapes by turning clockwise about (-4, -4)"
+            "no forces of P1 balance Wrench(force=(-1.5, -3.5), torque=0): none resists turning about P1, "
+            "about which the load has a torque; the object escapes by turning clockwise about (-4, -4)"
         ],
     ),
 }

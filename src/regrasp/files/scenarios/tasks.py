@@ -32,6 +32,7 @@ class Task(Strict):
     peak_ratio: float = option(PlanOptions, "peak_ratio", ge=1)
     reserve: float = option(PlanOptions, "reserve", ge=0, lt=1)
     balance_tolerance: float = option(PlanOptions, "balance_tolerance", ge=0)
+    min_normal: Annotated[float, Field(ge=0)] | None = option(PlanOptions, "min_normal")
 
     @cached_property
     def time_scaling(self) -> TimeScaling:
@@ -59,7 +60,6 @@ class Change(Task):
     contact: Name = Field(description="name of the finger that leaves or arrives")
     objective: ObjectiveName = Field("angle", description="what the state without the finger is chosen for")
     rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
-    min_normal: Annotated[float, Field(ge=0)] | None = option(ChangeOptions, "min_normal")
     path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
     instants: int = option(ChangeOptions, "instants", ge=3)
     facets: int | None = option(ChangeOptions, "facets", ge=3)

@@ -99,6 +99,8 @@ def joined(
 
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
+    if criteria.presses and demands.min_normal is None and not isinstance(criteria.min_normal, tuple):
+        demands = replace(demands, min_normal=criteria.min_normal)
     start, end, record = change.start, change.end, change.record
     grasp = start.grasp
     leaving = tuple(grasp.names[i] for i in change.leaving)
@@ -108,7 +110,7 @@ def joined(
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = ~np.isin(np.arange(len(grasp)), (*change.leaving, *change.arriving))
     least[~stays] = 0.0
-    _refuse_weak_ends(start, end, least)
+    refuse_weak_ends(start, end, least)
     has_rates = bool((rates < inf).any())
     record = replace(record, least_normals=tuple(least.tolist()) if least.any() else ())
     if load is None:
@@ -195,7 +197,8 @@ def _path(
     return SampledPath(times, forces, fine.vectors)
 
 
-def _refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
+def refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
+    """Raise ``InvalidInput`` for given ends whose fingers push with less than ``least`` (n,) [N]."""
     for label, state in (("start", start), ("end", end)):
         normal = state.grasp.cones.normal(state.forces)
         for name, has, needs in zip(state.grasp.names, normal, least, strict=True):

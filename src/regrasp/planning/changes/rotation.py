@@ -26,6 +26,7 @@ from regrasp.planning.changes.given_ends import (
     limited,
     scaling_of,
 )
+from regrasp.planning.changes.joining import refuse_weak_ends
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
 from regrasp.planning.states.objectives import Objective, recorded
@@ -113,10 +114,17 @@ def plan_rotation(
         GraspState(grasp, load, first),
         GraspState(grasp, last_load, last),
         clock,
-        Record(criteria.reserve, tuple(choices), change),
+        Record(
+            criteria.reserve,
+            tuple(choices),
+            change,
+            least_normals=tuple(criteria.least_normals(grasp)) if criteria.presses else (),
+        ),
         path=knots,
     )
     _refuse_high_forces(plan)
+    if criteria.presses:
+        refuse_weak_ends(plan.start, plan.end, np.array(criteria.least_normals(grasp)))
     return plan
 
 

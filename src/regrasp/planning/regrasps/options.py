@@ -64,6 +64,7 @@ def settled(problem: Any) -> Criteria:
     given = {name: getattr(problem, name) for name in entries}
     changed = {name: value for name, value in given.items() if value != entries[name][1].default}
     criteria = criteria_of(problem.objective, changed)
+    criteria.refuse_pressing("a regrasp")
     for name in ("objective", *entries):
         object.__setattr__(problem, name, getattr(criteria, name))
     return criteria

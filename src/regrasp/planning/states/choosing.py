@@ -59,6 +59,10 @@ def choose_forces(
         raise InvalidInput(f"method must be text, such as 'auto', got {method!r}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     closed = planar_pair and criteria.objective.closed_form is not None
+    if criteria.presses:
+        if method == "closed-form":
+            raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")
+        closed = False
     if method == "closed-form" and planar_pair and not closed:
         raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use method='auto'")
     if method == "closed-form" and not planar_pair:

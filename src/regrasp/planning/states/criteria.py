@@ -30,6 +30,7 @@ class Criteria:
     to this multiple (at least 1) of the least peak force with which the grasp holds the load, or to a
     contact's own limit if that is smaller.
     reserve: fraction of every friction coefficient kept back.
+    min_normal: least normal force of every finger [N], or a tuple of one for each contact; 0 for none.
 
     Raises ``InvalidInput`` for anything else.
     """
@@ -38,6 +39,7 @@ class Criteria:
     max_force: float | None = None
     peak_ratio: float = PEAK_RATIO
     reserve: float = RESERVE
+    min_normal: float | tuple[float, ...] = 0.0
 
     def __init__(
         self,
@@ -45,6 +47,7 @@ class Criteria:
         max_force: float | None = None,
         peak_ratio: float = PEAK_RATIO,
         reserve: float = RESERVE,
+        min_normal: float | tuple[float, ...] | None = 0.0,
     ) -> None:
         object.__setattr__(self, "objective", objective_of(objective))
         if max_force is not None:
@@ -54,6 +57,10 @@ class Criteria:
         object.__setattr__(self, "max_force", max_force)
         object.__setattr__(self, "peak_ratio", peak_ratio)
         object.__setattr__(self, "reserve", reserve)
+        least = min_normal or 0.0
+        for value in least if isinstance(least, tuple) else (least,):
+            number(value, "min_normal", least=0)
+        object.__setattr__(self, "min_normal", least)
 
     @property
     def unbounded(self) -> bool:
@@ -71,6 +78,27 @@ class Criteria:
             kept_force(general if c.max_force is None else min(general, c.max_force), self.reserve)
             for c in grasp
         ]
+
+    @property
+    def presses(self) -> bool:
+        """Whether any finger must push with a least normal force."""
+        return bool(self.min_normal) and (not isinstance(self.min_normal, tuple) or any(self.min_normal))
+
+    def least_normals(self, grasp: Grasp) -> list[float]:
+        """Least normal force of each finger [N]."""
+        if not isinstance(self.min_normal, tuple):
+            return [self.min_normal] * len(grasp)
+        if len(self.min_normal) != len(grasp):
+            raise InvalidInput(
+                f"min_normal must be one number or {len(grasp)}, one for each contact, got "
+                f"{len(self.min_normal)}"
+            )
+        return list(self.min_normal)
+
+    def refuse_pressing(self, what: str) -> None:
+        """Raise ``InvalidInput`` where least normal forces are asked for and not kept."""
+        if self.presses:
+            raise InvalidInput(f"{what} keeps no least normal force; leave min_normal out of the Criteria")
 
     def demand_limit(self, grasp: Grasp, load: Wrench) -> None:
         """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero."""

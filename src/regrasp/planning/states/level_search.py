@@ -62,7 +62,8 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
     widest = _at_level(chooser, cones, limits, None).forces
     if widest is not None:
         forces = widest
-    forces = _without_noise(chooser, narrowing, forces, limits)
+    if chooser.least is None:
+        forces = _without_noise(chooser, narrowing, forces, limits)
     return Found(forces, max(proven - narrowing.level(forces), 0.0))
 
 
@@ -124,6 +125,8 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     the level rises most. Without ``known`` forces it is the force margin.
     """
     grasp = chooser.grasp
+    if chooser.least is not None and any(chooser.least[i] > 0 for i in range(len(grasp)) if i not in cones):
+        return _Level(None, True, True)  # a finger that must push has no cone left
     used = chooser if len(cones) == len(grasp) else chooser.of(cones)
     frictions, bounds = list(cones.values()), [limits[i] for i in cones]
     weights = None
@@ -135,7 +138,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
         answer = failed.solution  # whether it is near enough is seen below
     if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -FEASIBLE:
         forces = used.exact(answer, frictions, bounds)
-        if forces is None:
+        if forces is None and chooser.least is None:
             forces = _of_those_that_push(used, used.wanted(answer), frictions, bounds)
         if forces is not None:
             return _Level(_whole(grasp, cones, forces))
@@ -152,7 +155,9 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
         return _Level(None, False, True)
     width = used.grasp.width  # point contacts alone have no torques
-    forces = None if known is None else used.nearest(known[list(cones)][:, :width], frictions, bounds)
+    forces = None
+    if known is not None and chooser.least is None:
+        forces = used.nearest(known[list(cones)][:, :width], frictions, bounds)
     return _Level(None if forces is None else _whole(grasp, cones, forces))
 
 

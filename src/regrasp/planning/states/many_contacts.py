@@ -39,6 +39,8 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
+    if criteria.presses:
+        return _pressed(grasp, load, criteria, backend, facets)
     objective = criteria.objective
     if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
@@ -54,6 +56,42 @@ def solved_forces(
         if reason is None:
             raise
         raise reason from None
+
+
+def _pressed(
+    grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
+) -> ChosenForces:
+    """The best forces with which every finger keeps its least normal force."""
+    frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
+    least = np.array(criteria.least_normals(grasp))
+    chooser = Chooser(grasp, load, backend, facets, limits, least)
+    chooser.rescale(max(chooser.load_size, float(least.max())))
+    objective = criteria.objective
+    if criteria.unbounded and inf in limits:
+        smallest = chooser.best(PEAK, frictions, limits)
+        if smallest is None:
+            raise _too_weak(grasp, load, criteria)
+        peak = _radius(grasp, frictions, smallest.forces, facets)
+        limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
+    found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
+    if found is None:
+        raise _too_weak(grasp, load, criteria)
+    if isinstance(objective, LevelObjective):
+        found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
+    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
+
+
+def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
+    """Why no forces with these least normal forces exist."""
+    reason = verdict(grasp, load, replace(criteria, min_normal=0.0)) if any(load.plain) else None
+    if reason is not None and reason.certificate is not None:
+        return reason
+    least = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, criteria.least_normals(grasp), strict=True))
+    return Infeasible(
+        f"no forces of {', '.join(grasp.names)} that balance {load!r} and push along the normals with "
+        f"{least} or more were found, within cones and force limits; without least normal forces no motion "
+        f"proves that there are none: lower min_normal, or raise the force limits"
+    )
 
 
 def _by_newton(

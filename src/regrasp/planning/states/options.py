@@ -54,6 +54,11 @@ class LimitOptions(TypedDict, total=False):
 class StateOptions(LimitOptions, total=False):
     """How one state is chosen."""
 
+    min_normal: Annotated[
+        float | tuple[float, ...] | None,
+        Option(None, "least normal force of every finger [N], or a tuple of one for each contact"),
+    ]
+
     method: Annotated[
         str,
         Option(
@@ -75,6 +80,8 @@ class StateOptions(LimitOptions, total=False):
 
 class PlanOptions(LimitOptions, total=False):
     """How the ends of a plan are chosen, and its clock."""
+
+    min_normal: Annotated[float | None, Option(None, "least normal force of the fingers that stay [N]")]
 
     method: Annotated[str, Option("auto", "'auto', 'closed-form' or a back end's name, as for choose_state")]
     duration: Annotated[float | None, Option(None, "of the whole plan [s]; 1 unless something else sets it")]
@@ -99,7 +106,6 @@ class ChangeOptions(PlanOptions, total=False):
             "duration the shortest is used, with one the path bends where the straight one is too fast",
         ),
     ]
-    min_normal: Annotated[float | None, Option(None, "least normal force of the fingers that stay [N]")]
     path_objective: Annotated[
         str | None,
         Option(
@@ -164,7 +170,7 @@ def _with_words(text: str, options: Mapping[str, tuple[Any, Option]]) -> str:
     return sub(r"(?m)^options$", lambda _: "\n".join(lines), text)
 
 
-_LIMITS = tuple(LimitOptions.__annotations__)
+_LIMITS = (*LimitOptions.__annotations__, "min_normal")
 
 
 def criteria_of(objective: "str | Objective | Criteria", options: Mapping[str, Any]) -> Criteria:

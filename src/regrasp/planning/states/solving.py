@@ -14,6 +14,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.objectives import Bound, ConvexObjective
+from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Solution, Status, solve
 
@@ -50,8 +51,15 @@ class Chooser:
     """
 
     def __init__(
-        self, grasp: Grasp, load: Wrench, backend: str, facets: int | None, limits: list[float]
+        self,
+        grasp: Grasp,
+        load: Wrench,
+        backend: str,
+        facets: int | None,
+        limits: list[float],
+        least: Array | None = None,
     ) -> None:
+        self.least = least
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
         self.unit = self.load_size = force_unit(grasp, load)
@@ -65,7 +73,9 @@ class Chooser:
 
     def of(self, contacts: Iterable[int]) -> "Chooser":
         """The same, for some of the contacts."""
-        some = Chooser(self.grasp.subset(contacts), self.load, self.backend, self.facets, [])
+        chosen = list(contacts)
+        least = None if self.least is None else self.least[chosen]
+        some = Chooser(self.grasp.subset(chosen), self.load, self.backend, self.facets, [], least)
         some.unit, some.loose = self.unit, self.loose
         return some
 
@@ -101,7 +111,7 @@ class Chooser:
         slack: float,
     ) -> Program:
         kept = 1 - slack
-        return state_program(
+        program = state_program(
             self.grasp,
             self.load,
             objective,
@@ -111,6 +121,7 @@ class Chooser:
             self.facets,
             weights,
         )
+        return program if self.least is None else pressing(program, self.grasp, self.least, self.unit)
 
     def best(self, objective: ConvexObjective, frictions: list[float], limits: list[float]) -> Found | None:
         """The best forces for a convex objective; None where the back end says there are none."""
@@ -143,12 +154,15 @@ class Chooser:
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none.
 
-        The least change of all forces does, idle fingers left idle, unless it leaves a cone.
+        The least change of all forces does, idle fingers left idle, unless it leaves a cone. None, too, where
+        a finger then pushes with less than its least normal force.
         """
         found = self.shifted(wanted, frictions, limits)
-        if found is not None:
+        if found is None and np.isfinite(wanted).all():
+            found = self.nearest(wanted, frictions, limits)
+        if found is None or self.least is None or presses(found, self.grasp, self.least):
             return found
-        return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
+        return None
 
     def shifted(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Forces (n, d) changed least into equilibrium, idle fingers left idle; None if they leave a cone."""

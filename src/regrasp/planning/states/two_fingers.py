@@ -168,6 +168,7 @@ def is_one_point(grasp: Grasp) -> bool:
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
     criteria.demand_limit(grasp, load)
+    criteria.refuse_pressing("the closed form")
     code = criteria.objective.closed_form
     if code is None:
         raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use choose_state")

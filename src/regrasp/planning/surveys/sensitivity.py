@@ -182,6 +182,7 @@ def sensitivity(
     if grasp.dimension != 2:
         raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
     criteria = criteria_of(objective, options)
+    criteria.refuse_pressing("a sensitivity")
     if criteria.peak_ratio == 1:
         raise InvalidInput("peak_ratio must be greater than 1 for a sensitivity: 1 leaves nothing to choose")
     state = choose_state(grasp, load, criteria)
