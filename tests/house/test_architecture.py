@@ -11,6 +11,8 @@ import pytest
 
 import regrasp
 
+pytestmark = pytest.mark.architecture
+
 ROOT = Path(regrasp.__file__).parent
 
 # Floor (folder or module) -> floors it may import. A new floor needs a line here.

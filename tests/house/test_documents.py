@@ -6,6 +6,8 @@ import pytest
 from documents import executed
 from places import ROOT
 
+pytestmark = pytest.mark.documents
+
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 

@@ -12,6 +12,8 @@ from places import ROOT
 from regrasp.programs import Status, available_backends, solve
 from regrasp.programs.backends import BACKENDS
 
+pytestmark = pytest.mark.contract
+
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.append(str(BENCHMARKS))
 from degenerate import degenerate_cases  # noqa: E402

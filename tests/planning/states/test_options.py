@@ -15,6 +15,8 @@ from regrasp.planning.states.options import (
     described,
 )
 
+pytestmark = pytest.mark.contract
+
 VERBS = [
     (rg.choose_state, StateOptions),
     (rg.EquilibriumLocus.best, LimitOptions),
