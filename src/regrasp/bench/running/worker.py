@@ -26,9 +26,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from regrasp.bench.calls.form import Call
 from regrasp.bench.running.answer import Answer, printable, understood
 from regrasp.bench.running.solvers import Solver
+from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
 Once = Callable[[], tuple[Answer, float]]

@@ -118,7 +118,9 @@ def _new_rows(
     A = form.pattern.filled(np.concatenate(numbers))
     A.data.setflags(write=False)  # programs of other loads share it
     return _Rows(
-        form, Program(*_cost(objective, grasp, unit, form), A, np.zeros(form.rows), form.blocks), shares
+        form,
+        Program(*_cost(objective, grasp, unit, form), A, np.zeros(form.rows), form.blocks, size=1.0),
+        shares,
     )
 
 

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import qoco
 
-from regrasp.bench.calls.form import Ordered, ordered
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import Ordered, ordered
 from regrasp.programs.program import Program
 
 # It has no verdict on programs without solution; "inaccurate" is no verdict either.

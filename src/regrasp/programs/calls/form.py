@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
 from regrasp.programs.program import Array, Cone, Program
 
 FEW = 16

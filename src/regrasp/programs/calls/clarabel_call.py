@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import clarabel
 import numpy as np
 
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
 from regrasp.programs.program import Block, Cone, Program
 
 # "Almost" verdicts are not verdicts.

@@ -6,8 +6,8 @@ from typing import Any
 import daqp
 import numpy as np
 
-from regrasp.bench.calls.form import Bounds, bounded
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import Bounds, bounded
 from regrasp.programs.program import Program
 
 _SAID = {

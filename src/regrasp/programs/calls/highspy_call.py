@@ -10,13 +10,14 @@ import highspy
 import numpy as np
 from scipy import sparse
 
-from regrasp.bench.calls.form import bounded
-from regrasp.bench.running.answer import Answer
 from regrasp.errors import InvalidInput
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import bounded
 from regrasp.programs.program import Array, Program
 
 _HIGHS: Any = highspy.Highs  # ships no types of its own
 _CLAIMS = {"kOptimal": "found", "kInfeasible": "infeasible", "kUnbounded": "unbounded"}
+_WITHOUT = ("kInfeasible", "kUnbounded", "kUnboundedOrInfeasible")
 
 
 class Data(NamedTuple):
@@ -80,7 +81,19 @@ class Session:
         if status == "found":
             solution = self._solver.getSolution()
             x, duals = np.array(solution.col_value), -np.array(solution.row_dual)
+        elif said in _WITHOUT:
+            status, x, duals = self._ray(status)
         info = self._solver.getInfo()
         counts = (info.qp_iteration_count, info.simplex_iteration_count, info.ipm_iteration_count)
         iterations = sum(max(count, 0) for count in counts)
         return Answer(status, x, duals, iterations, said, None, self._setup, took)
+
+    def _ray(self, status: str) -> tuple[str, Array | None, Array | None]:
+        """What a ray proves, and the ray; it has one where presolve is off or did not find out."""
+        _, is_there, ray = self._solver.getDualRay()
+        if is_there and status != "unbounded":
+            return "infeasible", None, -np.array(ray)
+        _, is_there, ray = self._solver.getPrimalRay()
+        if is_there and status != "infeasible":
+            return "unbounded", np.array(ray), None
+        return status, None, None

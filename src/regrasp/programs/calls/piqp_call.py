@@ -5,8 +5,8 @@ from typing import Any
 
 import piqp
 
-from regrasp.bench.calls.form import FEW, Split, split
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import FEW, Split, split
 from regrasp.programs.program import Program
 
 _CLAIMS = {
@@ -48,7 +48,7 @@ class Session:
         said = self._solver.solve().name
         took = perf_counter() - started
         status, result = _CLAIMS.get(said, "failed"), self._solver.result
-        # Of an infeasible program it hands out its last iterate, not a certificate.
-        duals = self._data.joined(result.z_u, result.y) if status == "found" else None
-        x = result.x if status == "found" else None
+        # Of a program without solution its last iterate grows towards a certificate, and is near one.
+        duals = self._data.joined(result.z_u, result.y) if status in ("found", "infeasible") else None
+        x = result.x if status in ("found", "unbounded") else None
         return Answer(status, x, duals, result.info.iter, said, None, self._setup, took)

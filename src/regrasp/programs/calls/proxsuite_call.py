@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from proxsuite import proxqp
 
-from regrasp.bench.calls.form import FEW, Split, split
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import FEW, Split, split
 from regrasp.programs.program import Program
 
 _CLAIMS = {
@@ -52,7 +52,7 @@ class Session:
         result = self._solver.results
         said = result.info.status.name
         status = _CLAIMS.get(said, "failed")
-        found = status == "found"
-        duals = self._data.joined(result.z, result.y) if found else None
-        x = result.x if found else None
+        # Of a program without solution its last iterate grows towards a certificate, and is near one.
+        duals = self._data.joined(result.z, result.y) if status in ("found", "infeasible") else None
+        x = result.x if status in ("found", "unbounded") else None
         return Answer(status, x, duals, int(result.info.iter), said, None, self._setup, took)

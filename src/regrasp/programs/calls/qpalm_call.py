@@ -5,8 +5,8 @@ from typing import Any
 
 import qpalm
 
-from regrasp.bench.calls.form import Bounds, bounded
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import Bounds, bounded
 from regrasp.programs.program import Program
 
 _CLAIMS = {"solved": "found", "primal infeasible": "infeasible", "dual infeasible": "unbounded"}

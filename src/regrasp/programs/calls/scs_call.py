@@ -3,10 +3,12 @@
 from time import perf_counter
 from typing import Any
 
+import numpy as np
 import scs
+from scipy import sparse
 
-from regrasp.bench.calls.form import Ordered, ordered
-from regrasp.bench.running.answer import Answer
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls.form import Ordered, ordered
 from regrasp.programs.program import Program
 
 # "Inaccurate" verdicts are not verdicts.
@@ -24,8 +26,11 @@ class Session:
     def __init__(self, data: Ordered, **options: Any) -> None:
         started = perf_counter()
         self._data, self._is_first = data, True
-        cone = {"z": data.zeros, "l": data.non_negatives, "q": data.sizes}
+        cone: dict[str, Any] = {"z": data.zeros, "l": data.non_negatives, "q": data.sizes}
         given = {"P": data.P, "A": data.A, "b": data.b, "c": data.q}
+        if not data.b.size:  # it wants a row: 0'x <= 1
+            cone["l"] = 1
+            given |= {"A": sparse.csc_matrix((1, data.q.size)), "b": np.ones(1)}
         self._solver = scs.SCS(given, cone, verbose=False, **options)
         self._setup = perf_counter() - started
 
@@ -42,5 +47,5 @@ class Session:
         took = perf_counter() - started
         info = answer["info"]
         status = _CLAIMS.get(info["status"], "failed")
-        duals = self._data.restored(answer["y"])
+        duals = self._data.restored(answer["y"][: self._data.b.size])
         return Answer(status, answer["x"], duals, info["iter"], info["status"], None, self._setup, took)

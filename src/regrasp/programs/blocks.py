@@ -1,0 +1,31 @@
+"""The cones that rows lie in."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Cone(Enum):
+    """The kinds of cone a block of rows can lie in."""
+
+    ZERO = "zero"
+    NONNEGATIVE = "non-negative"
+    SECOND_ORDER = "second-order"
+
+
+@dataclass(frozen=True)
+class Block:
+    """``count`` cones of one kind and size, in consecutive rows."""
+
+    cone: Cone
+    size: int
+    count: int = 1
+
+    @property
+    def rows(self) -> int:
+        """Rows of A the block takes."""
+        return self.size * self.count
