@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test quick bench clean
+.PHONY: demo test quick bench mutants clean
 
 demo: $(VENV)/installed
 	$(BIN)/regrasp demo
@@ -33,6 +33,10 @@ bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/space.py
 	$(BIN)/regrasp bench --settings default --settings mid --settings high --repeat 3 --time-limit 5 -o benchmarks/solvers
 	$(BIN)/regrasp bench report benchmarks/solvers
+
+# Hours; goes on where it was ended. `make mutants AREAS=verification` does one.
+mutants: $(VENV)/installed-dev
+	$(BIN)/python benchmarks/mutants $(AREAS)
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -1,6 +1,9 @@
 """The command line. Everything but click is imported inside the commands, when they need it."""
 
+import os
 import sys
+from contextlib import suppress
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,25 +90,31 @@ def plan(scenario: Path, output: Path, no_figures: bool) -> None:
 
 @commands.command()
 @click.argument("path", metavar="PLAN", type=click.Path(path_type=Path))
-def verify(path: Path) -> None:
+@click.option("--rate", type=float, metavar="HZ", help="Set-points per second there must be.  [default: any]")
+def verify(path: Path, rate: float | None) -> None:
     """Check a PLAN in exact arithmetic.
 
-    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too, row by row.
+    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too: every row must
+    hold the object and be the plan's at its time.
     """
+    import numpy as np
+
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
     from regrasp.files.plans.setpoints import checked, read_setpoints
+    from regrasp.files.source import legible
 
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
-    click.echo(planned)
-    click.echo(_verified(verdict_on(planned), path))
-    table = path.with_name("setpoints.csv")
-    if table.exists():
-        steps = read_setpoints(table, planned)
-        for rows in steps:
-            _verified(checked(planned, rows), table)
-        click.echo(f"each of {sum(rows.times.size for rows in steps)} set-points in {table} verified too")
+    with np.errstate(all="ignore"), legible(_names(planned)) as shown:  # any numbers at all
+        click.echo(shown(planned))
+        click.echo(_verified(verdict_on(planned), path))
+        table = path.with_name("setpoints.csv")
+        if table.exists():
+            steps = read_setpoints(table, planned, rate)
+            for rows in steps:
+                _verified(checked(planned, rows), table)
+            click.echo(f"each of {sum(rows.times.size for rows in steps)} set-points in {table} verified too")
 
 
 @commands.command()
@@ -224,6 +233,9 @@ def bench_export(folder: Path, families: tuple[str, ...]) -> None:
 
 def main() -> None:
     """Run the command line and exit with its status; an error is one message on stderr."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal need not know every letter
     try:
         status = commands(standalone_mode=False, prog_name="regrasp")
     except click.ClickException as error:
@@ -235,6 +247,11 @@ def main() -> None:
     except RegraspError as error:
         click.echo(f"Error: {error}", err=True)
         status = _status(error)
+    except OSError as error:
+        click.echo(f"Error: the output cannot be written: {error.strerror or error}", err=True)
+        with suppress(OSError):  # what is left of it is tried again at the end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = BAD_INPUT
     sys.exit(status)
 
 
@@ -262,12 +279,14 @@ def _work(
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
     from regrasp.files import plan_scenario, write_plan, write_setpoints
     from regrasp.files.plans.setpoints import checked, setpoint_blocks
-    from regrasp.files.source import naming
+    from regrasp.files.source import legible, naming
     from regrasp.files.staging import whole_folder
+    from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
 
     rate, count = scenario.task.rate, 0
-    with naming(name), _progress() as progress:
+    given = [contact.name for contact in getattr(scenario, "contacts", ())]
+    with legible(given), naming(name), _progress() as progress:
         task = progress.add_task("planning", total=None)
         planned = plan_scenario(scenario)
         progress.update(task, description="verifying")
@@ -277,7 +296,8 @@ def _work(
             _verified(checked(planned, rows), name)
             count += rows.times.size
             progress.update(task, completed=count)
-    click.echo(f"{scenario.title}\n\n{planned}" if scenario.title else planned)
+    with legible(given) as shown:
+        click.echo(f"{one_line(scenario.title)}\n\n{shown(planned)}" if scenario.title else shown(planned))
     click.echo(f"{verdict}\neach of {count} set-points verified too")
 
     with whole_folder(output) as folder:
@@ -291,6 +311,11 @@ def _work(
     click.echo("")
     for file in written:
         click.echo(f"wrote {output / file}")
+
+
+def _names(planned: "Transition | RegraspPlan") -> list[str]:
+    """Of all contacts of a plan."""
+    return [name for step in getattr(planned, "steps", [planned]) for name in step.grasp.names]
 
 
 def _verified(verdict: "Verification", name: str | Path) -> "Verification":

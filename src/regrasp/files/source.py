@@ -1,10 +1,11 @@
 """The text of a file, and errors that name the file they are about."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.mechanics.value import one_line
 
 
 def text_of(path: Path, expected: str) -> str:
@@ -32,3 +33,24 @@ def naming(file: str | Path) -> Iterator[None]:
         raise InvalidInput(f"{file}: {error}") from None
     except Infeasible as error:
         raise Infeasible(f"{file}: {error}", error.certificate) from None
+
+
+@contextmanager
+def legible(names: Iterable[str]) -> Iterator[Callable[[object], str]]:
+    """A function that shows values with line breaks in ``names`` escaped; errors inside are shown so, too.
+
+    A name from a file must not forge a line of what is printed.
+    """
+    odd = sorted({name for name in names if not name.isprintable()}, key=len, reverse=True)
+
+    def shown(value: object) -> str:
+        text = str(value)
+        for name in odd:
+            text = text.replace(name, one_line(name))
+        return text
+
+    try:
+        yield shown
+    except RegraspError as error:
+        error.args = (shown(error), *error.args[1:])
+        raise

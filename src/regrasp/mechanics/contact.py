@@ -52,6 +52,8 @@ class Contact(ArrayValue):
     ) -> None:
         if name is not None and (not isinstance(name, str) or not name.strip()):
             raise InvalidInput(f"a contact's name must be a non-empty string, got {name!r}")
+        if name is not None and not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name):
+            raise InvalidInput(f"a contact's name must be Unicode text, got {name!r} with half a character")
         label = "contact" if name is None else f"contact {name!r}"
         where = point(position, f"{label}: position")
         direction = point(normal, f"{label}: normal")

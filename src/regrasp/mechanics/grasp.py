@@ -12,7 +12,7 @@ from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.tangents import tangents_of
-from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.value import ArrayValue, one_line
 from regrasp.mechanics.wrench import torque
 
 # Contacts nearer than this fraction of the largest coordinate are one point in double precision.
@@ -66,7 +66,8 @@ class Grasp(ArrayValue):
             for i, known in enumerate(self.contacts):
                 if known.name == contact:
                     return i
-            raise InvalidInput(f"no contact {contact!r} in this grasp; it has {', '.join(self.names)}")
+            names = ", ".join(map(one_line, self.names))
+            raise InvalidInput(f"no contact {contact!r} in this grasp; it has {names}")
         if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
             raise InvalidInput(f"a contact is addressed by name or index, got {contact!r}")
         if not -len(self) <= contact < len(self):

@@ -1,4 +1,4 @@
-"""Equality and hash for frozen dataclasses that hold arrays."""
+"""Equality and hash for frozen dataclasses that hold arrays, and how values read in print."""
 
 from collections.abc import Hashable
 from dataclasses import fields
@@ -36,3 +36,8 @@ def _hashable(value: Any) -> Hashable:
 def numbers(values: Any) -> str:
     """A short text of a vector for printing: (1, -0.5)."""
     return "(" + ", ".join(f"{value:.6g}" for value in np.atleast_1d(values)) + ")"
+
+
+def one_line(text: str) -> str:
+    """``text`` with line breaks and all that cannot be printed escaped, so that no name forges a line."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

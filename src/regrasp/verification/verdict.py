@@ -1,6 +1,7 @@
 """The verdict on a plan."""
 
 from dataclasses import dataclass
+from math import isfinite
 
 from regrasp.verification.exact import RESOLUTION
 
@@ -11,7 +12,7 @@ class Verification:
 
     violations: each broken condition in words; none for a valid plan.
     worst_residual: largest equilibrium residual checked, relative to the forces [-].
-    least_angle: smallest angle margin of the contacts in use [rad], for information.
+    least_angle: smallest angle margin of the contacts in use [rad], for information; infinite where none is.
     least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0 inside.
     load_gap: largest difference of the plan's load from the load function given [N], torque divided by the
     grasp's size; None where none was given. load_gap_is_proven: from a bound on the load's curvature, and not
@@ -33,9 +34,10 @@ class Verification:
     def __str__(self) -> str:
         if not self.ok:
             return "\n".join(["not verified:", *(f"  {violation}" for violation in self.violations)])
+        by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
         lines = [
             f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
-            f"every force inside its cone, by {self.least_angle:.6g} rad or more"
+            f"every force inside its cone{by}"
         ]
         if self.load_gap is not None:
             how = "proven" if self.load_gap_is_proven else "measured between instants, not proven"

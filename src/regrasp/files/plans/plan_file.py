@@ -15,6 +15,7 @@ from regrasp.errors import InvalidInput
 from regrasp.files.source import naming, text_of
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
+from regrasp.files.words import Method, Objective, PathObjective
 from regrasp.mechanics.checks import array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -53,17 +54,17 @@ class _Scaling(Strict):
 
 class _Choice(Strict):
     end: Literal["start", "end"]
-    objective: str
-    method: str
-    force_limits: list[float | None]  # JSON has no infinity: None is no limit
+    objective: Objective
+    method: Method
+    force_limits: list[Positive | None]  # JSON has no infinity: None is no limit
 
 
 class _Record(Strict):
-    reserve: float
+    reserve: Annotated[float, Field(ge=0, lt=1)]
     choices: list[_Choice]
-    balancing: float
-    path: str = "closed-form"
-    path_objective: str | None = None
+    balancing: NotNegative
+    path: Method = "closed-form"
+    path_objective: PathObjective | None = None
     rate_limits: list[Positive | None] = Field(default_factory=list)
     least_normals: list[NotNegative] = Field(default_factory=list)
 
@@ -142,12 +143,14 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
     path = Path(path)
     text = text_of(path, "a plan in JSON")
     try:
-        data = json.loads(text)
+        data = json.loads(text, object_pairs_hook=_unique)
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InvalidInput(f'{path}: expected a plan with "format": "{FORMAT}", found other JSON')
-    if data.get("version") != VERSION:
+    if data.get("version") != VERSION or type(data["version"]) is not int:  # True == 1
         raise InvalidInput(
             f"{path}: version: expected {VERSION}, got {data.get('version')!r}; "
             f"a plan of a newer regrasp needs that regrasp to be read"
@@ -159,6 +162,15 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
     stored = validated(_Plan, data, path)
     with naming(path):
         return _plan(stored)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A table of JSON, whose keys come once: of two values a reader would see either."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise InvalidInput(f"the key {max(keys, key=keys.count)!r} comes twice in one table")
+    return table
 
 
 def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:

@@ -3,15 +3,18 @@
 import csv
 from collections.abc import Iterator
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.files.plans.regrasp_table import RegraspTable
-from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_times
+from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_spacing, check_times
 from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
+from regrasp.mechanics.checks import number
+from regrasp.mechanics.value import one_line
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition, setpoint_columns
 from regrasp.verification import Verification, verify_setpoints
@@ -78,27 +81,35 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
             rows.writerows(np.column_stack([t, *turned, forces.reshape(t.size, -1)]).tolist())
 
 
-def read_setpoints(path: str | Path, plan: Transition | RegraspPlan) -> list[Rows]:
+def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float | None = None) -> list[Rows]:
     """The set-points of a file that ``write_setpoints`` wrote for this plan, one entry for each step.
 
-    Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise from 0 to the
-    duration, and angles, steps and finger positions that are not the plan's.
+    rate: rows per second that the file must have; None for any even one.
+    Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
+    to the duration, and angles, steps and finger positions not the plan's. ``checked`` is for forces.
     """
     path = Path(path)
-    header, *lines = text_of(path, "set-points in CSV").splitlines() or [""]
+    if rate is not None:
+        number(rate, "rate", above=0)
+    lines = csv.reader(StringIO(text_of(path, "set-points in CSV"), newline=""))
     columns = _columns(plan)
-    if header.split(",") != columns:
-        raise InvalidInput(f"{path}: expected the columns {','.join(columns)}, got {header[:200]}")
     try:
-        table = np.array([[float(x) for x in line.split(",")] for line in lines], dtype=float)
-    except ValueError as error:
+        header = next(lines, [])
+        if header != columns:
+            expected, got = (one_line(",".join(names)) for names in (columns, header))
+            raise InvalidInput(f"{path}: expected the columns {expected}, got {got[:200]}")
+        table = np.array([[float(x) for x in line] for line in lines], dtype=float)
+    except InvalidInput:
+        raise
+    except (ValueError, csv.Error) as error:
         raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
     if table.ndim != 2 or table.shape[1] != len(columns) or not np.isfinite(table).all():
         raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
     if isinstance(plan, RegraspPlan):
-        return RegraspTable(plan).read(path, table)
+        return RegraspTable(plan).read(path, table, rate)
     times = table[:, 0]
     check_times(path, times, 0.0, plan.duration)
+    check_spacing(path, [(times, plan.duration)], rate)
     turned = 0 if plan.turn is None else 1
     angles = plan.orientation(times)
     if turned:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache, wraps
 from inspect import Parameter, Signature, cleandoc, signature
 from re import sub
+from textwrap import fill
 from typing import Annotated, Any, NamedTuple, ParamSpec, TypedDict, TypeVar, get_args, get_type_hints
 
 from numpy.typing import ArrayLike
@@ -22,6 +23,8 @@ from regrasp.plans.timing import TimeScaling
 
 BALANCE_TOLERANCE = 1e-3
 INSTANTS = 101
+WIDTH = 100
+"""Columns of a docstring's words."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -157,11 +160,18 @@ def takes(options: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def _with_words(text: str, options: Mapping[str, tuple[Any, Option]]) -> str:
-    """A docstring with the words of options in the place of its line ``options``."""
-    lines = [
-        f"{name}: {option.words}; {option.default!r} if not given." for name, (_, option) in options.items()
+    """A docstring with the words of options in the place of the line ``options`` of its ``Args``."""
+    entries = [
+        fill(
+            f"{name}: {option.words}; {option.default!r} if not given.",
+            WIDTH,
+            initial_indent=" " * 4,
+            subsequent_indent=" " * 8,
+            break_on_hyphens=False,
+        )
+        for name, (_, option) in options.items()
     ]
-    return sub(r"(?m)^options$", lambda _: "\n".join(lines), text)
+    return sub(r"(?m)^    options$", lambda _: "\n".join(entries), text)
 
 
 _LIMITS = tuple(LimitOptions.__annotations__)
