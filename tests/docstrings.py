@@ -85,5 +85,7 @@ def public() -> Iterator[Documented]:
             if inspect.isclass(value):
                 for method, raw in vars(value).items():
                     member = getattr(value, method)
-                    if not method.startswith("_") and (inspect.isfunction(member) or inspect.ismethod(member)):
+                    if not method.startswith("_") and (
+                        inspect.isfunction(member) or inspect.ismethod(member)
+                    ):
                         yield Documented(f"{name}.{method}", value.__module__, member)

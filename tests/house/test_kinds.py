@@ -3,10 +3,12 @@
 import ast
 import tomllib
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
 from places import ROOT, TESTS
+from slowness import ALLOWED, mark, relisted, slow
 
 pytestmark = pytest.mark.architecture
 
@@ -71,3 +73,34 @@ def test_one_kind_passes_beside_other_marks() -> None:
 def test_contributing_explains_every_kind() -> None:
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert [kind for kind in [*KINDS, "slow"] if f"`{kind}`" not in page] == []
+
+
+# -- the slow ones ----------------------------------------------------------------------------------------
+
+
+def test_every_slow_test_is_there() -> None:
+    gone = []
+    for name in slow():
+        path, _, function = name.partition("::")
+        source = (ROOT / path).read_text(encoding="utf-8") if (ROOT / path).exists() else ""
+        if f"def {function.rpartition('::')[2]}(" not in source:
+            gone.append(name)
+    assert gone == [], "tests/slow.txt names tests that are gone: take the lines out, or give the new names"
+
+
+def test_the_list_of_slow_tests_is_made_anew_by_what_ran() -> None:
+    known = ["a::gone_quick", "a::slow", "b::not_run"]
+    measured = {"a::gone_quick": ALLOWED, "a::slow": 2 * ALLOWED, "a::new": 1.01 * ALLOWED}
+    assert relisted(known, measured) == ["a::new", "a::slow", "b::not_run"]
+
+
+def test_slow_tests_are_left_out_by_the_mark() -> None:
+    class Item:
+        nodeid = f"{slow()[0]}[some-parameter]"
+        marks: ClassVar[list[str]] = []
+
+        def add_marker(self, marker: pytest.MarkDecorator) -> None:
+            self.marks.append(marker.name)
+
+    mark([Item()])
+    assert Item.marks == ["slow"]
