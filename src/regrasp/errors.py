@@ -1,6 +1,20 @@
 """The errors regrasp raises. Each message says what was expected, what came, and what to do."""
 
+import re
 from typing import Any
+
+# A value in a message is a reminder, not a listing.
+_SHOWN = 120
+
+
+def shown(value: Any) -> str:
+    """A value as a message shows it: on one line, not long, whatever it is."""
+    try:
+        text = repr(value)
+    except Exception:  # a number of too many digits to print, or a class whose own repr fails
+        text = f"a value of type {type(value).__name__}"
+    text = re.sub(r"\s+", " ", text)
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
 class RegraspError(Exception):
@@ -8,7 +22,20 @@ class RegraspError(Exception):
 
 
 class InvalidInput(RegraspError, ValueError):
-    """An argument, a scenario or a plan file is not what it must be; nothing was computed."""
+    """An argument, a scenario or a plan file is not what it must be; nothing was computed.
+
+    The message is one line, whatever values it names.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(re.sub(r"\s*\n\s*", " ", message))
+
+
+class InvalidFile(InvalidInput):
+    """A file with any number of problems, a line each."""
+
+    def __init__(self, message: str) -> None:
+        super(InvalidInput, self).__init__(message)
 
 
 class Infeasible(RegraspError):

@@ -6,7 +6,7 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidFile
 
 
 class Strict(BaseModel):
@@ -47,7 +47,7 @@ def validated(model: type[Model], data: Any, file: str | Path) -> Model:
         lines = [
             f"{file}: {line}" for problem in error.errors() for line in _in_words(model, problem).splitlines()
         ]
-        raise InvalidInput("\n".join(lines)) from None
+        raise InvalidFile("\n".join(lines)) from None
 
 
 def _in_words(model: type[BaseModel], problem: Mapping[str, Any]) -> str:

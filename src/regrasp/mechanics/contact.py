@@ -1,5 +1,6 @@
 """A frictional point contact."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan, hypot
@@ -7,8 +8,9 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number, point
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 # A normal whose length is this near to 1 is taken as it is, so that one normalised before (whose length is
@@ -51,9 +53,11 @@ class Contact(ArrayValue):
         name: str | None = None,
     ) -> None:
         if name is not None and (not isinstance(name, str) or not name.strip()):
-            raise InvalidInput(f"a contact's name must be a non-empty string, got {name!r}")
+            raise InvalidInput(f"a contact's name must be a non-empty string, got {shown(name)}")
         if name is not None and not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name):
-            raise InvalidInput(f"a contact's name must be Unicode text, got {name!r} with half a character")
+            raise InvalidInput(
+                f"a contact's name must be Unicode text, got {shown(name)} with half a character"
+            )
         label = "contact" if name is None else f"contact {name!r}"
         where = point(position, f"{label}: position")
         direction = point(normal, f"{label}: normal")
@@ -117,6 +121,22 @@ class Contact(ArrayValue):
         """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``."""
         kept = {"max_force": self.max_force, "torsion": self.torsion, "name": self.name} | fields
         return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The contact as plain data, which JSON can hold; ``from_dict`` gives back the equal contact."""
+        return {
+            "name": self.name,
+            "position": self.position.tolist(),
+            "normal": self.normal.tolist(),
+            "friction": self.friction,
+            "max_force": self.max_force,
+        } | ({} if self.torsion is None else {"torsion": self.torsion})
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Contact":
+        """The contact of plain data. Raises ``InvalidInput`` for other keys and as ``Contact`` does."""
+        optional = ("name", "max_force", "torsion")
+        return cls(**entries(data, "a contact", ("position", "normal", "friction"), optional))
 
     def __repr__(self) -> str:
         limit = "" if self.max_force is None else f", max_force={self.max_force:g}"

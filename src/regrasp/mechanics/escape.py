@@ -9,7 +9,7 @@ import numpy as np
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, array, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.opposition import dot, exact, oppositions
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -49,7 +49,7 @@ class EscapeTwist(ArrayValue, Pictured):
     def velocities(self) -> Array:
         """(n, d) velocity of the object at each contact, v + omega x r_i."""
         moved: Array = self.grasp.matrix.T @ self.twist
-        return moved.reshape(len(self.grasp), self.grasp.width)[:, : self.grasp.dimension]
+        return read_only(moved.reshape(len(self.grasp), self.grasp.width)[:, : self.grasp.dimension])
 
     @cached_property
     def load_power(self) -> float:

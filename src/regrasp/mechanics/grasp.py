@@ -1,17 +1,19 @@
 """A set of contacts and its grasp matrix."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
+from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.tangents import tangents_of
+from regrasp.mechanics.plain import entries, listed
 from regrasp.mechanics.value import ArrayValue, one_line
 from regrasp.mechanics.wrench import torque
 
@@ -35,7 +37,7 @@ class Grasp(ArrayValue):
             raise InvalidInput("a grasp needs at least one contact, got none")
         for contact in given:
             if not isinstance(contact, Contact):
-                raise InvalidInput(f"a grasp is made of Contacts, got {contact!r}")
+                raise InvalidInput(f"a grasp is made of Contacts, got {shown(contact)}")
             if contact.dimension != given[0].dimension:
                 raise InvalidInput(
                     f"contacts of one grasp must have one dimension, got {given[0].dimension} "
@@ -53,6 +55,16 @@ class Grasp(ArrayValue):
     def __hash__(self) -> int:
         return self._hash
 
+    def to_dict(self) -> dict[str, Any]:
+        """The grasp as plain data, which JSON can hold; ``from_dict`` gives back the equal grasp."""
+        return {"contacts": [contact.to_dict() for contact in self.contacts]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Grasp":
+        """The grasp of plain data. Raises ``InvalidInput`` for other keys and as ``Grasp`` does."""
+        contacts = listed(entries(data, "a grasp", ("contacts",))["contacts"], "contacts of a grasp")
+        return cls(map(Contact.from_dict, contacts))
+
     # -- lookup ---------------------------------------------------------------------------------------
 
     @cached_property
@@ -69,7 +81,7 @@ class Grasp(ArrayValue):
             names = ", ".join(map(one_line, self.names))
             raise InvalidInput(f"no contact {contact!r} in this grasp; it has {names}")
         if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
-            raise InvalidInput(f"a contact is addressed by name or index, got {contact!r}")
+            raise InvalidInput(f"a contact is addressed by name or index, got {shown(contact)}")
         if not -len(self) <= contact < len(self):
             raise InvalidInput(f"no contact {contact} in this grasp; it has {len(self)}, counted from 0")
         return int(contact) % len(self)

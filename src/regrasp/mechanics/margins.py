@@ -6,13 +6,14 @@ from math import inf, nan, pi
 import numpy as np
 
 from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.value import ArrayValue
 
 # A force below this fraction of the largest one is rounding: the contact carries no force.
 IDLE = 2.0**-40
 
 
 @dataclass(frozen=True, eq=False)
-class Margins:
+class Margins(ArrayValue):
     """Margins of each contact, NaN where the contact carries no force and a margin has no meaning.
 
     For one state each is (n,); for m instants each is (m, n).

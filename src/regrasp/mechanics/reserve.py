@@ -4,7 +4,7 @@ A plan is judged with the full friction and the full force limits, in exact arit
 tolerance; it is made with a little less of both.
 """
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import number
 
 RESERVE = 1e-9
@@ -18,7 +18,7 @@ def reserve_fraction(value: float) -> float:
     """A checked ``reserve``: a fraction, 0 <= reserve < 1."""
     fraction = number(value, "reserve", least=0)
     if fraction >= 1:
-        raise InvalidInput(f"reserve must be less than 1, a fraction of the friction, got {value!r}")
+        raise InvalidInput(f"reserve must be less than 1, a fraction of the friction, got {shown(value)}")
     return fraction
 
 

@@ -1,18 +1,21 @@
 """Forces of a grasp under a load."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import dist, hypot
 from operator import mul
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array, array, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import IDLE, Margins, margins
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mechanics.wrench import Wrench
@@ -38,14 +41,33 @@ class GraspState(ArrayValue):
 
     def __init__(self, grasp: Grasp, load: Wrench, forces: ArrayLike) -> None:
         if not isinstance(grasp, Grasp):
-            raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
+            raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
         check_load(grasp, load)
         object.__setattr__(self, "grasp", grasp)
         object.__setattr__(self, "load", load)
         given = array(forces, "forces", (len(grasp), grasp.width))
         if grasp.torsions is not None and given[grasp.torsions == 0, 3].any():
-            raise InvalidInput(f"forces: point contacts make no torque about their normals, got {forces!r}")
+            raise InvalidInput(
+                f"forces: point contacts make no torque about their normals, got {shown(forces)}"
+            )
         object.__setattr__(self, "forces", given)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The state as plain data, which JSON can hold; ``from_dict`` gives back the equal state.
+
+        Of a state that was chosen it is the state, without the record of its choice.
+        """
+        return {
+            "grasp": self.grasp.to_dict(),
+            "load": self.load.to_dict(),
+            "forces": self.forces.tolist(),
+        }
+
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> "GraspState":
+        """The state of plain data. Raises ``InvalidInput`` for other keys and as ``GraspState`` does."""
+        given = entries(data, "a state", ("grasp", "load", "forces"))
+        return GraspState(Grasp.from_dict(given["grasp"]), Wrench.from_dict(given["load"]), given["forces"])
 
     @cached_property
     def wrenches(self) -> Array:
@@ -164,6 +186,6 @@ class GraspState(ArrayValue):
 def check_load(grasp: Grasp, load: Wrench) -> None:
     """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension."""
     if not isinstance(load, Wrench):
-        raise InvalidInput(f"load must be a Wrench, got {load!r}; write Wrench(force=[...])")
+        raise InvalidInput(f"load must be a Wrench, got {shown(load)}; write Wrench(force=[...])")
     if load.dimension != grasp.dimension:
         raise InvalidInput(f"load must have the grasp's dimension {grasp.dimension}, got {load.dimension}")

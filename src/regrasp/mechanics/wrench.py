@@ -1,16 +1,18 @@
 """Wrenches: a force and its torque about the centre of mass."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, sin
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics import checks
 from regrasp.mechanics.checks import Array, array, number, point
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 
@@ -93,7 +95,7 @@ class Wrench(ArrayValue):
 
     def _with(self, other: object, combine: Callable[[Array, Array], Array]) -> "Wrench":
         if not isinstance(other, Wrench):
-            raise InvalidInput(f"a wrench combines with a wrench, got {other!r}")
+            raise InvalidInput(f"a wrench combines with a wrench, got {shown(other)}")
         if other.dimension != self.dimension:
             raise InvalidInput("a planar wrench and a wrench in space cannot be combined")
         return Wrench.from_vector(combine(self.vector, other.vector))
@@ -114,6 +116,16 @@ class Wrench(ArrayValue):
 
     def __truediv__(self, divisor: float) -> "Wrench":
         return Wrench.from_vector(self.vector / number(divisor, "divisor"))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The wrench as plain data, which JSON can hold; ``from_dict`` gives back the equal wrench."""
+        torque = self.torque.tolist()
+        return {"force": self.force.tolist(), "torque": torque if self.dimension == 3 else torque[0]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Wrench":
+        """The wrench of plain data. Raises ``InvalidInput`` for other keys and as ``Wrench`` does."""
+        return cls(**entries(data, "a wrench", ("force",), ("torque",)))
 
     def __repr__(self) -> str:
         shown = numbers(self.torque) if self.dimension == 3 else f"{self.torque[0]:.6g}"

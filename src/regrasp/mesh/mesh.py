@@ -12,7 +12,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, choice, number, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
+from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged, whole
 from regrasp.mesh.closest import at, touching
 from regrasp.mesh.doubts import warn_of_distance, warn_of_unit, warn_of_walls
 from regrasp.mesh.rays import entry, outermost
@@ -273,7 +273,7 @@ class Mesh(ArrayValue):
             )
         if along is None and not outside and away > _AT_EDGE * largest:
             warn_of_walls(given, away, self._corners[self._flat @ normals[0] < _OPPOSED])
-        warn_of_distance(given, away, self.size)
+            warn_of_distance(given, away, self.size)
         place = foot - self.centre_of_mass
         return Contact(place, normals[0], friction, max_force=max_force, torsion=torsion, name=name)
 
@@ -347,10 +347,3 @@ class Mesh(ArrayValue):
         kind = ", smooth" if self.smooth else ""
         size = numbers(self.size)
         return f"Mesh({len(self.faces)} faces{kind}, size {size}, volume {self.volume:.6g})"
-
-
-def whole(value: int, what: str, least: int) -> int:
-    """A whole number of at least ``least``."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidInput(f"{what} must be a whole number of at least {least}, got {value!r}")
-    return int(value)

@@ -1,10 +1,10 @@
 """The outline of a planar object as a value."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from typing import Union
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +15,9 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary
 from regrasp.outline.curves import EllipseBoundary, SplineBoundary
+from regrasp.outline.plain import holes_of, outline_data, shape_of
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.outline.region import check_holes, checked_ring
+from regrasp.outline.region import check_holes, checked_ring, checked_size
 
 # Chords of a smooth outline stay this near to it, as a fraction of its length, where a polygon stands for it.
 _FLATNESS = 1e-4
@@ -64,6 +65,7 @@ class Outline(ArrayValue):
     ) -> "Outline":
         """The ellipse of half axes a along x and b along y [m]; a circle where they are equal."""
         axes = np.array([number(a, "a", above=0), number(b, "b", above=0)])
+        checked_size(np.array([-axes, axes]), "outline")
         return cls._of(EllipseBoundary(read_only(axes), array(centre, "centre", (2,))), holes)
 
     @classmethod
@@ -119,6 +121,26 @@ class Outline(ArrayValue):
         object.__setattr__(self, "boundary", boundary)
         object.__setattr__(self, "holes", inner)
         object.__setattr__(self, "notes", ())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The outline as plain data, which JSON can hold; ``from_dict`` gives back the equal outline.
+
+        ``vertices`` of a polygon, ``points`` of a smooth curve, or half axes ``ellipse`` about a ``centre``;
+        ``holes`` is a list of such dictionaries.
+        """
+        return outline_data(self.boundary, self.holes)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Outline":
+        """The outline of plain data. Raises ``InvalidInput`` for other keys and as ``Outline`` does."""
+        shape, given = shape_of(data)
+        holes = [cls.from_dict(hole) for hole in holes_of(given)]
+        if shape == "vertices":
+            return cls(given["vertices"], holes)
+        if shape == "points":
+            return cls.smooth(given["points"], holes)
+        a, b = array(given["ellipse"], "ellipse", (2,)).tolist()
+        return cls.ellipse(a, b, centre=given.get("centre", (0.0, 0.0)), holes=holes)
 
     # -- the object -------------------------------------------------------------------------------------
 

@@ -1,14 +1,16 @@
 """A load that varies in time: an accelerating or a turning hand."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 
@@ -51,6 +53,15 @@ class LoadSeries(ArrayValue):
         if inside:
             times = _merged(np.unique(inside), times, 1e-9 * duration / instants)
         return cls(times, [_wrench_at(load, t).vector for t in times.tolist()])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The series as plain data, which JSON can hold; ``from_dict`` gives back the equal series."""
+        return {"times": self.times.tolist(), "vectors": self.vectors.tolist()}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "LoadSeries":
+        """The series of plain data. Raises ``InvalidInput`` for other keys and as ``LoadSeries`` does."""
+        return cls(**entries(data, "a load series", ("times", "vectors")))
 
     @property
     def duration(self) -> float:

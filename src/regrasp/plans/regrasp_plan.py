@@ -10,6 +10,7 @@ from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.document import Documented
 from regrasp.plans.transition import Transition
 
 
@@ -30,7 +31,7 @@ class FingerMove(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RegraspPlan(ArrayValue, Pictured):
+class RegraspPlan(ArrayValue, Documented, Pictured):
     """Transitions that carry an object from one three-finger grasp to another.
 
     steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most three.

@@ -1,17 +1,18 @@
 """The time function T(t) of a transition, falling smoothly from 1 to 0 (Fig. 8)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regrasp.closed_form.straight_path import fastest_duration
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.checks import Array, array, number, whole
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 if TYPE_CHECKING:
@@ -42,19 +43,21 @@ class TimeScaling(ArrayValue):
 
     def __post_init__(self) -> None:
         duration = number(self.duration, "duration", above=0)
-        values = tuple(number(c, "control value") for c in self.control)
+        values = tuple(array(self.control, "control values", (None,)).tolist())
         falls = all(a >= b for a, b in pairwise(values))
         if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
-        if not 1 <= self.degree < len(values):
+        if not 1 <= whole(self.degree, "degree", least=0) < len(values):
             raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {self.degree!r}")
+        object.__setattr__(self, "degree", int(self.degree))
         object.__setattr__(self, "duration", duration)
         object.__setattr__(self, "control", values)
 
     @classmethod
     def spline(cls, duration: float, control: Sequence[float] = PAPER_CONTROL) -> "TimeScaling":
         """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default."""
-        return cls(duration, tuple(control), min(3, len(control) - 1))
+        values = tuple(array(control, "control values", (None,)).tolist())
+        return cls(duration, values, min(3, len(values) - 1))
 
     @classmethod
     def minimum_jerk(cls, duration: float) -> "TimeScaling":
@@ -91,6 +94,15 @@ class TimeScaling(ArrayValue):
         if duration == 0:
             raise InvalidInput("no force that changes has a rate limit, so no shortest duration follows")
         return shape.lasting(duration)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The scaling as plain data, which JSON can hold; ``from_dict`` gives back the equal scaling."""
+        return {"duration": self.duration, "control": list(self.control), "degree": self.degree}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "TimeScaling":
+        """The scaling of plain data. Raises ``InvalidInput`` for other keys and as ``TimeScaling`` does."""
+        return cls(**entries(data, "a time scaling", ("duration", "control", "degree")))
 
     def lasting(self, duration: float) -> "TimeScaling":
         """The same shape over another duration."""

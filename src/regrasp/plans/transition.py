@@ -15,6 +15,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.document import Documented
 from regrasp.plans.path import Path
 from regrasp.plans.record import Record
 from regrasp.plans.sampled import SampledPath
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Transition(ArrayValue, Pictured):
+class Transition(ArrayValue, Documented, Pictured):
     """Finger forces that carry a grasp from one equilibrium to another while fingers leave or arrive.
 
         f(t) = f_end + (f_start - f_end) T(t)

@@ -3,13 +3,13 @@
 from math import inf, sqrt
 
 import numpy as np
-from numba import njit
 
+from regrasp.compilation import kept
 from regrasp.programs.terms import ROUNDING
 from regrasp.programs.units import OWN, PASSES
 
 
-@njit(cache=True)
+@kept()
 def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped-def]
     """A x, |A| sizes."""
     result, terms = np.zeros(rows), np.zeros(rows)
@@ -20,7 +20,7 @@ def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped
     return result, terms
 
 
-@njit(cache=True)
+@kept()
 def _length(values, start, stop):  # type: ignore[no-untyped-def]
     squares = 0.0
     for i in range(start, stop):
@@ -28,7 +28,7 @@ def _length(values, start, stop):  # type: ignore[no-untyped-def]
     return sqrt(squares)
 
 
-@njit(cache=True)
+@kept()
 def _inverse(values):  # type: ignore[no-untyped-def]
     inverse = np.zeros(values.size)
     for i in range(values.size):
@@ -37,7 +37,7 @@ def _inverse(values):  # type: ignore[no-untyped-def]
     return inverse
 
 
-@njit(cache=True)
+@kept()
 def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
     """The values of rows, of each second-order cone the length of its own, or the largest."""
     row = 0
@@ -54,7 +54,7 @@ def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
     return values
 
 
-@njit(cache=True)
+@kept()
 def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
     """Inverse units of columns, or of rows, passed on through rows, or columns, that have none: ``units``."""
     fixed = rows > 0 if of_rows else columns > 0
@@ -83,7 +83,7 @@ def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignor
             break
 
 
-@njit(cache=True)
+@kept()
 def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[no-untyped-def]
     rows, columns = _inverse(_of_cones(codes, np.abs(b), True)), np.zeros(q.size)
     for j in range(q.size):
@@ -96,7 +96,7 @@ def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[
     return columns
 
 
-@njit(cache=True)
+@kept()
 def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore[no-untyped-def]
     rows, columns = np.zeros(m), _inverse(pulls)
     for j in range(pulls.size):
@@ -107,20 +107,20 @@ def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore
     return rows
 
 
-@njit(cache=True)
+@kept()
 def _ratio(amount, unit):  # type: ignore[no-untyped-def]
     if amount == 0:
         return 0.0
     return amount / unit if unit != 0 else inf
 
 
-@njit(cache=True)
+@kept()
 def _worse(worst, value):  # type: ignore[no-untyped-def]
     """The larger one, and NaN once there is one."""
     return worst if worst != worst or value <= worst else value
 
 
-@njit(cache=True)
+@kept()
 def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     inside, row = z.copy(), 0
     for kind, size, count in codes:
@@ -144,7 +144,7 @@ def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     return inside
 
 
-@njit(cache=True)
+@kept()
 def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ignore[no-untyped-def]
     """The fields of ``Audit``."""
     n, m = q.size, b.size

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from math import isfinite
 
+from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.exact import RESOLUTION
 
 
-@dataclass(frozen=True)
-class Verification:
+@dataclass(frozen=True, eq=False)
+class Verification(ArrayValue):
     """The verdict on a plan.
 
     violations: each broken condition in words; none for a valid plan.

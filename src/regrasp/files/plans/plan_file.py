@@ -11,11 +11,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from regrasp.errors import InvalidInput
-from regrasp.files.source import naming, text_of
+from regrasp.errors import InvalidInput, shown
+from regrasp.files.plans.words import Method, Objective, PathObjective
+from regrasp.files.source import naming, path_of, text_of
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
-from regrasp.files.words import Method, Objective, PathObjective
 from regrasp.mechanics.checks import array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -121,15 +121,7 @@ def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
 
     Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
     """
-    header = {"format": FORMAT, "version": VERSION}
-    if isinstance(plan, RegraspPlan):
-        document = header | _regrasp_document(plan)
-        validated(_Regrasp, document, path)
-    elif isinstance(plan, Transition):
-        document = header | _document(plan)
-        validated(_Plan, document, path)
-    else:
-        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {plan!r}")
+    document = plan_document(plan, path)
     with whole_file(path) as file:
         json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
         file.write("\n")
@@ -140,7 +132,7 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
 
     Raises one ``InvalidInput`` that names the file and what is wrong in it.
     """
-    path = Path(path)
+    path = path_of(path)
     text = text_of(path, "a plan in JSON")
     try:
         data = json.loads(text, object_pairs_hook=_unique)
@@ -148,19 +140,38 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
         raise InvalidInput(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
+    return plan_of(data, path)
+
+
+def plan_document(plan: Transition | RegraspPlan, name: str | Path = "plan") -> dict[str, Any]:
+    """What a plan file holds, as plain data. Raises ``InvalidInput``, which begins with ``name``."""
+    header = {"format": FORMAT, "version": VERSION}
+    if isinstance(plan, RegraspPlan):
+        document = header | _regrasp_document(plan)
+        validated(_Regrasp, document, name)
+    elif isinstance(plan, Transition):
+        document = header | _document(plan)
+        validated(_Plan, document, name)
+    else:
+        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {shown(plan)}")
+    return document
+
+
+def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan:
+    """The plan of what a plan file holds. Raises ``InvalidInput``, which begins with ``name``."""
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise InvalidInput(f'{path}: expected a plan with "format": "{FORMAT}", found other JSON')
+        raise InvalidInput(f'{name}: expected a plan with "format": "{FORMAT}", found other JSON')
     if data.get("version") != VERSION or type(data["version"]) is not int:  # True == 1
         raise InvalidInput(
-            f"{path}: version: expected {VERSION}, got {data.get('version')!r}; "
+            f"{name}: version: expected {VERSION}, got {data.get('version')!r}; "
             f"a plan of a newer regrasp needs that regrasp to be read"
         )
     if data.get("kind") == "regrasp":
-        whole = validated(_Regrasp, data, path)
-        with naming(path):
+        whole = validated(_Regrasp, data, name)
+        with naming(name):
             return _regrasp(whole)
-    stored = validated(_Plan, data, path)
-    with naming(path):
+    stored = validated(_Plan, data, name)
+    with naming(name):
         return _plan(stored)
 
 

@@ -1,6 +1,7 @@
 """Set-points of a plan as a table in CSV."""
 
 import csv
+from array import array
 from collections.abc import Iterator
 from dataclasses import replace
 from io import StringIO
@@ -11,10 +12,9 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.files.plans.regrasp_table import RegraspTable
 from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_spacing, check_times
-from regrasp.files.source import text_of
+from regrasp.files.source import path_of, text_of
 from regrasp.files.staging import whole_file
-from regrasp.mechanics.checks import number
-from regrasp.mechanics.value import one_line
+from regrasp.mechanics.checks import Array, number
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition, setpoint_columns
 from regrasp.verification import Verification, verify_setpoints
@@ -24,6 +24,8 @@ _BLOCK = 8192
 
 # More than a day at 1000 per second; a file of that many rows is a slip of the pen.
 _MOST = 1e8
+# Of a file that is read: some hours at 1000 rows per second.
+_MOST_BYTES = 2**28
 
 
 def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Rows]:
@@ -88,23 +90,11 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
     Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
     to the duration, and angles, steps and finger positions not the plan's. ``checked`` is for forces.
     """
-    path = Path(path)
+    path = path_of(path)
     if rate is not None:
         number(rate, "rate", above=0)
-    lines = csv.reader(StringIO(text_of(path, "set-points in CSV"), newline=""))
     columns = _columns(plan)
-    try:
-        header = next(lines, [])
-        if header != columns:
-            expected, got = (one_line(",".join(names)) for names in (columns, header))
-            raise InvalidInput(f"{path}: expected the columns {expected}, got {got[:200]}")
-        table = np.array([[float(x) for x in line] for line in lines], dtype=float)
-    except InvalidInput:
-        raise
-    except (ValueError, csv.Error) as error:
-        raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
-    if table.ndim != 2 or table.shape[1] != len(columns) or not np.isfinite(table).all():
-        raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
+    table = _table_of(path, columns)
     if isinstance(plan, RegraspPlan):
         return RegraspTable(plan).read(path, table, rate)
     times = table[:, 0]
@@ -116,6 +106,36 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
         check_angles(path, table[:, 1], angles)
         angles = table[:, 1]
     return [Rows(0, times, angles, table[:, 1 + turned :].reshape(times.size, *plan.start.forces.shape))]
+
+
+def _table_of(path: Path, columns: list[str]) -> Array:
+    """(m, k) the numbers below a header of ``columns``; names may be quoted, as CSV quotes them."""
+    numbers = array("d")
+    with StringIO(text_of(path, "set-points in CSV", most=_MOST_BYTES), newline="") as text:
+        rows = csv.reader(text, strict=True)
+        try:
+            header = next(rows, [])
+            if header != columns:
+                raise InvalidInput(f"{path}: expected the columns {_shown(columns)}, got {_shown(header)}")
+            for row in rows:
+                if len(row) != len(columns):
+                    raise ValueError(f"line {rows.line_num} has {len(row)}")
+                numbers.extend(map(float, row))
+        except (csv.Error, ValueError) as error:
+            if isinstance(error, InvalidInput):
+                raise
+            raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
+    table = np.frombuffer(numbers).reshape(-1, len(columns)) if numbers else np.empty((0, len(columns)))
+    if not len(table) or not np.isfinite(table).all():
+        raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
+    return table
+
+
+def _shown(columns: list[str]) -> str:
+    """A header as one line of a message."""
+    with StringIO() as line:
+        csv.writer(line, lineterminator="").writerow(columns)
+        return line.getvalue().replace("\n", "\\n").replace("\r", "\\r")[:200]
 
 
 def _steps(plan: Transition | RegraspPlan) -> tuple[Transition, ...]:

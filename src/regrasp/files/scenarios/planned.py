@@ -49,14 +49,24 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
     if isinstance(task, Rotation):
         return _rotation(scenario, task)
     options = _taken(task, _CHANGE_OPTIONS)
-    options["load"], options["rate_limit"] = load, task.rate_limit
+    rate_limit = _per_finger(scenario, task)
+    options["load"], options["rate_limit"] = load, rate_limit
     options["scaling"] = task.time_scaling
     if isinstance(load, LoadSeries):
         options["scaling"] = task.scaling_lasting(load.duration)
-    elif task.rate_limit is not None and task.duration is None:
+    elif rate_limit is not None and task.duration is None:
         straight = options | {"rate_limit": None, "path_objective": None, "idle_time": None}
-        options["scaling"] = _planned(scenario, task, **straight).fastest(task.rate_limit).scaling
+        options["scaling"] = _planned(scenario, task, **straight).fastest(rate_limit).scaling
     return _planned(scenario, task, **options, idle_time=task.idle_time)
+
+
+def _per_finger(scenario: Scenario, task: Change) -> float | list[float] | None:
+    """The rate limit in the order of the plan's fingers, in which the one that arrives is the last."""
+    limits = task.rate_limit
+    if not isinstance(limits, list) or isinstance(task, Removal):
+        return limits
+    arriving = scenario.grasp.index(task.contact)
+    return [*limits[:arriving], *limits[arriving + 1 :], limits[arriving]]
 
 
 def _regrasp(scenario: RegraspScenario) -> RegraspPlan:

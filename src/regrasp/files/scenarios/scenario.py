@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, TypeAdapter, model_validator
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.scenarios.keys import (
     AnyForce,
     AnyVector,
@@ -21,7 +21,7 @@ from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 from regrasp.files.scenarios.tasks import Addition, Change, Removal, Rotation
-from regrasp.files.source import text_of
+from regrasp.files.source import path_of, text_of
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -31,6 +31,8 @@ from regrasp.plans.loads import LoadSeries
 
 if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
+
+_MOST_BYTES = 2**24  # of a file that people write
 
 
 class ContactEntry(Strict):
@@ -141,6 +143,12 @@ class Scenario(Strict):
         except InvalidInput as error:
             raise ValueError(f"load: {error}") from None
         problems = self._unfit_load(external)
+        limits = task.rate_limit if isinstance(task, Change) else None
+        if isinstance(limits, list) and len(limits) != len(self.contacts):
+            problems.append(
+                f"task.rate_limit: expected a number, or {len(self.contacts)} numbers, one for each contact; "
+                f"got {len(limits)}"
+            )
         idle = {"removal": "end_force", "addition": "force"}.get(task.kind)
         problems += [*self._gaps("force", idle), *self._gaps("end_force", idle)]
         if problems:
@@ -232,8 +240,8 @@ def read_scenario(path: str | Path) -> AnyScenario:
     Raises one ``InvalidInput`` that names the file and lists every problem, each with its key, what was
     expected and what came.
     """
-    path = Path(path)
-    return parse_scenario(text_of(path, "a scenario in TOML"), path)
+    path = path_of(path)
+    return parse_scenario(text_of(path, "a scenario in TOML", most=_MOST_BYTES), path)
 
 
 def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
@@ -241,6 +249,8 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
 
     Files that the text names are relative to the folder of ``file``.
     """
+    if not isinstance(text, str):
+        raise InvalidInput(f"a scenario is parsed from text in TOML, got {shown(text)}")
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:

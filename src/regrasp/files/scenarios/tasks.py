@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from regrasp.files.scenarios.keys import Control, Method, Name, Positive, option
+from regrasp.files.scenarios.keys import Control, Method, Name, PerFinger, Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.orientation.rotations import unit_axis
@@ -59,7 +59,7 @@ class Change(Task):
     contact: Name = Field(description="name of the finger that leaves or arrives")
     objective: ObjectiveName = Field("angle", description="what the state without the finger is chosen for")
     whole_objective: ObjectiveName = Field("force", description="what the state with it is chosen for")
-    rate_limit: Positive | None = option(ChangeOptions, "rate_limit")
+    rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
     min_normal: Annotated[float, Field(ge=0)] | None = option(ChangeOptions, "min_normal")
     path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
     idle_time: Positive | None = Field(

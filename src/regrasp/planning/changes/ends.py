@@ -11,6 +11,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import balanced_start
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.states.objectives import recorded
 from regrasp.planning.states.options import BALANCE_TOLERANCE
 from regrasp.plans.record import Choice, Record
 
@@ -36,7 +37,7 @@ class End(NamedTuple):
             rest = grasp.without(self.idle[0]) if len(self.idle) == 1 else _without(grasp, self.idle)
         if self.given is None:
             best = choose_forces(rest, self.load, self.criteria, method, facets)
-            choice = Choice(self.label, self.criteria.objective.name, best.method, best.force_limits)
+            choice = Choice(self.label, recorded(self.criteria.objective), best.method, best.force_limits)
             return best, choice, 0.0
         given = self.given if self.given.grasp is rest else GraspState(rest, self.load, self.given.forces)
         state = balanced_start(given, self.criteria, tolerance, self.label)

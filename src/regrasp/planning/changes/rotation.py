@@ -28,7 +28,7 @@ from regrasp.planning.changes.given_ends import (
 )
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.objectives import Objective, recorded
 from regrasp.planning.states.options import BALANCE_TOLERANCE, PlanOptions, criteria_of, takes
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.transition import Transition
@@ -94,12 +94,12 @@ def plan_rotation(
     else:
         best = chooser.at(0.0)
         first = np.array(best.forces)
-        choices.append(Choice("start", criteria.objective.name, best.method, best.force_limits))
+        choices.append(Choice("start", recorded(criteria.objective), best.method, best.force_limits))
     last_load = turned_load(load, turn, about)
     if end is None:
         best = chooser.at(turn)
         last = np.array(best.forces)
-        choices.append(Choice("end", criteria.objective.name, best.method, best.force_limits))
+        choices.append(Choice("end", recorded(criteria.objective), best.method, best.force_limits))
     else:
         _refuse_other_end(end, given, last_load)
         state = GraspState(grasp, last_load, end.forces)

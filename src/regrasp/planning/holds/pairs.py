@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO
 
@@ -37,7 +38,7 @@ class WidestHolds:
 
 
 @dataclass(frozen=True, eq=False)
-class HoldGraph:
+class HoldGraph(ArrayValue):
     """Pairs of contacts that hold a load through the centre of mass while the object has one of some angles.
 
     contacts: candidates. load: at angle 0. angles: (O,) of the object [rad]. A hold's margin is the widest
@@ -58,6 +59,7 @@ class HoldGraph:
     one_finger: bool = False
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "angles", array(self.angles, "angles", (None,)))
         if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
             raise InvalidInput("a hold graph needs two planar contacts or more")
         if not isinstance(self.load, Wrench):

@@ -19,6 +19,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO
 
@@ -33,7 +34,7 @@ _TOGETHER = 64  # loads whose margins are held at a time where only verdicts are
 
 
 @dataclass(frozen=True, eq=False)
-class TripleGraph:
+class TripleGraph(ArrayValue):
     """Triples of contacts in space that hold loads with three fingers.
 
     contacts: candidates. loads: (O, 6) force and torque on the object, in its own frame [N, N m]: one load

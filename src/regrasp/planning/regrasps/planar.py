@@ -13,6 +13,7 @@ from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
 from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
@@ -38,7 +39,7 @@ _SAME_ANGLE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class RegraspProblem:
+class RegraspProblem(ArrayValue):
     """From one grasp of three fingers to another: what is asked, its hold graph, and the plans.
 
     outline: an ``Outline``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and

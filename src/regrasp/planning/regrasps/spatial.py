@@ -14,6 +14,7 @@ from regrasp.mechanics.checks import Array, rotation
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.holds.sequences import Sequence, preferred
 from regrasp.planning.holds.spatial_stances import Quads
@@ -38,7 +39,7 @@ _SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class SpaceRegraspProblem:
+class SpaceRegraspProblem(ArrayValue):
     """From one grasp of four fingers to another: what is asked, its triples that hold, and the plans.
 
     mesh: a ``Mesh``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and at the

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import check_facets, choose_state
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     import pandas
 
 
-@dataclass(frozen=True)
-class PyramidLosses:
+@dataclass(frozen=True, eq=False)
+class PyramidLosses(ArrayValue):
     """A value of ``choose_state`` with exact cones, and with inner pyramids of some numbers of facets.
 
     exact: the objective reached with exact cones, as ``ChosenState.value`` [unit]. values: the same by number

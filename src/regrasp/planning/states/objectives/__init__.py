@@ -12,6 +12,7 @@ from regrasp.planning.states.objectives.known import (
     SUM_NORMAL,
     ObjectiveName,
     objective_of,
+    recorded,
 )
 from regrasp.planning.states.objectives.objective import (
     Bound,
@@ -36,4 +37,5 @@ __all__ = [
     "Objective",
     "ObjectiveName",
     "objective_of",
+    "recorded",
 ]

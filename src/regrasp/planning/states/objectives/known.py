@@ -133,6 +133,11 @@ OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
 """The objectives that words name."""
 
 
+def recorded(objective: Objective) -> str:
+    """The word for an objective in the record of a plan; one of a user's own is marked as such."""
+    return objective.name if objective == OBJECTIVES.get(objective.name) else f"own:{objective.name}"
+
+
 def objective_of(given: "str | Objective") -> Objective:
     """The objective that a word names, or the one given."""
     if isinstance(given, Objective):

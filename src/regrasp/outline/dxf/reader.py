@@ -11,8 +11,8 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import MOST_PIECES, UNITS, Budget, Drawing, Piece, check_known, counted
-from regrasp.outline.dxf_curves import CURVES, frame, mapped, piece, vector
-from regrasp.outline.dxf_layers import Layers
+from regrasp.outline.dxf.curves import CURVES, frame, mapped, piece, vector
+from regrasp.outline.dxf.layers import Layers
 from regrasp.outline.opening import quiet, reason
 
 _DEEPEST, _LONGEST_RECOVERED = 50, 5_000_000
@@ -90,7 +90,8 @@ class _Walk:
     def __init__(self, document: Any, layers: tuple[str, ...] | None) -> None:
         self._blocks, self._layers = document.blocks, Layers(document)
         self._asked = None if layers is None else {layer.casefold() for layer in layers}
-        check_known(layers, self._layers.names)
+        drawn = (str(entity.dxf.get("layer", "0")) for entity in document.modelspace())
+        check_known(layers, dict.fromkeys([*self._layers.names, *drawn]))
         self._budget = Budget()
         self._cache: dict[int, Piece | None] = {}
         self._drawing = Drawing()

@@ -5,8 +5,8 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import Piece
 from regrasp.outline.flatten import Curve, arc, line, polyline
-from regrasp.outline.svg_path import subpaths
-from regrasp.outline.svg_transform import length, numbers_of
+from regrasp.outline.svg.path import subpaths
+from regrasp.outline.svg.transform import length, numbers_of
 
 SHAPES = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.outline.flatten import Curve, arc, bezier, line
-from regrasp.outline.svg_transform import NUMBER, number_of
+from regrasp.outline.svg.transform import NUMBER, number_of
 
 _COMMAND = re.compile(r"[\s,]*([MmZzLlHhVvCcSsQqTtAa])")
 _NUMBER = re.compile(rf"[\s,]*({NUMBER})")

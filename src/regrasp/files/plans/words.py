@@ -9,6 +9,8 @@ from regrasp.planning.changes.joining import PATH_OBJECTIVES
 
 
 def _objective(value: str) -> str:
+    if value.startswith("own:") and value[4:].isprintable() and value[4:].strip():
+        return value  # of a user's own: a name says all there is to say
     return _one_of(value, OBJECTIVES)
 
 

@@ -1,5 +1,6 @@
 """Drawings in SVG: what is seen of them, every transform applied, y turned up."""
 
+import re
 from dataclasses import dataclass, replace
 from typing import Any
 from warnings import warn
@@ -11,11 +12,19 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.opening import reason
-from regrasp.outline.svg_clip import region_of, share_within
-from regrasp.outline.svg_shapes import SHAPES, shape
-from regrasp.outline.svg_style import Name, Styles, is_painted
-from regrasp.outline.svg_transform import length, numbers_of, origin_of, transform, turned_about, viewport
-from regrasp.outline.svg_xml import attribute, local, tree_of
+from regrasp.outline.svg.clip import region_of, share_within
+from regrasp.outline.svg.shapes import SHAPES, shape
+from regrasp.outline.svg.style import Name, Styles, is_painted
+from regrasp.outline.svg.transform import (
+    NUMBER,
+    length,
+    numbers_of,
+    origin_of,
+    transform,
+    turned_about,
+    viewport,
+)
+from regrasp.outline.svg.xml import attribute, local, tree_of
 
 _SILENT = {
     "defs", "symbol", "title", "desc", "metadata", "style", "script", "clipPath", "mask", "pattern", "marker",
@@ -72,16 +81,14 @@ class _Walk:
 
     def drawing(self) -> Drawing:
         check_known(self._layers, self._known)
-        notes = []
+        cut = f"cut by a clip-path, which is not followed: {counted(self._cut)}"
+        notes = [cut] if self._cut else []
+        for note in notes:
+            warn(f"the drawing is {note}: look at what was read", stacklevel=6)
         for words, found in (("hidden, left out", self._hidden), ("left out", self._left),
-                             ("cut by a clip-path, which is not followed", self._cut),
                              ("style rules not followed", self._styles.unread)):  # fmt: skip
             if found:
                 notes.append(f"{words}: {counted(found)}")
-        if self._cut:
-            warn(
-                f"the drawing is {notes[-1 - bool(self._styles.unread)]}: look at what was read", stacklevel=6
-            )
         doubts = counted(["curve with neither fill nor stroke"] * len(self._unpainted))
         return Drawing(self._seen, self._unpainted, doubts, _unit(self._root), tuple(self._known), notes)
 
@@ -211,13 +218,9 @@ class _Walk:
     def _viewport(self, element: Element, place: _Place, kind: str) -> None:
         """The outermost svg stays in its own units; one inside is fitted into its width and height."""
         given: dict[str, Any] = element.attrib | place.style
-        box = numbers_of(element.attrib.get("viewBox", ""))
-        if box and (len(box) != 4 or not (box[2] > 0 and box[3] > 0)):
-            if element is not self._root:
-                return
-            box = []
+        box = _box(element)
         if element is self._root:
-            w, h = box[2:] or [length(given.get(k, "100%"), 100.0) for k in ("width", "height")]
+            w, h = box[2:] or [_shown(given.get(k, "100%")) for k in ("width", "height")]
             self._children(element, replace(place, view=(w, h)))
             return
         w, h = (
@@ -250,15 +253,28 @@ def _own(style: dict[str, str], view: tuple[float, float]) -> Array:
     return turned_about(origin_of(style["transform-origin"], *view), matrix)
 
 
+def _box(element: Element) -> list[float]:
+    """The four numbers of ``viewBox``, or none where it is not one."""
+    try:
+        box = numbers_of(element.attrib.get("viewBox", ""))
+    except ValueError:
+        return []
+    return box if len(box) == 4 and box[2] > 0 and box[3] > 0 else []
+
+
+def _shown(text: str) -> float:
+    """A side of the outermost viewport; 100 for what is no length."""
+    try:
+        return length(text, 100.0)
+    except ValueError:
+        return 100.0
+
+
 def _unit(root: Element) -> float | None:
     """What a user unit is [m], where the file gives its width or height in a unit that has a length."""
-    box = numbers_of(root.attrib.get("viewBox", ""))
-    found = []
+    box, found = _box(root), []
     for name, k in (("width", 2), ("height", 3)):
         text = root.attrib.get(name, "").strip()
-        if text[-2:].lower() in ("in", "cm", "mm", "pt", "pc") or text[-1:].lower() == "q":
-            if len(box) != 4:
-                return UNITS["px"]
-            if box[k] > 0:
-                found.append(length(text) * UNITS["px"] / box[k])
+        if re.fullmatch(rf"{NUMBER}\s*(in|cm|mm|q|pt|pc)", text, re.IGNORECASE):
+            found.append(length(text) * UNITS["px"] / box[k] if box else UNITS["px"])
     return min(found) if found and min(found) > 0 else None
