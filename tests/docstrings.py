@@ -5,6 +5,7 @@ import inspect
 import re
 import textwrap
 from collections.abc import Iterator
+from enum import Enum
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -22,20 +23,23 @@ class Documented(NamedTuple):
     @property
     def parameters(self) -> list[str]:
         """The parameters that a caller gives."""
-        if inspect.isclass(self.value) and self.value.__init__ is object.__init__:
-            return []
-        try:
-            found = inspect.signature(self.value).parameters.values()
-        except ValueError:  # of an enumeration, whose call looks a member up
-            return []
+        if inspect.isclass(self.value) and (_is_plain(self.value) or hasattr(self.value, "model_fields")):
+            return []  # the fields of a model of files describe themselves
+        found = inspect.signature(self.value).parameters.values()
         first = 1 if "." in self.name and not inspect.isclass(self.value) and _takes_self(self) else 0
         return [("*" * _stars(p)) + p.name for p in list(found)[first:]]
 
     @property
     def documented(self) -> list[str]:
-        """The parameters its docstring names, and the fields of a class with words of their own."""
+        """The parameters its docstring names, and those fields of a class that have words of their own."""
         named = args_of(inspect.getdoc(self.value) or "")
-        return named + (attributes_of(self.value) if inspect.isclass(self.value) else [])
+        fields = attributes_of(self.value) if inspect.isclass(self.value) else []
+        return named + [name for name in fields if name in self.parameters]
+
+
+def _is_plain(cls: type) -> bool:
+    made = inspect.isfunction(cls.__init__) or issubclass(cls, tuple)
+    return not made or issubclass(cls, Enum)
 
 
 def _stars(p: inspect.Parameter) -> int:

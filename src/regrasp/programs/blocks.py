@@ -19,7 +19,13 @@ class Cone(Enum):
 
 @dataclass(frozen=True)
 class Block:
-    """``count`` cones of one kind and size, in consecutive rows."""
+    """``count`` cones of one kind and size, in consecutive rows.
+
+    Args:
+        cone: their kind.
+        size: rows of each.
+        count: how many of them.
+    """
 
     cone: Cone
     size: int

@@ -38,7 +38,11 @@ def plot_outline(
 ) -> Axes:
     """The material, its holes, its centre of mass at the origin, and the arc length in round steps outside.
 
-    arc_lengths: (m,) of candidate contacts [m], drawn as dots with their inward normals.
+    Args:
+        outline: the shape to draw.
+        ax: the axes to draw on; new ones if not given.
+        arc_lengths: (m,) of candidate contacts [m], drawn as dots with their inward normals.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
     outer = outline.polygon()
     size = float(np.ptp(outer, axis=0).max())

@@ -35,7 +35,11 @@ Colours = Mapping[str, str]
 
 
 def contact_colours(grasp: Grasp) -> dict[str, str]:
-    """A colour for each contact, by its place in the grasp; a seventh contact begins the palette again."""
+    """A colour for each contact, by its place in the grasp; a seventh contact begins the palette again.
+
+    Args:
+        grasp: whose contacts are to be told apart.
+    """
     return dict(zip(grasp.names, cycle(PALETTE), strict=False))
 
 

@@ -17,7 +17,15 @@ _SAMPLES = 201
 def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """External force and torque on the object over time, in the object frame; dots where it is given.
 
-    The torque has its own axis on the right. Raises ``InvalidInput`` where the load is constant.
+    The torque has its own axis on the right.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: Where the load is constant.
     """
     if not transition.load_varies:
         raise InvalidInput("the load of this path is constant; there is nothing to draw over time")
