@@ -87,7 +87,7 @@ def public() -> Iterator[Documented]:
             seen.add(id(value))
             yield Documented(name, value.__module__, value)
             if inspect.isclass(value):
-                for method, raw in vars(value).items():
+                for method in vars(value):
                     member = getattr(value, method)
                     if not method.startswith("_") and (
                         inspect.isfunction(member) or inspect.ismethod(member)

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.oracle
-
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 sys.path.append(str(BENCHMARKS))
 from peer_problems import peers  # noqa: E402
@@ -24,6 +22,8 @@ from peers import (  # noqa: E402
 )
 from regrasp.programs import Status, solve  # noqa: E402
 from regrasp.programs.facts import BACKENDS  # noqa: E402
+
+pytestmark = pytest.mark.oracle
 
 PROBLEMS = peers()
 

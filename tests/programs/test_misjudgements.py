@@ -12,12 +12,12 @@ from places import ROOT
 from regrasp.programs import Status, available_backends, solve
 from regrasp.programs.backends import BACKENDS
 
-pytestmark = pytest.mark.contract
-
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.append(str(BENCHMARKS))
 from degenerate import degenerate_cases  # noqa: E402
 from misjudgements import FACETS, OBJECTIVES, SETTINGS, has_answer, program_of  # noqa: E402
+
+pytestmark = pytest.mark.contract
 
 KNOWN = json.loads((BENCHMARKS / "results" / "misjudgements.json").read_text(encoding="utf-8"))
 CASES = {case.name: case for case in degenerate_cases()}

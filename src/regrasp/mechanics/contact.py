@@ -6,10 +6,8 @@ from functools import cached_property
 from math import atan, hypot
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number, point
+from regrasp.mechanics.checks import Array, ArrayLike, number, point
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 

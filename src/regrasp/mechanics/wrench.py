@@ -7,11 +7,10 @@ from math import cos, sin
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics import checks
-from regrasp.mechanics.checks import Array, array, number, point
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, point
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 

@@ -6,10 +6,9 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, choice, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, choice, number, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged, whole

@@ -7,10 +7,9 @@ from os import PathLike
 from typing import Any, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, choice, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, choice, number, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary

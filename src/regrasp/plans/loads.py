@@ -6,10 +6,9 @@ from math import inf
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.checks import Array, ArrayLike, array, number
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench

@@ -3,10 +3,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, read_only
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition

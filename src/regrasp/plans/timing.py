@@ -7,11 +7,10 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.straight_path import fastest_duration
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number, whole
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, whole
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 

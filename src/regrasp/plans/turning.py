@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.arc_friction import arc_friction_angles, arc_in_waves
 from regrasp.closed_form.turning_path import (
@@ -17,7 +16,7 @@ from regrasp.closed_form.turning_path import (
     turning_slope,
 )
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
 from regrasp.mechanics.rotated_loads import still_part

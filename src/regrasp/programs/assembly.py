@@ -1,10 +1,10 @@
 """A builder of programs: rows are demanded one cone at a time."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.blocks import ArrayLike
 from regrasp.programs.program import Block, Cone, Program
 
 

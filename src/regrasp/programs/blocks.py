@@ -2,11 +2,17 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike as ArrayLike
+
+    Array = NDArray[np.float64]
+else:  # as in ``mechanics.checks``, of which programs know nothing
+    Array, ArrayLike = (type(name, (), {"__module__": "builtins"}) for name in ("Array", "ArrayLike"))
 
 
 class Cone(Enum):

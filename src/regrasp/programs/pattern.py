@@ -3,10 +3,10 @@
 from copy import copy
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.blocks import Array, ArrayLike
 
 
 class Pattern:
@@ -29,7 +29,7 @@ class Pattern:
             shared.setflags(write=False)
         _ = self._template.has_canonical_format  # looked at once, and known of every copy
 
-    def filled(self, values: NDArray[np.float64]) -> sparse.csc_matrix:
+    def filled(self, values: Array) -> sparse.csc_matrix:
         """The matrix with ``values`` (k,) at the places, in the order the pattern was given.
 
         Args:

@@ -59,7 +59,9 @@ class RegraspProblem(ArrayValue):
         least_margin: angle margin [rad] that every hold must have at the least; more moves may be needed for
             it.
         min_distance: least distance of two fingers that hold together [m].
-        keep: which two fingers may hold together.
+        keep: which two fingers may hold together, by reach or collision: a function of points (k, 2) of the
+            one and (k, 2) of the other, relative to the centre of mass [m], and the object's angle [rad],
+            that returns (k,) booleans; all if not given.
         arcs: where each finger of the start may touch, an arc (lo, hi) in arc length [m], several, or None
             for everywhere; see ``arcs``. Any finger whose arc allows it may take a contact of the goal.
         one_finger: whether a pair also holds where one of its fingers carries the whole load; by default both

@@ -7,10 +7,9 @@ from math import atan2, cos, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, rotation
+from regrasp.mechanics.checks import Array, ArrayLike, rotation
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -61,7 +60,8 @@ class SpaceRegraspProblem(ArrayValue):
         max_turn: largest turn during one step [rad], below pi.
         least_margin: angle margin [rad] that every hold must have in its inner pyramids of ``facets`` faces.
         min_distance: least distance of two fingers that hold together [m].
-        keep: which three fingers may hold together.
+        keep: which three fingers may hold together, by reach or collision: a function of points (k, 3) of
+            each of them, relative to the centre of mass [m], that returns (k,) booleans; all if not given.
         facets: faces of the inner pyramids in which holds are judged.
         seed: of the candidates.
         max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.

@@ -3,10 +3,9 @@
 from math import inf
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, ArrayLike, number
 from regrasp.planning.states.criteria import PEAK_RATIO
 from regrasp.planning.states.objectives import Objective, objective_of
 

@@ -12,10 +12,10 @@ from math import nan, pi, sqrt
 from typing import Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions

@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import ArrayLike
 from regrasp.mechanics.grasp import Grasp
 
 # Okabe and Ito, "Color Universal Design", 2008; yellow, too pale for a line, is left out.

@@ -6,9 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Wedge
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, iso_torque_line
 from regrasp.plots.look.arrows import arrow
