@@ -1,6 +1,6 @@
 """A set of contacts and its grasp matrix."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
@@ -31,8 +31,8 @@ class Grasp(ArrayValue):
         contacts: one or more, of one dimension.
 
     Raises:
-        InvalidInput: For an empty grasp, contacts of different dimension, equal names and coincident
-            contacts.
+        InvalidInput: For an empty grasp, contacts of different dimension, equal names and contacts at
+            one point with one normal.
     """
 
     contacts: tuple[Contact, ...]
@@ -317,12 +317,21 @@ def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:
 
 
 def _refuse_coincident(contacts: tuple[Contact, ...]) -> None:
+    """At one point two fingers may push along different normals (an inner corner), not along the same one."""
+    for first, second in coincident(contacts):
+        a, b = contacts[first], contacts[second]
+        if abs(a.normal - b.normal).max() <= COINCIDENT:
+            raise InvalidInput(
+                f"contacts {a.name!r} and {b.name!r} coincide at "
+                f"{a.position.tolist()}; place them at different points"
+            )
+
+
+def coincident(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
+    """Pairs of contacts at one point, up to rounding of the largest coordinate."""
     points = [contact.position.tolist() for contact in contacts]
     near = COINCIDENT * max(abs(x) for p in points for x in p)
     for j, p in enumerate(points):
         for i, q in enumerate(points[:j]):
             if all(abs(a - b) <= near for a, b in zip(p, q, strict=True)):
-                raise InvalidInput(
-                    f"contacts {contacts[i].name!r} and {contacts[j].name!r} coincide at "
-                    f"{contacts[i].position.tolist()}; place them at different points"
-                )
+                yield i, j

@@ -58,7 +58,8 @@ def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
     available = np.maximum(frictions * normal, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         use = np.where(normal < 0, inf, tangential / available)
-    straight = (frictions == 0) & (normal > 0) & (tangential <= IDLE * magnitude)  # nothing used of nothing
+    # Nothing used of nothing; a double cannot express the direction of less friction than that.
+    straight = (frictions <= IDLE) & (normal > 0) & (tangential <= IDLE * magnitude)
     return Margins(
         read_only(np.where(idle, nan, angle)),
         read_only(np.where(idle, 0.0, force)),

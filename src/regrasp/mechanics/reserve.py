@@ -10,6 +10,9 @@ from regrasp.mechanics.checks import number
 RESERVE = 1e-9
 """Default fraction of every friction coefficient kept back."""
 
+NEGLIGIBLE = 1e-9
+"""Friction up to this counts as none in planning: it takes normal forces 1e9 times what it gives."""
+
 # Doubles place the direction of a computed force to a few units of 2^-52 [rad]; keep at least this much.
 _DIRECTION = 2.0**-44
 
@@ -23,9 +26,11 @@ def reserve_fraction(value: float) -> float:
 
 
 def kept_friction(friction: float, reserve: float) -> float:
-    """The friction coefficient planning may use: ``friction`` less the reserve, never below zero."""
+    """The friction coefficient planning may use: ``friction`` less the reserve; zero if ``NEGLIGIBLE``."""
     if reserve == 0:
         return friction
+    if friction <= NEGLIGIBLE:
+        return 0.0
     return max(friction - max(reserve * friction, _DIRECTION), 0.0)
 
 

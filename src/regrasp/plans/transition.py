@@ -290,11 +290,11 @@ class Transition(ArrayValue, Documented, Pictured):
         return f"{self.kind} of {who}{for_whom}" if who else self.kind
 
     def __str__(self) -> str:
-        record = self.record
+        record, width = self.record, max(8, *(len(name) + 1 for name in self.grasp.names))
         lines = [
             f"{self.in_words} in {self.duration:g} s under {self.path.load_in_words(self.start, self.end)}",
-            f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
-            *self._rows(),
+            f"{'':{width}}{'start force':>24}{'end force':>24}{'least margin':>14}",
+            *self._rows(width),
         ]
         for c in record.choices:
             limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
@@ -313,7 +313,7 @@ class Transition(ArrayValue, Documented, Pictured):
 
     __repr__ = __str__
 
-    def _rows(self) -> list[str]:
+    def _rows(self, width: int) -> list[str]:
         """A line for each contact: its forces at both ends and its least margin on the way."""
         cones, forces = self.grasp.cones, self.path.deciding(self.start, self.end)
         angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
@@ -326,7 +326,7 @@ class Transition(ArrayValue, Documented, Pictured):
             )
             margin = np.fmin.reduce(angles[:, i])
             shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
-            lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
+            lines.append(f"{name:{width}}{start:>24}{end:>24}{shown:>14}")
         return lines
 
 

@@ -30,7 +30,7 @@ def write_arrays(path: Path, arrays: Mapping[str, Any], matrices: Mapping[str, s
 def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, sparse.csc_matrix]]:
     """The vectors and the matrices in a file. Raises ``InvalidInput`` where it holds none."""
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = dict(archive)
     except (OSError, ValueError, BadZipFile, EOFError, AttributeError, TypeError) as error:
         raise InvalidInput(f"{path}: expected a NumPy archive of plain arrays: {error}") from None

@@ -57,12 +57,15 @@ class Rows:
             raise InvalidInput(f"{m.shape[0]} rows cannot be split into cones of {size}")
         self._add(Cone.SECOND_ORDER, m, offset, size)
 
-    def program(self, q: ArrayLike, P: ArrayLike | sparse.spmatrix | None = None) -> Program:
+    def program(
+        self, q: ArrayLike, P: ArrayLike | sparse.spmatrix | None = None, *, size: float = 0.0
+    ) -> Program:
         """The program with these rows and the objective 1/2 x'Px + q'x.
 
         Args:
             q: (n,).
             P: (n, n), symmetric and positive semidefinite; zero if not given.
+            size: as in ``Program``.
         """
         n = self._unknowns
         if not self._matrices:
@@ -73,6 +76,7 @@ class Rows:
             A=-sparse.vstack(self._matrices, format="csc"),
             b=np.concatenate(self._offsets),
             blocks=tuple(self._blocks),
+            size=size,
         )
         for matrix in (program.P, program.A):
             matrix.sum_duplicates()  # sorts, too: some solvers read unsorted columns wrongly and say nothing

@@ -10,9 +10,9 @@ from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable
 from regrasp.programs.facts import BACKENDS, Backend
+from regrasp.programs.judging.verdict import judged
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status, failed
-from regrasp.programs.verdict import judged
 
 _log = logging.getLogger("regrasp.programs")
 

@@ -75,7 +75,7 @@ class Cones:
 
     def dual(self, z: Array) -> Array:
         """The point of the dual cone nearest to z (m,); the zero cone's dual is everything."""
-        nearest: Array = np.where(self.nonnegative, np.maximum(z, 0.0), z)
+        nearest: Array = np.where(self.nonnegative & (z > -np.inf), np.maximum(z, 0.0), z)
         for rows, size in self._round:
             each = nearest[rows].reshape(-1, size)
             t, length = each[:, 0], _length(each[:, 1:])

@@ -19,7 +19,7 @@ from regrasp.errors import InvalidInput
 from regrasp.programs.archive import read_arrays, write_arrays
 from regrasp.programs.blocks import Array, Block, Cone
 from regrasp.programs.cones import Cones
-from regrasp.programs.terms import Terms
+from regrasp.programs.judging.terms import Terms
 
 __all__ = ["Array", "Block", "Cone", "Program"]
 
@@ -141,12 +141,12 @@ class Program:
     @cached_property
     def terms(self) -> Terms:
         """The matrices, for products."""
-        return Terms(self.P, self.A)
+        return Terms(self.P, self.A, self.cones)
 
     @cached_property
     def why_not_convex(self) -> str:
         """Why P is not symmetric and positive semidefinite, in words; empty where it is, to rounding."""
-        from regrasp.programs.convexity import why_not_convex
+        from regrasp.programs.judging.convexity import why_not_convex
 
         return why_not_convex(self.P)
 

@@ -11,8 +11,8 @@ from scipy import sparse
 
 from regrasp.programs.answer import Answer, Claim
 from regrasp.programs.facts import BACKENDS
+from regrasp.programs.judging.proofs import unboundedness_residual
 from regrasp.programs.program import Array, Program
-from regrasp.programs.proofs import unboundedness_residual
 from regrasp.programs.solution import Solution, Status
 
 _STATUS = {

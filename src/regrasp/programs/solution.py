@@ -7,9 +7,9 @@ from math import inf, isnan
 
 import numpy as np
 
-from regrasp.programs.audit import Audit, audited
+from regrasp.programs.judging.audit import Audit, audited
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.program import Array, Program
-from regrasp.programs.proofs import infeasibility_residual, unboundedness_residual
 
 
 class Status(Enum):

@@ -4,16 +4,16 @@ from math import nan
 
 import numpy as np
 
+from regrasp.programs.judging.units import units_of_unknowns
 from regrasp.programs.program import Array, Cone, Program
-from regrasp.programs.units import units_of_unknowns
 
 
 def row_residual(program: Program, x: Array) -> float:
     """The largest violation of a row or second-order cone, relative to its |b_i| + max_j |a_ij x_j|; x: (n,).
 
-    An unknown near zero counts as large as its unit (``regrasp.programs.units``), but no larger than the
-    largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count alike,
-    and what is large elsewhere hides nothing. NaN if x is not finite or so large that the rows are not.
+    An unknown near zero counts as large as its unit (``regrasp.programs.judging.units``), but no larger than
+    the largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count
+    alike, and what is large elsewhere hides nothing. NaN if x is not finite or so large that the rows are not.
     """
     if not np.isfinite(x).all():
         return nan

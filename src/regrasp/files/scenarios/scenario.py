@@ -20,7 +20,7 @@ from regrasp.files.scenarios.keys import (
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
-from regrasp.files.scenarios.tasks import Addition, Change, Removal, Rotation
+from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Removal, Rotation
 from regrasp.files.source import path_of, text_of
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.contact import Contact
@@ -102,7 +102,7 @@ class Scenario(Strict):
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
     contacts: list[ContactEntry] = Field(min_length=2)
-    task: Annotated[Removal | Addition | Rotation, Field(discriminator="kind")]
+    task: Annotated[Removal | Addition | Exchange | Rotation, Field(discriminator="kind")]
 
     @cached_property
     def grasp(self) -> Grasp:
@@ -140,8 +140,11 @@ class Scenario(Strict):
         except InvalidInput as error:
             raise ValueError(f"contacts: {error}") from None
         task = self.task
-        if isinstance(task, Change) and task.contact not in names:
-            raise ValueError(f"task.contact: expected one of {', '.join(names)}, got {task.contact!r}")
+        if isinstance(task, Change):
+            for key in ("contact", "arrival"):
+                finger = getattr(task, key, None)
+                if finger is not None and finger not in names:
+                    raise ValueError(f"task.{key}: expected one of {', '.join(names)}, got {finger!r}")
         try:
             external = self.external
         except InvalidInput as error:
@@ -153,8 +156,8 @@ class Scenario(Strict):
                 f"task.rate_limit: expected a number, or {len(self.contacts)} numbers, one for each contact; "
                 f"got {len(limits)}"
             )
-        idle = {"removal": "end_force", "addition": "force"}.get(task.kind)
-        problems += [*self._gaps("force", idle), *self._gaps("end_force", idle)]
+        leaving, arriving = (task.leaving, task.arriving) if isinstance(task, Change) else ((), ())
+        problems += [*self._gaps("force", arriving), *self._gaps("end_force", leaving)]
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -215,13 +218,13 @@ class Scenario(Strict):
             ]
         return []
 
-    def _gaps(self, key: Literal["force", "end_force"], idle: str | None) -> list[str]:
+    def _gaps(self, key: Literal["force", "end_force"], idle: tuple[str, ...]) -> list[str]:
         """Forces given for some of the contacts that need one, or for the finger that has none."""
         place: dict[bool, list[int]] = {True: [], False: []}
         problems = []
         for i, entry in enumerate(self.contacts):
             given = getattr(entry, key) is not None
-            if key == idle and isinstance(self.task, Change) and entry.name == self.task.contact:
+            if entry.name in idle:
                 if given:
                     verb = "leaves, so it ends" if key == "end_force" else "arrives, so it starts"
                     problems.append(f"contacts[{i}].{key}: {entry.name} {verb} without force; leave it out")

@@ -2,14 +2,14 @@
 
 from typing import Unpack
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import StateOptions, criteria_of, takes
-from regrasp.planning.states.two_fingers import best_forces
+from regrasp.planning.states.two_fingers import best_forces, is_one_point
 
 DEFAULT_BACKEND = "clarabel"
 
@@ -72,12 +72,27 @@ def choose_forces(
             f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
             f"{grasp.dimension}; use method='auto'"
         )
+    if planar_pair and is_one_point(grasp):
+        if method == "closed-form":
+            raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
+        closed = False
     if len(grasp) < 2:
         raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
     if method == "closed-form" and facets is not None:
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
     if method == "closed-form" or (method == "auto" and closed and facets is None):
-        return best_forces(grasp, load, criteria)
+        try:
+            return best_forces(grasp, load, criteria)
+        except Infeasible as reason:
+            if method == "closed-form" or reason.certificate is not None:
+                raise
+            refused = reason  # without proof: rounding of contacts next to one another, or of the edge
+        from regrasp.planning.states.many_contacts import solved_forces
+
+        try:
+            return solved_forces(grasp, load, criteria, DEFAULT_BACKEND)
+        except RegraspError:
+            raise refused from None
     from regrasp.programs.backends import available_backends, is_available
 
     if method != "auto" and not is_available(method):

@@ -125,7 +125,8 @@ class ChosenState(GraspState):
     gap: float | None
     """How much better the best value can be at most, by duality; None for the closed form, which is exact.
 
-    For ``angle`` [rad] and ``friction_use`` mostly 1e-7, and never more than 1e-5.
+    For ``angle`` [rad] and ``friction_use`` mostly 1e-7, and never more than 1e-5 unless rounding hides what
+    is between; infinite where a solver failed next to the edge and forces were found without one.
     """
 
     def __init__(

@@ -22,6 +22,10 @@ from regrasp.planning.states.escape import infeasible
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
+ONE_POINT = 1e-13
+"""Contacts nearer than this fraction of the largest coordinate are at one point: a load through it is
+balanced to rounding by forces at both."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EquilibriumLocus(ArrayValue):
@@ -46,6 +50,11 @@ class EquilibriumLocus(ArrayValue):
             raise InvalidInput(
                 f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
                 f"{self.grasp.dimension}; use grasp.subset([...]), or a SqueezeLocus"
+            )
+        if is_one_point(self.grasp):
+            raise InvalidInput(
+                f"an equilibrium locus needs contacts at two points; {' and '.join(self.grasp.names)} "
+                f"are at one"
             )
         check_load(self.grasp, self.load)
 
@@ -172,6 +181,13 @@ class EquilibriumLocus(ArrayValue):
         names = ", ".join(self.grasp.names)
         span = "empty" if self.is_empty else f"squeeze in [{self.interval[0]:.6g}, {self.interval[1]:.6g}]"
         return f"EquilibriumLocus of {names} under {self.load!r}: {span}"
+
+
+def is_one_point(grasp: Grasp) -> bool:
+    """Whether two planar contacts are at one point: the squeeze between them has no direction."""
+    x1, y1, x2, y2 = *grasp.contacts[0].plain[:2], *grasp.contacts[1].plain[:2]
+    largest = max(abs(x1), abs(y1), abs(x2), abs(y2))
+    return max(abs(x2 - x1), abs(y2 - y1)) <= ONE_POINT * largest
 
 
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:

@@ -8,6 +8,7 @@ zero, the rest takes Gauss-Newton steps of least length, each entry by its own s
 """
 
 from collections.abc import Callable
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import lsmr
 
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
+from regrasp.programs.judging.terms import reciprocal
 from regrasp.programs.program import Array, Program
-from regrasp.programs.proofs import infeasibility_residual, unboundedness_residual
-from regrasp.programs.terms import reciprocal
 
 # Entries below this fraction of the largest are guessed to be noise, one guess after the other.
 _NOISE = (0.0, 1e-9, 1e-6, 1e-4, 1e-2)
@@ -101,6 +102,7 @@ def _best(
     with np.errstate(all="ignore"):
         for noise in _NOISE:
             y = np.where(kept(noise), start, 0.0)
+            before = inf
             for step in range(steps + 1):
                 if least <= enough:
                     return best
@@ -108,6 +110,9 @@ def _best(
                 there = measure(y)
                 if there < least:
                     best, least = y, there
+                if not there < before / 2 and step > 0:
+                    break  # it leads nowhere
+                before = there
     return best
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from regrasp.programs.blocks import Array
+from regrasp.programs.cones import Cones
 
 _SMALL = 10_000
 """Entries up to which a dense matrix is multiplied faster than a sparse one."""
@@ -17,14 +18,14 @@ ROUNDING = 1e-12
 class Terms:
     """P, A, the sizes |P|, |A| and their inverses 1 / |a_ij|: dense for small programs, else sparse.
 
-    of_rows: (m,) the largest entry of each row of |A|. diagonal: (n,) of P.
+    of_rows: (m,) the largest entry of each row or cone of |A|. diagonal: (n,) of P.
     """
 
-    def __init__(self, P: sparse.csc_matrix, A: sparse.csc_matrix) -> None:
+    def __init__(self, P: sparse.csc_matrix, A: sparse.csc_matrix, cones: Cones) -> None:
         self.is_dense = (A.shape[0] + P.shape[0]) * A.shape[1] <= _SMALL
         self.P, self.A = (_dense(M) if self.is_dense else M.tocsr() for M in (P, A))
         self.abs_P, self.abs_A = abs(self.P), abs(self.A)
-        self.of_rows = self.in_rows(np.ones(A.shape[1]))
+        self.of_rows = cones.largest(self.in_rows(np.ones(A.shape[1])))
         self.inverse_A = self._inverse()
         self.diagonal = P.diagonal()
 

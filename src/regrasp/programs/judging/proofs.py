@@ -15,13 +15,11 @@ from math import inf
 
 import numpy as np
 
+from regrasp.programs.judging.terms import largest
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import largest
 
 _ROUNDING = 2.0**-45
 """A sum this small beside its terms has no sign."""
-_ENTRIES = 2.0**-50
-"""An entry this small beside the largest of its row was to be zero."""
 
 
 def infeasibility_residual(program: Program, z: Array) -> float:
@@ -32,8 +30,7 @@ def infeasibility_residual(program: Program, z: Array) -> float:
         of_columns = terms.abs_A.T @ np.abs(inside)
         if program.size > 0:
             of_columns = np.full(of_columns.size, of_columns.max(initial=0.0))
-        left = np.abs(terms.A.T @ inside) - _ENTRIES * float(terms.of_rows @ np.abs(inside))
-        miss = largest(np.maximum(left, 0.0), of_columns)
+        miss = largest(np.abs(terms.A.T @ inside), of_columns)
         return _per(miss, float(b @ inside), float(np.abs(b) @ np.abs(inside)))
 
 
@@ -47,8 +44,7 @@ def unboundedness_residual(program: Program, d: Array) -> float:
             of_columns = np.full(of_columns.size, of_columns.max(initial=0.0))
             of_rows = terms.in_rows(np.full(sizes.size, sizes.max(initial=0.0)))
         bent = largest(np.abs(terms.P @ d), of_columns)
-        outward = cones.excess(-(terms.A @ d)) - _ENTRIES * terms.of_rows * sizes.max(initial=0.0)
-        outside = largest(np.maximum(outward, 0.0), cones.units(of_rows))
+        outside = largest(cones.excess(-(terms.A @ d)), cones.units(of_rows))
         return _per(float(np.maximum(bent, outside)), float(q @ d), float(np.abs(q) @ sizes))
 
 

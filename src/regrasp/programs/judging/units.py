@@ -12,13 +12,14 @@ All here is written for inverses, so that nothing is zero and the least unit is 
 
 import numpy as np
 
+from regrasp.programs.judging.terms import reciprocal
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import reciprocal
 
 PASSES = 4
-"""How many rows or columns in turn a unit is passed on through."""
-OWN = 2.0**-26
-"""Part of the terms of a row or column that counts beside its unit: what tolerances make their rounding."""
+"""Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one
+only: rows that go in a circle would make units smaller and smaller."""
+OWN = 2.0**-11
+"""Part of the terms of a row or column that counts beside its unit."""
 
 
 def weight_of_terms(program: Program) -> float:
@@ -34,9 +35,9 @@ def units_of_unknowns(program: Program) -> tuple[Array, Array]:
         return given, terms.in_rows(given)
     sides = reciprocal(cones.units(np.abs(program.b)))
     inverse = np.maximum(terms.in_columns(sides), terms.diagonal * reciprocal(np.abs(program.q)))
-    for _ in range(PASSES):
+    for number in range(PASSES):
         rows = np.where(sides > 0, sides, cones.largest(terms.back_in_rows(inverse)))
-        inverse = np.maximum(inverse, terms.in_columns(rows))
+        inverse = _passed(inverse, terms.in_columns(rows), number)
     return reciprocal(inverse), reciprocal(terms.back_in_rows(inverse))
 
 
@@ -47,7 +48,12 @@ def units_of_columns(program: Program, pulls: Array) -> Array:
         return np.full(pulls.size, pulls.max(initial=0.0))
     sides = reciprocal(pulls)
     inverse = cones.largest(terms.in_rows(sides))
-    for _ in range(PASSES):
+    for number in range(PASSES):
         columns = np.where(sides > 0, sides, terms.back_in_columns(inverse))
-        inverse = np.maximum(inverse, cones.largest(terms.in_rows(columns)))
+        inverse = _passed(inverse, cones.largest(terms.in_rows(columns)), number)
     return reciprocal(terms.back_in_columns(inverse))
+
+
+def _passed(inverse: Array, coming: Array, number: int) -> Array:
+    """Units after what comes in pass ``number``."""
+    return np.maximum(inverse, coming) if number == 0 else np.where(inverse > 0, inverse, coming)

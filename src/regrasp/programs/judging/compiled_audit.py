@@ -5,8 +5,10 @@ from math import inf, sqrt
 import numpy as np
 
 from regrasp.compilation import kept
-from regrasp.programs.terms import ROUNDING
-from regrasp.programs.units import OWN, PASSES
+from regrasp.programs.judging.terms import ROUNDING
+from regrasp.programs.judging.units import OWN, PASSES
+
+# Numba keeps what it compiled until this file changes: touch it when one of these numbers does.
 
 
 @kept()
@@ -58,7 +60,15 @@ def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
 def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
     """Inverse units of columns, or of rows, passed on through rows, or columns, that have none: ``units``."""
     fixed = rows > 0 if of_rows else columns > 0
-    for _ in range(PASSES):
+    for number in range(PASSES):
+        if number > 0:  # what has a unit keeps it
+            had_rows, had_columns = rows > 0, columns > 0
+        else:
+            had_rows, had_columns = np.zeros(rows.size, np.bool_), np.zeros(columns.size, np.bool_)
+        if of_rows:
+            rows[:] = np.where(fixed, rows, 0.0)
+        else:
+            columns[:] = np.where(fixed, columns, 0.0)
         for j in range(ap.size - 1):  # where none is fixed, the largest that comes back
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
@@ -73,9 +83,9 @@ def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignor
         for j in range(ap.size - 1):
             for k in range(ap[j], ap[j + 1]):
                 i, entry = ai[k], abs(ad[k])
-                if of_rows and columns[j] < entry * rows[i]:
+                if of_rows and not had_columns[j] and columns[j] < entry * rows[i]:
                     columns[j], changed = entry * rows[i], True
-                elif not of_rows and rows[i] < entry * columns[j]:
+                elif not of_rows and not had_rows[i] and rows[i] < entry * columns[j]:
                     rows[i], changed = entry * columns[j], True
         if not of_rows:
             _of_cones(codes, rows, False)
@@ -126,7 +136,7 @@ def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     for kind, size, count in codes:
         if kind == 1:
             for i in range(row, row + size * count):
-                if z[i] < 0:
+                if -inf < z[i] < 0:
                     inside[i] = 0.0
             row += size * count
         elif kind == 2:
@@ -151,6 +161,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
     noise = np.zeros(m)
     for k in range(ad.size):
         noise[ai[k]] = max(noise[ai[k]], ROUNDING * abs(ad[k]))
+    _of_cones(codes, noise, False)
     if size_of_x > 0:
         unknowns = np.full(n, 1 / size_of_x)
     else:
@@ -163,6 +174,7 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
     _, pulls = _products(pp, pi, pd, x, least, n)
     pulls += np.abs(q)
     ax, of_rows = _products(ap, ai, ad, x, np.abs(x), m)
+    own_rows = of_rows.copy()
     of_rows *= weight
     inside = _into_dual(codes, z)
     largest, duals = 0.0, np.zeros(m)
@@ -185,18 +197,21 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
             elif entry > noise[i]:
                 alone = max(alone, duals[i] / entry)
                 floor[i] = max(floor[i], unknowns[j] / entry)
-        unit = pulls[j] + largest + weight * own
+        unit = pulls[j] + largest
         if alone != 0:
             unit += 1 / alone
-        if unit != 0:
+        whole = unit + own
+        if whole != 0:
             for k in range(ap[j], ap[j + 1]):
-                per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / unit)
-        dual = _worse(dual, _ratio(abs(gradient), unit))
+                per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / whole)
+        dual = _worse(dual, _ratio(abs(gradient), unit + weight * own))
         stationarity = _worse(stationarity, abs(gradient))
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
         of_gap += sizes[j] * (of_sizes[j] + abs(q[j]))
-    of_rows += np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
+    units = np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
+    of_rows += units
+    own_rows += units
     for i in range(m):
         value += b[i] * inside[i]
         of_gap += abs(b[i] * inside[i])
@@ -212,14 +227,14 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ign
                     product += s[i] * inside[i]
                 excess = excess if excess > 0 or excess != excess else 0.0
                 primal = _worse(primal, _ratio(excess, unit))
-                both = _worse(both, _ratio(abs(product) * per, unit))
+                both = _worse(both, _ratio(abs(product) * per, _length(own_rows, row, row + size)))
                 violation = _worse(violation, excess)
             else:
                 for i in range(row, row + size):
                     excess = abs(s[i]) if kind == 0 else -s[i]
                     excess = excess if excess > 0 or excess != excess else 0.0
                     primal = _worse(primal, _ratio(excess, of_rows[i]))
-                    both = _worse(both, _ratio(abs(s[i] * inside[i]) * per_dual[i], of_rows[i]))
+                    both = _worse(both, _ratio(abs(s[i] * inside[i]) * per_dual[i], own_rows[i]))
                     violation = _worse(violation, excess)
             row += size
     gap = abs(quadratic + linear + value)

@@ -14,17 +14,17 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from regrasp.programs.audit import audited
+from regrasp.programs.judging.audit import audited
+from regrasp.programs.judging.terms import largest, reciprocal
+from regrasp.programs.judging.units import units_of_columns, units_of_unknowns
 from regrasp.programs.program import Array, Program
-from regrasp.programs.terms import largest, reciprocal
-from regrasp.programs.units import units_of_columns, units_of_unknowns
 
 # Fractions of the largest entry below which entries are guessed to be noise.
 _NOISE = (0.0, 1e-9, 1e-7, 1e-5, 1e-3)
 _STEPS = 3
 # What must move by more than this was no answer.
 _NEAR = 1e-4
-_LARGEST = 600
+_LARGEST = 300
 """Unknowns and rows up to which an answer is polished."""
 
 
