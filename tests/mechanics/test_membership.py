@@ -10,9 +10,12 @@ from places import ROOT
 from regrasp.mechanics.exact.membership import vertex_forces
 from strategies import lattice_pair
 
+
 sys.path.append(str(ROOT / "benchmarks"))
 from boundary import boundary
 from exact_judge import is_held, state_faults
+
+pytestmark = pytest.mark.oracle
 
 
 def check(grasp: rg.Grasp, load: rg.Wrench) -> bool:

@@ -8,10 +8,13 @@ import pytest
 
 from places import ROOT
 
+
 sys.path.append(str(ROOT / "benchmarks"))
 import million
 from exact_judge import is_escape, is_held, state_faults
 from hostile import problem
+
+pytestmark = pytest.mark.oracle
 
 FIRST = 5_000_000
 """Other problems than the benchmark's."""

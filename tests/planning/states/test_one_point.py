@@ -10,8 +10,11 @@ import regrasp as rg
 from places import ROOT
 from regrasp.mechanics.exact.membership import vertex_forces
 
+
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
+
+pytestmark = pytest.mark.laws
 
 OBJECTIVES = ("effort", "angle", "peak", "force", "friction_use", "peak_normal")
 
