@@ -10,7 +10,6 @@ import regrasp as rg
 from places import ROOT
 from regrasp.closed_form.locus import cone_interval
 
-
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
 

@@ -10,7 +10,6 @@ from places import ROOT
 from regrasp.mechanics.exact.membership import vertex_forces
 from strategies import lattice_pair
 
-
 sys.path.append(str(ROOT / "benchmarks"))
 from boundary import boundary
 from exact_judge import is_held, state_faults

@@ -8,7 +8,6 @@ import pytest
 
 from places import ROOT
 
-
 sys.path.append(str(ROOT / "benchmarks"))
 import million
 from exact_judge import is_escape, is_held, state_faults

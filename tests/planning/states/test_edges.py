@@ -9,7 +9,6 @@ import pytest
 import regrasp as rg
 from places import ROOT
 
-
 sys.path.append(str(ROOT / "benchmarks"))
 from boundary import KINDS, Boundary, boundary
 from exact_judge import is_escape, is_held, state_faults

@@ -12,7 +12,6 @@ from places import ROOT
 from space import random_grasp, soft_random
 from strategies import comfortable_triple
 
-
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
 

@@ -10,7 +10,6 @@ import regrasp as rg
 from places import ROOT
 from regrasp.mechanics.exact.membership import vertex_forces
 
-
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
 
