@@ -1,6 +1,7 @@
 """Every test file says what kind of evidence it is, in one mark that ``pytest -m`` selects by."""
 
 import ast
+import re
 import tomllib
 from pathlib import Path
 from typing import ClassVar
@@ -104,3 +105,13 @@ def test_slow_tests_are_left_out_by_the_mark() -> None:
 
     mark([Item()])
     assert Item.marks == ["slow"]
+
+
+def test_contributing_names_files_that_are_there() -> None:
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = {name for name in re.findall(r"`([\w/.]+\.(?:py|txt))`", page) if not name.startswith("_")}
+    assert len(named) > 20
+    roots = (ROOT / "src" / "regrasp", ROOT)
+    near = [path.name for path in (ROOT / "src").rglob("*.py")]
+    gone = [n for n in named if not any((root / n).exists() for root in roots) and n not in near]
+    assert gone == []
