@@ -37,7 +37,7 @@ class TimeScaling(ArrayValue):
         degree: of the polynomial pieces, at most k - 1.
 
     Raises:
-        InvalidInput: Otherwise.
+        InvalidInput: For control values that rise or do not fall from 1 to 0, and another degree or duration.
     """
 
     duration: float

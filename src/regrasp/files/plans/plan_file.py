@@ -139,7 +139,7 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
         path: a file that ``write_plan`` wrote.
 
     Raises:
-        InvalidInput: One, that names the file and what is wrong in it.
+        InvalidInput: In one message, which names the file and what is wrong in it.
     """
     path = path_of(path)
     text = text_of(path, "a plan in JSON")

@@ -248,8 +248,8 @@ def read_scenario(path: str | Path) -> AnyScenario:
         path: a file in TOML.
 
     Raises:
-        InvalidInput: One, that names the file and lists every problem, each with its key, what was expected
-            and what came.
+        InvalidInput: In one message, which names the file and lists every problem, each with its key, what
+            was expected and what came.
     """
     path = path_of(path)
     return parse_scenario(text_of(path, "a scenario in TOML", most=_MOST_BYTES), path)
