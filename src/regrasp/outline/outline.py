@@ -57,7 +57,7 @@ class Outline(ArrayValue):
 
         Args:
             points: (k, 2) in order along the boundary, either way round [m].
-            holes: points (k, 2) of each hole, likewise [m].
+            holes: vertices (k, 2) of each hole, or outlines without holes, as of ``Outline`` [m].
         """
         through = checked_ring(points, "outline")
         boundary = SplineBoundary(through)
@@ -75,7 +75,7 @@ class Outline(ArrayValue):
             a: half axis along x [m].
             b: half axis along y [m].
             centre: (2,) [m].
-            holes: points (k, 2) of each hole, as of ``smooth`` [m].
+            holes: vertices (k, 2) of each hole, or outlines without holes, as of ``Outline`` [m].
         """
         axes = np.array([number(a, "a", above=0), number(b, "b", above=0)])
         checked_size(np.array([-axes, axes]), "outline")

@@ -44,9 +44,9 @@ def plan_removal(
         start: the state to leave from; or a grasp, whose state is then chosen under ``load``. A state chosen
             under ``max_force`` keeps it, unless another is given.
         contact: the finger that leaves, by name or index; or several, which leave together.
-        load: constant, a ``LoadSeries``, or a function of time [s] that returns a ``Wrench``; it is sampled
-            at ``instants`` and taken as linear between them (``verify(plan, load=...)`` bounds the
-            difference).
+        load: object frame [N, N m]: constant, a ``LoadSeries``, or a function of time [s] that returns a
+            ``Wrench``; it is sampled at ``instants`` and taken as linear between them (``verify(plan,
+            load=...)`` bounds the difference).
         end: the state without it, of the whole grasp or of the remaining contacts; chosen if not given.
         objective: what the state without the finger is chosen for.
         whole_objective: what the state with it is chosen for. The widest force margin, ``force``, gives every
@@ -149,7 +149,7 @@ def plan_exchange(
         end: the state without the leaving finger, the new ones last, of these contacts or of all in play;
             chosen if not given.
         objective: what the state at the end is chosen for.
-        start_objective: at the start, the same if not given.
+        start_objective: what the state at the start is chosen for; the same if not given.
         idle_from: time from which the leaving finger carries no force [s]; the end if not given.
         idle_until: time up to which the new finger carries no force [s]; the start if not given.
         options
