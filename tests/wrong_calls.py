@@ -5,7 +5,8 @@ from the signatures, so a new parameter without a kind, or a new name without a 
 """
 
 import inspect
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterator, Sequence
 from math import inf, nan
 from typing import Any, NamedTuple
 
@@ -59,7 +60,7 @@ NOT_NUMBERS = (
 NOT_A_VECTOR = (*NOT_NUMBERS, 5, [], [1], [1, 2, 3, 4], [[1, 2]], np.zeros((2, 2)), np.zeros((1, 2, 3)))
 NOT_A_COUNT = (*ANYTHING, "3", None, nan, inf, HUGE, -1, 1.5, 3.0, True, [], [3], np.zeros(2))
 
-KINDS: dict[str, tuple[Any, ...]] = {
+KINDS: dict[str, Sequence[Any]] = {
     "number": NOT_A_NUMBER,
     "positive": NOT_POSITIVE,
     "not negative": (*NOT_A_NUMBER, -1.0),
@@ -75,7 +76,7 @@ KINDS: dict[str, tuple[Any, ...]] = {
     "times": (*NOT_NUMBERS, -1.0, 1e9, [0.0, 1e9]),
     "limits": (*NOT_NUMBERS, 0, -1, [1, 2], [0, 0, 0], [[1, 1, 1]]),
     "count": NOT_A_COUNT,
-    "seed": NOT_A_COUNT,
+    "seed": [value for value in NOT_A_COUNT if value is not HUGE],
     "value": NOT_A_VALUE,
     "word": (*ANYTHING, None, 3, nan, HUGE, True, [], ["angle"], "Angle", b"angle"),
     "name": ("", " ", b"x", OBJECT, {}, 1j, 3, nan, HUGE, True, [], ["a"]),
@@ -93,14 +94,17 @@ NAMES: dict[str, str] = {
     "peak_ratio": "ratio", "reserve": "fraction", "objective": "word", "whole_objective": "word",
     "path_objective": "word", "method": "word", "facets": "count", "duration": "positive", "rate": "positive",
     "scaling": "value", "grasp": "value", "load": "value", "state": "value", "start": "value", "end": "value",
-    "goal": "value", "outline": "value", "mesh": "value", "plan": "value", "graph": "value", "scenario": "value",
+    "goal": "value", "outline": "value", "mesh": "value", "plan": "value", "graph": "value",
+    "scenario": "value",
     "balance_tolerance": "not negative", "min_normal": "not negative", "idle_from": "not negative",
-    "idle_until": "not negative", "instants": "count", "rate_limit": "limits", "count": "count", "seed": "seed",
+    "idle_until": "not negative", "instants": "count", "rate_limit": "limits", "count": "count",
+    "seed": "seed",
     "clearance": "not negative", "orientations": "count", "candidates": "count", "goal_orientation": "number",
     "goal_rotation": "table", "states": "word", "max_turn": "small angle", "least_margin": "not negative",
     "min_distance": "not negative", "keep": "function", "arcs": "choices", "one_finger": "flag",
     "weights": "value", "step_duration": "positive", "extra": "count", "scale": "positive",
-    "tolerance": "positive", "smooth": "flag", "path": "path", "data": "data", "t": "times", "axis": "space vector",
+    "tolerance": "positive", "smooth": "flag", "path": "path", "data": "data", "t": "times",
+    "axis": "space vector",
     "angle": "number", "magnitude": "positive", "degree": "count", "segments": "count", "divisions": "count",
     "crease": "positive", "contact": "contact of", "squeeze": "numbers", "direction": "vector",
 }  # fmt: skip
@@ -140,7 +144,6 @@ def rows() -> dict[str, Row]:
     outline, box = ellipse(), mesh()
     choosing = {"grasp": PAIR, "load": LOAD}
     transition, turn, whole = removal(), rotation(), regrasp()
-    sides = {"kind": "removal", "contact": "P3"}
     result = {
         "Contact": Row(rg.Contact, contact, planar),
         "Contact.named": Row(rg.Contact([0, 0], [1, 0], 1).named, {"name": "a"}),
@@ -164,7 +167,7 @@ def rows() -> dict[str, Row]:
         "Grasp": Row(rg.Grasp, {"contacts": list(GRASP)}, {"contacts": "contacts"}),
         "Grasp.index": Row(GRASP.index, {"contact": "P1"}),
         "Grasp.__getitem__": Row(GRASP.__getitem__, {"contact": "P1"}),
-        "Grasp.subset": Row(GRASP.subset, {"contacts": ["P1"]}, {"contacts": "contacts"}),
+        "Grasp.subset": Row(GRASP.subset, {"contacts": ["P1"]}, {"contacts": "contact names"}),
         "Grasp.without": Row(GRASP.without, {"contact": "P1"}),
         "Grasp.with_contact": Row(
             GRASP.with_contact, {"contact": rg.Contact([9, 9], [1, 0], 1)}, {"contact": "value"}
@@ -208,7 +211,7 @@ def rows() -> dict[str, Row]:
         "TimeScaling.fastest": Row(
             rg.TimeScaling.fastest,
             {"change": [[1.0, 0.0], [1.0, 1.0]], "rate_limit": 1.0},
-            {"change": "table", "shape": "value", "rate_limit": "limits"},
+            {"change": "table", "shape": "value", "rate_limit": "limits of two"},
         ),
         "TimeScaling.lasting": Row(scaling.lasting, {"duration": 2.0}),
         "TimeScaling.__call__": Row(scaling.__call__, {"t": 0.5}),
@@ -230,7 +233,7 @@ def rows() -> dict[str, Row]:
         "EquilibriumLocus": Row(rg.EquilibriumLocus, choosing),
         "EquilibriumLocus.given": Row(
             rg.EquilibriumLocus.given,
-            {**choosing, "contact": "P1", "force": [1.0, 1.0]},
+            {"grasp": GRASP, "load": LOAD, "contact": "P3", "force": [0.0, -1.0]},
             {"force": "planar vector"},
         ),
         "EquilibriumLocus.forces": Row(locus.forces, {"squeeze": middle}),
@@ -244,7 +247,9 @@ def rows() -> dict[str, Row]:
         "SqueezeLocus.forces": Row(squeezes.forces, {"squeezes": np.zeros(3)}, {"squeezes": "squeezes"}),
         "SqueezeLocus.squeezes": Row(squeezes.squeezes, {"forces": STATE.forces}, {"forces": "table"}),
         "SqueezeLocus.contains": Row(squeezes.contains, {"point": np.zeros(3)}, {"point": "squeezes"}),
-        "SqueezeLocus.state": Row(squeezes.state, {"squeezes": np.zeros(3)}, {"squeezes": "squeezes"}),
+        "SqueezeLocus.state": Row(
+            squeezes.state, {"squeezes": squeezes.squeezes(STATE.balanced())}, {"squeezes": "squeezes"}
+        ),
         "SqueezeLocus.margins": Row(squeezes.margins, {"squeezes": np.zeros(3)}, {"squeezes": "squeezes"}),
         "SqueezeLocus.best": Row(squeezes.best, {}),
         "SqueezeLocus.sample": Row(squeezes.sample, {"count": 3}),
@@ -252,11 +257,11 @@ def rows() -> dict[str, Row]:
         "Sensitivity.effects": Row(rg.sensitivity(PAIR, LOAD).effects, {}, {"fraction": "positive"}),
         "locus_intervals": Row(rg.locus_intervals, batch, of_batch),
         "best_squeezes": Row(rg.best_squeezes, batch, {**of_batch, "max_force": "batch limits"}),
-        "plan_removal": Row(rg.plan_removal, {"start": STATE, "contact": "P3"}),
+        "plan_removal": Row(rg.plan_removal, {"start": STATE, "contact": "P3"}, {"load": "load"}),
         "plan_addition": Row(
             rg.plan_addition,
             {"start": transition.end.without("P3"), "contact": GRASP["P3"]},
-            {"contact": "value"},
+            {"contact": "value", "load": "load"},
         ),
         "plan_rotation": Row(rg.plan_rotation, {"start": transition.end.without("P3"), "angle": 0.1}),
         "verify": Row(rg.verify, {"plan": transition}, {"load": "function", "curvature": "not negative"}),
@@ -273,11 +278,11 @@ def rows() -> dict[str, Row]:
         "Transition.from_dict": Row(rg.Transition.from_dict, {"data": transition.to_dict()}),
         "bent Transition.forces": Row(bent().forces, {"t": 0.1}),
         "bent Transition.rates": Row(bent().rates, {"t": 0.1}),
-        "bent Transition.retimed": Row(bent().retimed, {"scaling": bent().scaling}),
         "turning Transition.forces": Row(turn.forces, {"t": 0.5}),
         "turning Transition.rates": Row(turn.rates, {"t": 0.5}),
-        "turning Transition.rotations": Row(turn.rotations, {"t": 0.5}),
-        "turning Transition.fastest": Row(turn.fastest, {"rate_limit": 10.0}),
+        "turning Transition.fastest": Row(
+            turn.fastest, {"rate_limit": 10.0}, {"rate_limit": "limits of two"}
+        ),
         "RegraspPlan.orientation": Row(whole.orientation, {"t": 0.5}),
         "RegraspPlan.from_dict": Row(rg.RegraspPlan.from_dict, {"data": whole.to_dict()}),
         "RegraspProblem": Row(rg.RegraspProblem, {"outline": outline, **asked, **small}),
@@ -329,7 +334,6 @@ def rows() -> dict[str, Row]:
         "Mesh.sample": Row(box.sample, {"count": 3}),
         "Mesh.contacts": Row(box.contacts, {"count": 3, "friction": 0.5}),
     }
-    del sides
     return {**result, **file_rows(), **picture_rows()}
 
 
@@ -345,10 +349,10 @@ def file_rows() -> dict[str, Row]:
         ),
         "plan_scenario": Row(files.plan_scenario, {"scenario": scenario}),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
-        "write_plan": Row(files.write_plan, {"plan": removal()}),
-        "write_setpoints": Row(files.write_setpoints, {"plan": removal()}),
-        "Outline.from_file": Row(rg.Outline.from_file, {}, {"path": "path"}),
-        "Mesh.from_file": Row(rg.Mesh.from_file, {}, {"path": "path"}),
+        "write_plan": Row(files.write_plan, {"plan": removal(), "path": os.devnull}),
+        "write_setpoints": Row(files.write_setpoints, {"plan": removal(), "path": os.devnull}),
+        "Outline.from_file": Row(rg.Outline.from_file, {"path": "none.svg"}),
+        "Mesh.from_file": Row(rg.Mesh.from_file, {"path": "none.stl"}),
         "Mesh.save_stl": Row(mesh().save_stl, {}),
     }
 
@@ -357,16 +361,22 @@ def picture_rows() -> dict[str, Row]:
     """The first parameter of every picture: what it draws."""
     import regrasp.plots as plots
 
+    more = {"load_size": 1.0, "outline": ellipse(), "values": [1.0], "contact": "P1"}
     found = {}
     for name in plots.__all__:
         draw = getattr(plots, name)
         if inspect.isfunction(draw) and name not in ("png", "html", "animate"):
             first, *others = inspect.signature(draw).parameters
-            found[f"plots.{name}"] = Row(draw, {}, {first: "value"}, tuple(others))
+            needed = {key: value for key, value in more.items() if key in others}
+            kind = "table" if first == "directions" else "value"
+            found[f"plots.{name}"] = Row(draw, needed, {first: kind}, tuple(others))
     return found
 
 
 KINDS |= {
+    "contact names": (*ANYTHING[1:4], *ANYTHING[6:], None, 3, nan, HUGE, [OBJECT], ["Q"], [99], [1.5]),
+    "load": [value for value in NOT_A_VALUE if not callable(value)],  # what a function does is its own
+    "limits of two": (*NOT_NUMBERS, 0, -1, [1, 2, 3], [0, 0], [[1, 1]]),
     "rows": (*NOT_NUMBERS, 5, [1], [1, 2, 3], np.zeros((2, 3)), np.zeros((7, 2))),
     "entries": (*NOT_NUMBERS, -1, [0.5, -0.5], np.ones(7)),
     "batch torque": (*NOT_NUMBERS, np.ones(7)),
@@ -374,15 +384,22 @@ KINDS |= {
     "vector of 3 or 6": (*NOT_NUMBERS, 5, [], [1, 2], [1, 2, 3, 4], np.zeros((3, 3))),
     "divisor": (*NOT_A_NUMBER, 0),
     "numbers of grasp": (*NOT_NUMBERS, [1, 2, 3], [-1, 0]),
-    "limits of grasp": (*[v for v in NOT_NUMBERS if not (isinstance(v, list) and inf in v)], [1, 2, 3], [-1, 0]),
+    "limits of grasp": (
+        *[v for v in NOT_NUMBERS if not (isinstance(v, list) and inf in v)],
+        [1, 2, 3],
+        [-1, 0],
+    ),
     "rising": (*NOT_NUMBERS, 5, [], [0], [0, 0], [1, 2], [0, -1]),
     "control": (*NOT_NUMBERS, 5, [], [1], [1, 2, 0], [0, 1], [[1, 0]]),
     "counts": (*NOT_A_VALUE, [2], [1.5], ["4"], [HUGE], "4"),
     "reach": (*[v for v in NOT_A_NUMBER if not (isinstance(v, float) and v == inf)], -1.0),
     "squeezes": (*NOT_NUMBERS, 5, [], [1], [1, 2, 3, 4], np.zeros((2, 2))),
     "places": (*NOT_A_VALUE, (0, 1), (0, 1, 99), (0, 1, 1.5), (0, 1, HUGE)),
-    "ring": (*NOT_NUMBERS, 5, [], [1, 2], [[0, 0], [1, 1]], [[0, 0], [1, 1], [2, 2]], np.zeros((4, 2)), np.zeros((4, 3))),
-    "holes": (*ANYTHING[2:], None, 3, nan, HUGE, [1], ["x"], [[[0, 0], [1, 1]]]),
+    "ring": (
+        *NOT_NUMBERS, 5, [], [1, 2], [[0, 0], [1, 1]], [[0, 0], [1, 1], [2, 2]], np.zeros((4, 2)),
+        np.zeros((4, 3)),
+    ),
+    "holes": (*ANYTHING[2:4], *ANYTHING[5:], None, 3, nan, HUGE, [1], ["x"], [[[0, 0], [1, 1]]]),
     "space points": (*NOT_NUMBERS, 5, [1, 2], np.zeros((2, 2))),
     "text": (None, 3, nan, HUGE, b"x", [], {}, OBJECT, "x", "\0", "[" * 5000, "x = " + "[" * 900 + "]" * 900),
 }  # fmt: skip

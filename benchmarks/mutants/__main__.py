@@ -1,9 +1,10 @@
 """Single changes of the source, and how many tests notice: ``python benchmarks/mutants [AREA ...]``.
 
 Every change of the modules of an area is tried against the tests nearest to them. What was tried is kept in
-``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, and a module that
-changed is tried anew. Survivors and the reasons for them stand in ``survivors.txt``: a change that no input
-can tell from the original is no slip, and does not count. JOBS sets the number of processes.
+``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, a module that
+changed is tried anew, and ``--survivors`` tries those again, against tests that came since. Survivors and the
+reasons for them stand in ``survivors.txt``: a change that no input can tell from the original is no slip, and
+does not count. JOBS sets the number of processes, SHARE a part of the changes, SLOW the longest test [s].
 """
 
 import hashlib
@@ -20,9 +21,17 @@ SURVIVORS = HERE / "survivors.txt"
 
 # Area -> modules, tests (patterns), and the least share of changes noticed.
 AREAS: dict[str, tuple[list[str], list[str], float]] = {
-    "verification": (["verification/*.py"], ["verification/test_*.py", "**/test_verif*.py"], 0.95),
-    "programs": (["programs/*.py"], ["programs/test_*.py", "**/test_programs.py"], 0.95),
-    "path": (["planning/**/path.py", "planning/**/path_program.py"], ["**/test_paths.py"], 0.85),
+    "verification": (
+        ["verification/*.py"],
+        ["verification/test_[!c]*.py", "verification/test_co*.py", "**/test_verification.py"],
+        0.95,
+    ),
+    "programs": (["programs/*.py", "programs/judging/*.py"], ["programs/test_*.py"], 0.95),
+    "path": (
+        ["planning/changes/path_search.py", "planning/changes/path_program.py"],
+        ["**/test_paths.py"],
+        0.85,
+    ),
     "rotation": (["planning/**/rotation.py"], ["**/test_rotation.py"], 0.85),
     "files": (
         [
@@ -57,7 +66,7 @@ def main() -> int:
 
 def _run(area: str, fresh: bool) -> int:
     import pytest
-    from engine import NONE, NOTICED, Engine
+    from engine import NONE, NOTICED, SURVIVED, UNSEEN, Engine
 
     sources, tests, least = AREAS[area]
     modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
@@ -67,7 +76,7 @@ def _run(area: str, fresh: bool) -> int:
         kept.unlink(missing_ok=True)
     prints = {str(path): hashlib.sha256(path.read_bytes()).hexdigest()[:12] for path in modules}
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
-    found = {row["key"]: row for row in rows if prints.get(row["module"]) == row["print"]}
+    found = {row["key"].strip(): row for row in rows if prints.get(row["module"]) == row["print"]}
     reasons = _reasons()
 
     def told(key: str, change: object, verdict: str) -> None:
@@ -79,7 +88,10 @@ def _run(area: str, fresh: bool) -> int:
         if verdict not in (NOTICED, NONE) and key not in reasons:
             print(f"{verdict:9}{change.line:5} {key}", flush=True)
 
-    engine = Engine(modules, {key: row["verdict"] for key, row in found.items()}, told)
+    again = (SURVIVED, UNSEEN) if "--survivors" in sys.argv else ()
+    known = {key: row["verdict"] for key, row in found.items() if row["verdict"] not in again}
+    known |= {key: SURVIVED for key, reason in reasons.items() if reason.startswith("=")}
+    engine = Engine(modules, known, told)
     quiet = ["-qq", "-p", "no:cacheprovider", "--capture=no", "--hypothesis-seed=0"]
     pytest.main([*quiet, *wanted], plugins=[engine])
     return _summed_up(area, list(found.values()), reasons, least)

@@ -1,25 +1,31 @@
-"""Tests run once without a change to learn which lines each looks at, then against every change in a fork.
+"""Tests run once without a change to learn which functions each enters, then against every change in a fork.
 
 Everything is imported and collected once. A child of the process swaps the code of the changed function in
-place, runs the tests that look at the changed line, quickest first, and says whether one of them failed.
+place, runs the tests that enter it, the likeliest and quickest first, and says whether one of them failed.
 """
 
 import ast
+import builtins
+import functools
 import gc
 import os
 import signal
 import sys
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import CodeType, FrameType, FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 import pytest
 from changes import Change, changes
 
-# Tests that take longer, traced, are left out: a change that only they notice counts as not noticed [s].
+# Tests that take longer [s] are left out: a change that only they notice counts as not noticed.
 SLOW = float(os.environ.get("SLOW", "1"))
+# A part of all changes, chosen by their names, gives an estimate.
+SHARE = float(os.environ.get("SHARE", "1"))
+_CACHED = type(functools.cache(lambda: None))
 NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
 
 
@@ -44,11 +50,14 @@ class Engine:
         running: dict[int, tuple[str, Change, int]] = {}
         for path in self.modules:
             name = str(path)
+            functions = {code.co_qualname.replace("<locals>.", "") for code in _all_codes(_compiled(path))}
             for change, key in _named(changes(path.read_text(encoding="utf-8")), name):
-                if key in self.known:
+                if key in self.known or zlib.crc32(key.encode()) % 1000 >= 1000 * SHARE:
                     continue
-                looks = [k for k, (_, lines, _) in enumerate(seen) if change.line in lines.get(name, ())]
-                if change.function == "":  # a constant of the module
+                looks = [
+                    k for k, (_, entered, _) in enumerate(seen) if f"{name} {change.function}" in entered
+                ]
+                if change.function not in functions:  # of the module or of a class
                     looks = list(range(len(seen)))
                 if not looks:
                     self.told(key, change, UNSEEN)
@@ -80,34 +89,45 @@ class Engine:
         os.close(read)
         self.told(key, change, {0: SURVIVED, 77: NONE}.get(os.waitstatus_to_exitcode(status), NOTICED))
 
-    def _baseline(self, items: list[pytest.Item]) -> list[tuple[pytest.Item, dict[str, set[int]], float]]:
-        """Each test with the lines of each module that it runs, and its time, quickest first."""
+    def _baseline(self, items: list[pytest.Item]) -> list[tuple[pytest.Item, set[str], float]]:
+        """Each test with the functions of the modules that it enters, and its time, quickest first."""
         found = []
-        names = {str(path) for path in self.modules}
+        for path in self.modules:
+            swap(path, _instrumented(path))
+        remembering = [function for path in self.modules for function in _caches(path)]
         for item in items:
-            lines: dict[str, set[int]] = {}
-
-            def local(frame: FrameType, event: str, arg: Any, lines: dict = lines) -> Any:
-                lines[frame.f_code.co_filename].add(frame.f_lineno)
-                return local
-
-            def entered(frame: FrameType, event: str, arg: Any, lines: dict = lines) -> Any:
-                name = frame.f_code.co_filename
-                if name not in names:
-                    return None
-                lines.setdefault(name, set()).update(_lines(frame.f_code))
-                return None
-
-            start = time.perf_counter()
-            sys.settrace(entered)
-            try:
-                good = _run(item)
-            finally:
-                sys.settrace(None)
-            if not good:
+            entered: set[str] = set()
+            for function in remembering:
+                function.cache_clear()
+            builtins.__entered__ = entered.add  # type: ignore[attr-defined]
+            start = time.process_time()
+            if not _run(item):
                 raise SystemExit(f"{item.nodeid} fails without a change")
-            found.append((item, lines, time.perf_counter() - start))
+            found.append((item, entered, time.process_time() - start))
+        for path in self.modules:
+            swap(path, ast.parse(path.read_text(encoding="utf-8")))
         return sorted(found, key=lambda entry: entry[2])
+
+
+def _instrumented(path: Path) -> ast.Module:
+    """The module, each of whose functions says that it was entered."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+
+    def walk(node: ast.AST, function: str) -> None:
+        for child in ast.iter_child_nodes(node):
+            named = isinstance(child, (ast.FunctionDef, ast.ClassDef))
+            inside = f"{function}.{child.name}".lstrip(".") if named else function
+            walk(child, inside)
+            if isinstance(child, ast.FunctionDef):
+                told = ast.parse(f"__entered__({f'{path} {inside}'!r})").body[0]
+                child.body.insert(0, ast.copy_location(told, child.body[0]))
+
+    walk(tree, "")
+    return ast.fix_missing_locations(tree)
+
+
+def _compiled(path: Path) -> CodeType:
+    return compile(path.read_text(encoding="utf-8"), str(path), "exec")
 
 
 def _named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]:
@@ -115,18 +135,9 @@ def _named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]
     count: dict[str, int] = {}
     short = module.split("/src/regrasp/")[-1]
     for change in found:
-        key = f"{short} {change.key}"
+        key = f"{short} {change.key}".strip()
         count[key] = count.get(key, 0) + 1
         yield change, key if count[key] == 1 else f"{key}  ({count[key]})"
-
-
-def _lines(code: CodeType) -> set[int]:
-    """Of a function and all inside it."""
-    lines = {line for *_, line in code.co_lines() if line is not None}
-    for inner in code.co_consts:
-        if isinstance(inner, CodeType):
-            lines |= _lines(inner)
-    return lines
 
 
 def _run(item: pytest.Item) -> bool:
@@ -181,9 +192,19 @@ def swap(path: Path, tree: ast.Module) -> bool:
         if code is not None and code != function.__code__:
             function.__code__ = code
             changed = True
-        if hasattr(function, "cache_clear"):
-            function.cache_clear()
+    for function in _caches(path):
+        function.cache_clear()
     return _swap_constants(module, new) or changed
+
+
+def _caches(path: Path) -> list[Any]:
+    """The functions of a module that remember what they returned."""
+    return [
+        function
+        for function in gc.get_objects()
+        if isinstance(function, _CACHED)
+        and getattr(getattr(function.__wrapped__, "__code__", None), "co_filename", "") == str(path)
+    ]
 
 
 def _swap_constants(module: ModuleType, new: CodeType) -> bool:

@@ -404,8 +404,11 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     ),
     "two fingers, one leaves": (
         edited((P2, ""), NO_FORCES[0], NO_FORCES[2]),
-        2,
-        ["a grasp needs two contacts or more to hold a load, got 1"],
+        3,
+        [
+            "no forces of P1 balance Wrench(force=(-1.5, -3.5), torque=0): none resists turning about P1, about "
+            "which the load has a torque; the object escapes by turning clockwise about (-4, -4)"
+        ],
     ),
 }
 
@@ -594,8 +597,8 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     ),
     "choose_state: one contact": (
         lambda: rg.choose_state(rg.Grasp([P1]), LOAD),
-        rg.InvalidInput,
-        "a grasp needs two contacts or more to hold a load, got 1",
+        rg.Infeasible,
+        re.compile(r"no forces of P1 balance .*: none resists turning about P1, about which the load has .*"),
     ),
     "choose_state: peak ratio below 1": (
         lambda: rg.choose_state(TWO, LOAD, peak_ratio=0.5),

@@ -146,6 +146,17 @@ def test_gaps_are_measured_between_all_instants() -> None:
             )
 
 
+def test_loads_are_compared_at_the_size_of_the_largest() -> None:
+    """Four fingers carry 1/4 of the load each, which grows from 1 to 4: that is more than any force."""
+    grasp = rg.Grasp(rg.Contact([x, -1.0], [0, 1], 0.5) for x in (-1.5, -0.5, 0.5, 1.5))
+    sizes = np.array([1.0, 2.5, 4.0])
+    states = [rg.GraspState(grasp, rg.Wrench([0, -k]), [[0, k / 4]] * 4) for k in sizes]
+    path = course([0, 0.5, 1], [s.forces for s in states], [s.load.vector for s in states])
+    plan = Plan("rotation", None, states[0], states[-1], course=path)
+    for off, good in (3.9 * 2.0**-40, True), (4.1 * 2.0**-40, False):
+        assert rg.verify(plan, lambda t, off=off: rg.Wrench([0, -1.0 - 3 * t + off * (t == 0)])).ok == good
+
+
 def test_a_curvature_counts_over_the_longest_stretch() -> None:
     plan = steady()
     path = course([0, 0.25, 1], [plan.start.forces] * 3, [[0, 0, 0]] * 3)

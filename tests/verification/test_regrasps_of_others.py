@@ -26,8 +26,8 @@ def contact(name, x, y, d, **more) -> rg.Contact:
 
 
 def seen(angle, d) -> np.ndarray:
-    """A weight along -y, from an object turned by ``angle``."""
-    return np.array([-sin(angle), -cos(angle), 0.0][:d])
+    """A weight, 0.3 rad from -y, as seen from an object turned by ``angle``."""
+    return np.array([-sin(angle + 0.3), -cos(angle + 0.3), 0.0][:d])
 
 
 def held(grasp, angle, d, third=0.0) -> rg.GraspState:
@@ -305,7 +305,7 @@ def test_margins_of_whole_grasps_between_steps_do_not_count(d) -> None:
     grasp = rg.Grasp(fingers[: d + 1])
     carried = 0.125 if d == 2 else 0.375
     rows = [[2.0, carried + 0.25], [-2.25, carried], [0.25, 0.5], [0.0, -0.5]][: d + 1]
-    state = rg.GraspState(grasp, rg.Wrench(seen(0, d)), [[*row, 0.0][:d] for row in rows])
+    state = rg.GraspState(grasp, rg.Wrench([0, -1.0, 0][:d]), [[*row, 0.0][:d] for row in rows])
     assert state.margins.least_angle < 0.2
     plan = whole([Plan("rotation", None, state, state)] * 2, d, [0.0] * 3)
     plan.margin = atan(FRICTION)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
-from foreign import Plan, Record, course, cross, soft_pair, solid_cross, turn
+from foreign import Plan, Record, Scaling, course, cross, soft_pair, solid_cross, turn
 from regrasp.verification import verify_setpoints
 
 pytestmark = pytest.mark.contract
@@ -207,6 +207,24 @@ def test_any_time_function_is_retraced(scaling) -> None:
         assert told(plan, t, plan.forces(t)) == ()
 
 
+CONTROLS = [(1, 0), (1, 0.5, 0), (1, 0.7, 0.1, 0), (1, 1, 0.5, 0, 0), (1, 1, 1, 0.5, 0.2, 0, 0)]
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_time_function_without_a_degree_is_cubic(control) -> None:
+    """Or of one less than it has control values."""
+    spline = rg.TimeScaling.spline(2.0, control)
+    plan = PLANS["removal"].retimed(spline)
+
+    class Foreign(Plan):
+        def forces(self, t):
+            return plan.forces(t)
+
+    bare = Foreign("removal", "P3", plan.start, plan.end, scaling=Scaling(2.0, spline.control))
+    t = np.linspace(0, 2, 33)
+    assert told(bare, t, plan.forces(t)) == ()
+
+
 @pytest.mark.filterwarnings("ignore:angle is in radians")  # whole turns are meant here
 def test_turns_in_many_steps_are_retraced() -> None:
     two = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.8, name="A"), rg.Contact([1, 0.1], [-1, 0], 0.8, name="B")])
@@ -365,3 +383,75 @@ def test_a_load_in_time_is_taken_at_the_time_of_each_row() -> None:
     moved = t.copy()
     moved[20] += 1e-9
     assert told(plan, moved, rows)[0].startswith("set-point 20: not in equilibrium")
+
+
+@pytest.mark.parametrize("bad", [3, 8192, 9998])
+def test_rows_are_named_by_their_number(bad) -> None:
+    """In the first block of rows and in the next: what is not the plan's, pushes little, moves fast."""
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    t = np.linspace(0, 1, 9999)
+    rows = np.broadcast_to(forces, (t.size, 4, 2)).copy()
+    rows[bad] *= 1 - 1e-9
+
+    class As(Plan):
+        """A plan that answers as the rows are, so that nothing but its record is broken."""
+
+        def forces(self, t):
+            return np.interp(t, times, 1 - 1e-9 * (np.arange(times.size) == bad))[:, None, None] * forces
+
+    times = t
+    plain = Plan("rotation", None, state, state)
+    (found,) = told(plain, t, rows)
+    assert found.startswith(f"set-point {bad}: force of A is not the plan's")
+    path = course(t, rows, [[0, 0, 0]] * t.size)
+    end = rg.GraspState(grasp, state.load, rows[-1])
+    least = As(
+        "rotation", None, state, end, course=path, record=Record(least_normals=(0.0, 1 - 1e-10, 0.0, 0.0))
+    )
+    (found,) = told(least, t, rows)
+    assert found.startswith(f"set-point {bad}: B pushes along its normal")
+    fast = As("rotation", None, state, end, course=path, record=Record(rate_limits=(inf, inf, 1e-6, inf)))
+    numbers = [bad, bad + 1] if bad + 1 < t.size else [bad]
+    assert [v.split(":")[0] for v in told(fast, t, rows)] == [f"set-point {k}" for k in numbers]
+    assert all("C changes faster than 1e-06" in v for v in told(fast, t, rows))
+
+
+def test_torques_of_soft_fingers_are_no_size_of_forces() -> None:
+    """Torques of 2^30 beside pushes of 1: least normal forces and rates are judged by the pushes."""
+    grasp = rg.Grasp(
+        rg.Contact([x, 0, 0], [-x, 0, 0], 0.5, torsion=2.0**32, name=name)
+        for x, name in ((-1, "A"), (1, "B"))
+    )
+    first, last = (
+        np.array([[1, 0, 0, 0.0], [-1, 0, 0, 0.0]]),
+        np.array([[1.5, 0, 0, 2.0**30], [-1.5, 0, 0, 2.0**30]]),
+    )
+    start, end = (rg.GraspState(grasp, rg.Wrench([0, 0, 0]), f) for f in (first, last))
+    path, t = course([0, 1], [first, last], [[0.0] * 6] * 2), np.linspace(0, 1, 5)
+    for record, good in (
+        (Record(), True),
+        (Record(least_normals=(1.0, 1.0)), True),
+        (Record(least_normals=(1.001, 1.0)), False),
+        (Record(rate_limits=(0.5, 0.5)), True),
+        (Record(rate_limits=(0.5, 0.499)), False),
+    ):
+        plan = Plan("rotation", None, start, end, record=record, course=path)
+        assert (told(plan, t, plan.forces(t)) == ()) == good
+        assert rg.verify(plan).ok == good
+
+
+def test_growth_of_rounding_over_many_turns() -> None:
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    angles = np.linspace(0, 100.0, 101)
+
+    class Still(Plan):
+        def forces(self, t):
+            return np.broadcast_to(forces, (*np.shape(t), 4, 2))
+
+    plan = Still("rotation", None, state, state, turn=turn(angles, [forces] * 101))
+    t = np.linspace(0, 1, 101)
+    rows = np.broadcast_to(forces, (101, 4, 2))
+    for off, good in (50.0, True), (150.0, False):
+        assert (told(plan, t, rows * (1 + off * EPS), 100 * t) == ()) == good

@@ -178,7 +178,7 @@ def test_the_least_slack_and_the_worst_residual_are_reported() -> None:
     for where, plan in places(grasp, forces):
         at = "end" if where == "ends" else where
         worst = rg.verify(spoilt(plan, at, bent)).worst_residual
-        assert worst == pytest.approx(EPS / 2 / np.hypot(1, 0.5), rel=1e-6), where
+        assert worst == pytest.approx(EPS / 2 / np.hypot(1, 0.5), rel=1e-6, abs=0), where
     rest = rg.verify(Plan("rotation", None, *[rg.GraspState(grasp, rg.Wrench([0, 0]), 0 * forces)] * 2))
     assert rest.ok
     assert rest.least_angle == inf

@@ -95,6 +95,8 @@ def test_the_least_force_of_an_idle_finger_counts() -> None:
         (2.3e-308, (1.0, 0.0), ""),
         (2.2e-308, (1.0, 0.0), "in which no force changes at a finite rate"),
         (1e308, (1.0, 0.0), ""),
+        (1.4e-307, (1.0, 1.0, 0.5, 0.0, 0.0), ""),
+        (1.38e-307, (1.0, 1.0, 0.5, 0.0, 0.0), "in which no force changes at a finite rate"),
     ],
 )
 def test_time_functions(duration, control, words) -> None:
@@ -286,6 +288,17 @@ def test_rates_across_the_normals(make) -> None:
     for limit, good in (size, True), (size * (1 - 1e-9), False):
         record, path = Record(rate_limits=(limit,) * 4), course([0, 1], [forces, bent], [load.vector] * 2)
         assert (said(Plan("rotation", None, start, end, record=record, course=path)) == "") == good
+
+
+def test_rates_are_those_of_forces_without_torques() -> None:
+    """A soft pair whose torques change by 1 and whose pushes by 1/2 in a second."""
+    grasp = rg.Grasp(rg.Contact([x, 0, 0], [-x, 0, 0], 0.5, torsion=1.0) for x in (-1, 1))
+    first, last = np.array([[4, 0, 0, 0.0], [-4, 0, 0, 0.0]]), np.array([[4.5, 0, 0, 1.0], [-4.5, 0, 0, 1.0]])
+    start, end = (rg.GraspState(grasp, rg.Wrench([0, 0, 0]), f) for f in (first, last))
+    path = course([0, 1], [first, last], [[0.0] * 6] * 2)
+    for limit, good in (0.5, True), (0.499, False):
+        plan = Plan("rotation", None, start, end, record=Record(rate_limits=(limit,) * 2), course=path)
+        assert (said(plan) == "") == good
 
 
 def test_a_straight_path_promises_no_rates() -> None:

@@ -204,3 +204,44 @@ def test_instants_of_any_number_are_looked_at() -> None:
         long = Plan("rotation", None, state, state, course=course(times, rows, [[0, 0, 0]] * 20001))
         found = rg.verify(long).violations
         assert any(v.startswith(f"instant {bad}: ") for v in found)
+
+
+@pytest.mark.parametrize("length", [2.0**-20, 1.0, 2.0**20])
+def test_forces_and_torques_of_a_load_are_sizes_of_their_own(length) -> None:
+    """A load whose torque, or whose force, is a large number in these units hides nothing."""
+    grasp, squeeze = cross((1e3,) * 4, length=length)
+    squeeze[:, 1] = 0
+    for force, torque in ((0.5, 0.0), (0.0, 0.5 * length), (0.5, 0.5 * length)):
+        load = rg.Wrench([0, force], torque)
+        forces = squeeze - [0, force / 4]
+        couple = np.array([[c.position[1], -c.position[0]] for c in grasp]) / length
+        forces = forces + torque / length / 8 * couple
+        for off, good in (0.5 * 2.0**-40, True), (4 * 2.0**-40, False):
+            assert set(all_verdicts(grasp, forces, rg.Wrench([off, force], torque))) == {good}
+            assert set(all_verdicts(grasp, forces, rg.Wrench([0, force], torque + off * length))) == {good}
+        assert load.dimension == 2
+
+
+@pytest.mark.parametrize(("torque", "length"), [(2.0**60, 1.0), (2.0**20, 2.0**-30), (2.0**90, 2.0**30)])
+def test_a_torque_that_rounding_loses(torque, length) -> None:
+    """A and B twist against one another, so hard that what C adds is lost between them."""
+    grasp = rg.Grasp(
+        rg.Contact(np.array(place) * length, normal, 0.5, torsion=2 * torque, name=name)
+        for name, place, normal in (
+            ("A", (-1, -0.5, 0), (1, 0, 0)),
+            ("C", (-1, 0.5, 0), (1, 0, 0)),
+            ("B", (1, 0, 0), (-1, 0, 0)),
+        )
+    )
+    for twist, good in (2.0**-42, True), (2.0**-36, False):
+        forces = [[1, 0, 0, torque], [1, 0, 0, twist * length], [-2, 0, 0, torque]]
+        assert set(all_verdicts(grasp, forces)) == {good}
+
+
+def test_a_torque_whose_product_is_hardly_a_number() -> None:
+    """mu m is 5/2 of the least double, and rounds to 2: of the friction 0.55 it uses 0.625, not 0.5."""
+    least = 5e-324
+    grasp = rg.Grasp(rg.Contact([x, 0, 0], [-x, 0, 0], 0.5, torsion=4 * least) for x in (-1, 1))
+    for push, good in (1.1, False), (1.3, True):
+        forces = [[push, 0, 0, 5 * least], [-push, 0, 0, 5 * least]]
+        assert {rg.verify(plan).ok for _, plan in places(grasp, forces)} == {good}

@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from io import TextIOWrapper
 from types import FrameType
 
@@ -54,10 +54,16 @@ class _Ended(KeyboardInterrupt):
 
 def main() -> None:
     """Run the command line and exit with its status; an error is one message on stderr."""
-    _hear_signals()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal need not know every letter
+    with ExitStack() as heard:
+        _hear_signals(heard)
+        sys.exit(_ended())
+
+
+def _ended() -> int:
+    """The status of a run whose output is out, or dropped."""
     try:
         status = _run()
         sys.stdout.flush()
@@ -68,7 +74,7 @@ def main() -> None:
         status = BAD_INPUT
     if status in (PIPE_CLOSED, BAD_INPUT):
         _drop_output()
-    sys.exit(status)
+    return status
 
 
 def _run() -> int:
@@ -113,13 +119,13 @@ def _complain(text: str) -> None:
         click.echo(text, err=True)
 
 
-def _hear_signals() -> None:
-    """Let requests to end the program be errors, so that temporary files are cleared."""
+def _hear_signals(heard: ExitStack) -> None:
+    """Let requests to end the program be errors while it runs, so that temporary files are cleared."""
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
             with suppress(ValueError):  # not in the main thread
-                signal.signal(number, _end)
+                heard.callback(signal.signal, number, signal.signal(number, _end))
 
 
 def _end(number: int, frame: FrameType | None) -> None:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
 
-from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
 from regrasp.mechanics.value import one_line
 
 MOST_BYTES = 64 * 2**20
@@ -16,20 +16,6 @@ MOST_BYTES = 64 * 2**20
 _PATIENCE = 8.0
 """Seconds that a pipe or a terminal may say nothing, and that it may take in all."""
 _BLOCK = 2**20
-
-
-def path_of(path: object) -> Path:
-    """A path as text or ``os.PathLike``. Raises ``InvalidInput`` for anything else."""
-    if not isinstance(path, (str, os.PathLike)):
-        raise InvalidInput(f"a path must be text or a Path, got {shown(path)}")
-    found = os.fspath(path)
-    try:
-        named = isinstance(found, str) and found != "" and b"\0" not in os.fsencode(found)
-    except UnicodeEncodeError:  # half of a character
-        named = False
-    if not named:
-        raise InvalidInput(f"a path must be text that names a file, got {shown(path)}")
-    return Path(found)
 
 
 def text_of(path: Path, expected: str, *, most: int = MOST_BYTES) -> str:

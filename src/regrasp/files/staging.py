@@ -15,7 +15,7 @@ from typing import TextIO
 
 from regrasp.errors import InvalidInput
 from regrasp.files.locks import HAS_LOCKS, lock
-from regrasp.files.source import path_of
+from regrasp.mechanics.checks import file_path
 
 _PREFIX = ".regrasp-"
 # Where there are no locks, a temporary folder this old is nobody's [s].
@@ -29,7 +29,7 @@ def whole_file(path: str | Path) -> Iterator[TextIO]:
     What is there and is no file, a pipe or a device, is written to directly.
     Raises ``InvalidInput`` where it cannot be written.
     """
-    path = path_of(path)
+    path = file_path(path)
     with _writing(path):
         path = Path(os.path.realpath(path))  # a link stays a link
         if path.is_dir():
@@ -54,7 +54,7 @@ def whole_folder(path: str | Path) -> Iterator[Path]:
     one folder, one comes after the other.
     Raises ``InvalidInput`` where it cannot be written.
     """
-    with _writing(path_of(path)):
+    with _writing(file_path(path)):
         path = Path(path).resolve()
         if path.exists() and not path.is_dir():
             raise InvalidInput(f"{path}: expected a folder to write into, found a file")

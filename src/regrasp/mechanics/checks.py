@@ -1,7 +1,9 @@
 """Validators: each converts, checks and returns the value, or raises ``InvalidInput``."""
 
+import os
 from collections.abc import Sequence
 from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -91,6 +93,44 @@ def number(value: Any, what: str, *, least: float | None = None, above: float | 
     return result
 
 
+def finite(value: ArrayLike, what: str, tail: tuple[int, ...] = ()) -> Array:
+    """A new array (..., *tail) of finite floats."""
+    result = numbers_in(value, f"{what} must be numbers")
+    if result.shape[result.ndim - len(tail) :] != tail or result.ndim < len(tail):
+        expected = ", ".join(["...", *map(str, tail)])
+        raise InvalidInput(f"{what} must have shape ({expected}), got {_shape(result.shape)}: {shown(value)}")
+    if np.count_nonzero(np.isfinite(result)) < result.size:
+        raise InvalidInput(f"{what} must be finite, got {shown(value)}")
+    return result
+
+
+def limits(value: ArrayLike, what: str, count: int) -> Array:
+    """(count,) limits greater than 0, infinite for none, from one number for all or one for each."""
+    given = numbers_in(value, f"{what} must be a number or have shape ({count},)")
+    if given.shape not in ((), (1,), (count,)):
+        raise InvalidInput(f"{what} must be a number or have shape ({count},), got {shown(value)}")
+    if not (given > 0).all():
+        raise InvalidInput(f"{what} must be greater than 0, got {shown(value)}")
+    return np.broadcast_to(given, (count,))
+
+
+def instance(value: Any, what: str, kind: type, hint: str = "") -> None:
+    """Raise ``InvalidInput`` unless a value is of a kind."""
+    if not isinstance(value, kind):
+        article = "an" if kind.__name__[0] in "AEIO" else "a"
+        raise InvalidInput(f"{what} must be {article} {kind.__name__}, got {shown(value)}{hint}")
+
+
+def items(value: Any, what: str) -> tuple[Any, ...]:
+    """The entries of a list or of anything else that has some; text is one thing."""
+    try:
+        if isinstance(value, (str, bytes, type)):
+            raise TypeError
+        return tuple(value)
+    except TypeError:
+        raise InvalidInput(f"{what} must be a list, got {shown(value)}") from None
+
+
 def whole(value: Any, what: str, *, least: int, most: int | None = None) -> int:
     """A whole number, at least ``least`` and at most ``most`` where that is given; True and 2.0 are none."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < least:
@@ -98,6 +138,18 @@ def whole(value: Any, what: str, *, least: int, most: int | None = None) -> int:
     if most is not None and value > most:
         raise InvalidInput(f"{what} must be a whole number of at most {most}, got {shown(value)}")
     return int(value)
+
+
+def file_path(path: Any) -> Path:
+    """A path as text or ``os.PathLike`` that can name a file."""
+    found = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
+    try:
+        named = isinstance(found, str) and found != "" and b"\0" not in os.fsencode(found)
+    except UnicodeEncodeError:  # half of a character
+        named = False
+    if not named:
+        raise InvalidInput(f"a path must be text or a Path that names a file, got {shown(path)}")
+    return Path(str(found))
 
 
 def rotation(value: ArrayLike, what: str) -> Array:

@@ -8,8 +8,8 @@ from math import hypot, inf
 import numpy as np
 
 from regrasp.display import Pictured
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, read_only
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, array, instance, limits, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.opposition import dot, exact, oppositions
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -45,6 +45,16 @@ class EscapeTwist(ArrayValue, Pictured):
     _drawn_by = "regrasp.plots.escapes.escape:escape_png"
 
     def __post_init__(self) -> None:
+        instance(self.grasp, "grasp", Grasp)
+        instance(self.load, "load", Wrench)
+        if self.load.dimension != self.grasp.dimension:
+            raise InvalidInput(f"load must have the grasp's dimension {self.grasp.dimension}")
+        count = len(self.grasp)
+        frictions = array(self.frictions, "frictions", (count,))
+        if (frictions < 0).any():
+            raise InvalidInput(f"frictions must be at least 0, got {shown(self.frictions)}")
+        object.__setattr__(self, "frictions", tuple(frictions.tolist()))
+        object.__setattr__(self, "limits", tuple(limits(self.limits, "limits", count).tolist()))
         object.__setattr__(self, "twist", array(self.twist, "twist", self.load.vector.shape))
         if not self.twist.any():
             raise InvalidInput("an escape twist must not be zero: the object does not move")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array, finite, items, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.tangents import tangents_of
@@ -31,14 +31,14 @@ class Grasp(ArrayValue):
         contacts: one or more, of one dimension.
 
     Raises:
-        InvalidInput: For an empty grasp, contacts of different dimension, equal names and contacts at
-            one point with one normal.
+        InvalidInput: For an empty grasp, contacts of different dimension, equal names and contacts at one
+            point with one normal.
     """
 
     contacts: tuple[Contact, ...]
 
     def __init__(self, contacts: Iterable[Contact]) -> None:
-        given = tuple(contacts)
+        given = items(contacts, "contacts of a grasp")
         if not given:
             raise InvalidInput("a grasp needs at least one contact, got none")
         for contact in given:
@@ -123,7 +123,7 @@ class Grasp(ArrayValue):
         Args:
             contacts: names or indices.
         """
-        return Grasp(self[contact] for contact in contacts)
+        return Grasp(self[contact] for contact in items(contacts, "contacts"))
 
     def without(self, contact: str | int) -> "Grasp":
         """The grasp after one finger left.
@@ -254,6 +254,8 @@ class Grasp(ArrayValue):
         Args:
             forces: (..., n, d) of the fingers on the object, object frame [N]; (..., n, 4) with soft fingers.
         """
+        if not isinstance(forces, np.ndarray) or forces.shape[-2:] != (len(self), self.width):
+            forces = finite(forces, "forces", (len(self), self.width))
         pushed = forces[..., : self.dimension]
         torques = torque(self.positions, pushed)
         if self.is_soft:

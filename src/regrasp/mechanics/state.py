@@ -138,6 +138,7 @@ class GraspState(ArrayValue):
         Args:
             reserve: fraction of every friction coefficient that is kept back [-].
         """
+        reserve = reserve_fraction(reserve)
         if reserve not in self._verdicts:
             self._verdicts[reserve] = self._judged(reserve)
         return self._verdicts[reserve]

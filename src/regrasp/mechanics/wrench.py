@@ -122,7 +122,10 @@ class Wrench(ArrayValue):
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: float) -> "Wrench":
-        return Wrench.from_vector(self.vector / number(divisor, "divisor"))
+        by = number(divisor, "divisor")
+        if by == 0:
+            raise InvalidInput("a wrench cannot be divided by 0")
+        return Wrench.from_vector(self.vector / by)
 
     def to_dict(self) -> dict[str, Any]:
         """The wrench as plain data, which JSON can hold; ``from_dict`` gives back the equal wrench."""

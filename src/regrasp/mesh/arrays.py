@@ -108,10 +108,3 @@ def checked_points(points: ArrayLike) -> Array:
     if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
         raise InvalidInput(f"points must be finite, of shape (..., 3); got shape {result.shape}: {points!r}")
     return result
-
-
-def whole(value: int, what: str, least: int) -> int:
-    """A whole number of at least ``least``."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidInput(f"{what} must be a whole number of at least {least}, got {value!r}")
-    return int(value)

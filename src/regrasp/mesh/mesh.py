@@ -3,15 +3,24 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, choice, number, read_only
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import (
+    Array,
+    ArrayLike,
+    array,
+    choice,
+    file_path,
+    number,
+    numbers_in,
+    read_only,
+    whole,
+)
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged, whole
+from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
 from regrasp.mesh.closest import at, touching
 from regrasp.mesh.doubts import warn_of_distance, warn_of_unit, warn_of_walls
 from regrasp.mesh.rays import entry, outermost
@@ -26,6 +35,7 @@ CREASE = float(np.radians(35.0))
 
 _AMBIGUOUS = np.radians(5.0)  # normals of faces that meet may differ by this where a finger touches
 _AT_EDGE = 1e-9  # of the largest side
+_FARTHEST = 1e150  # whose square is a number
 _FAR = 0.1  # of the largest side
 _OPPOSED = -0.5  # the cosine between walls that face apart
 
@@ -115,6 +125,8 @@ class Mesh(ArrayValue):
         from regrasp.mesh.mending import BODIES
         from regrasp.outline.opening import checked_path, naming
 
+        if not isinstance(smooth, bool):
+            raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
         factor = 1.0 if scale is None else number(scale, "scale", above=0)
         how, widest = choice(bodies, "bodies", BODIES), number(close_holes, "close_holes", least=0)
         file = checked_path(path)
@@ -170,7 +182,10 @@ class Mesh(ArrayValue):
         """
         from regrasp.mesh.build import ball
 
-        return cls(*ball(number(radius, "radius", above=0), whole(divisions, "divisions", 2)), smooth=True)
+        return cls(
+            *ball(number(radius, "radius", above=0), whole(divisions, "divisions", least=2, most=500)),
+            smooth=True,
+        )
 
     @classmethod
     def extruded(cls, outline: Outline, height: float) -> "Mesh":
@@ -201,7 +216,7 @@ class Mesh(ArrayValue):
         """
         from regrasp.mesh.build import revolution
 
-        return cls(*revolution(profile, whole(segments, "segments", 3)), smooth=True)
+        return cls(*revolution(profile, whole(segments, "segments", least=3, most=100_000)), smooth=True)
 
     # -- the object -------------------------------------------------------------------------------------
 
@@ -242,7 +257,11 @@ class Mesh(ArrayValue):
         """
         from regrasp.mesh.files import stl
 
-        Path(path).write_bytes(stl(self.vertices, self.faces))
+        path = file_path(path)
+        try:
+            path.write_bytes(stl(self.vertices, self.faces))
+        except OSError as error:
+            raise InvalidInput(f"{path}: cannot be written: {error.strerror or error}") from None
 
     # -- contacts ---------------------------------------------------------------------------------------
 
@@ -368,14 +387,14 @@ class Mesh(ArrayValue):
         return tuple(Contact(r, n, friction, max_force=max_force) for r, n in places)
 
     def _sample(self, count: int, seed: int, clearance: float | None) -> tuple[Array, Array]:
-        n = whole(count, "count", 1)
+        n = whole(count, "count", least=1, most=1_000_000)
         keep = None if clearance is None else number(clearance, "clearance", least=0)
         shading = self._shading
         starts, ends = (np.concatenate([shading.edges[:, k], shading.points]) for k in (0, 1))
         sharp = self.vertices[starts], self.vertices[ends]
         surface = Surface(self._corners, doubled_areas(self._corners) / 2, self._flat, sharp)
         least = 2 * _AT_EDGE * float(self.size.max())
-        faces, weights = spread(surface, n, whole(seed, "seed", 0), keep, least)
+        faces, weights = spread(surface, n, whole(seed, "seed", least=0), keep, least)
         return at(self._corners[faces], weights), self._normals_at(faces, weights)
 
     # -- what they stand on -----------------------------------------------------------------------------
@@ -412,3 +431,14 @@ class Mesh(ArrayValue):
         kind = ", smooth" if self.smooth else ""
         size = numbers(self.size)
         return f"Mesh({len(self.faces)} faces{kind}, size {size}, volume {self.volume:.6g})"
+
+
+def _points(points: ArrayLike) -> Array:
+    result = numbers_in(points, "points must be numbers of shape (..., 3)")
+    if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
+        raise InvalidInput(
+            f"points must be finite, of shape (..., 3); got shape {result.shape}: {shown(points)}"
+        )
+    if result.size and abs(result).max() > _FARTHEST:
+        raise InvalidInput(f"points must be nearer than {_FARTHEST:g}, got {shown(points)}")
+    return result

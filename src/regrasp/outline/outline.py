@@ -9,18 +9,20 @@ from typing import Any, Union
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, choice, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, choice, finite, items, number, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary
 from regrasp.outline.curves import EllipseBoundary, SplineBoundary
 from regrasp.outline.plain import holes_of, outline_data, shape_of
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.outline.region import check_holes, checked_ring, checked_size
+from regrasp.outline.region import check_holes, check_spread, checked_ring, checked_size
 
 # Chords of a smooth outline stay this near to it, as a fraction of its length, where a polygon stands for it.
 _FLATNESS = 1e-4
 _AT_CORNER = 1e-9
+MOST_SAMPLED = 10_000_000
+"""Points of a boundary."""
 
 Hole = Union[ArrayLike, "Outline"]
 
@@ -60,6 +62,7 @@ class Outline(ArrayValue):
             holes: vertices (k, 2) of each hole, or outlines without holes, as of ``Outline`` [m].
         """
         through = checked_ring(points, "outline")
+        check_spread(through, "outline")
         boundary = SplineBoundary(through)
         if boundary.moments[0] < 0:  # few points can turn against the curve through them
             boundary = SplineBoundary(read_only(np.roll(through[::-1], 1, axis=0)))
@@ -75,7 +78,7 @@ class Outline(ArrayValue):
             a: half axis along x [m].
             b: half axis along y [m].
             centre: (2,) [m].
-            holes: vertices (k, 2) of each hole, or outlines without holes, as of ``Outline`` [m].
+            holes: points (k, 2) of each hole, as of ``smooth`` [m].
         """
         axes = np.array([number(a, "a", above=0), number(b, "b", above=0)])
         checked_size(np.array([-axes, axes]), "outline")
@@ -136,7 +139,7 @@ class Outline(ArrayValue):
         return outline
 
     def _set(self, boundary: Boundary, holes: Iterable[Hole]) -> None:
-        inner = tuple(_hole(hole, f"hole {i}") for i, hole in enumerate(holes))
+        inner = tuple(_hole(hole, f"hole {i}") for i, hole in enumerate(items(holes, "holes")))
         check_holes(_chords(boundary), [_chords(hole) for hole in inner])
         object.__setattr__(self, "boundary", boundary)
         object.__setattr__(self, "holes", inner)
@@ -275,8 +278,7 @@ class Outline(ArrayValue):
             clearance: least distance to a corner along the boundary [m]; a quarter of the spacing if not
                 given.
         """
-        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
-            raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
+        whole(count, "count", least=1, most=MOST_SAMPLED)
         spacing = self.length / count
         keep = spacing / 4 if clearance is None else number(clearance, "clearance", least=0)
         s: Array = (np.arange(count, dtype=np.float64) + 0.5) * spacing
@@ -312,10 +314,4 @@ def _chords(boundary: Boundary, tolerance: float | None = None) -> Array:
 
 
 def _finite(s: ArrayLike) -> Array:
-    try:
-        values = np.asarray(s, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"arc lengths must be numbers, got {s!r}") from None
-    if not np.isfinite(values).all():
-        raise InvalidInput(f"arc lengths must be finite, got {s!r}")
-    return values
+    return finite(s, "arc lengths")

@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, number
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, numbers_in, whole
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
+
+MOST_INSTANTS = 100_000
+"""Of a load or a path."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,7 +36,7 @@ class LoadSeries(ArrayValue):
     def __init__(self, times: ArrayLike, vectors: ArrayLike) -> None:
         t = array(times, "times of a load", (None,))
         if t.size < 2 or t[0] != 0 or not (np.diff(t) > 0).all():
-            raise InvalidInput(f"times of a load must rise from 0, two or more; got {times!r}")
+            raise InvalidInput(f"times of a load must rise from 0, two or more; got {shown(times)}")
         w = array(vectors, "vectors of a load", (t.size, None))
         if w.shape[1] not in (3, 6):
             raise InvalidInput(f"a load has 3 (plane) or 6 (space) numbers at each time, got {w.shape[1]}")
@@ -57,11 +60,12 @@ class LoadSeries(ArrayValue):
             also: more times [s].
         """
         if not callable(load):
-            raise InvalidInput(f"load must be a function of time that returns a Wrench, got {load!r}")
-        times = np.linspace(0, number(duration, "duration", above=0), instants)
-        inside = [t for t in also if 0 < t < duration]
+            raise InvalidInput(f"load must be a function of time that returns a Wrench, got {shown(load)}")
+        count = whole(instants, "instants", least=2, most=MOST_INSTANTS)
+        times = np.linspace(0, number(duration, "duration", above=0), count)
+        inside = [t for t in finite(also, "times").ravel().tolist() if 0 < t < duration]
         if inside:
-            times = _merged(np.unique(inside), times, 1e-9 * duration / instants)
+            times = _merged(np.unique(inside), times, 1e-9 * duration / count)
         return cls(times, [_wrench_at(load, t).vector for t in times.tolist()])
 
     def to_dict(self) -> dict[str, Any]:
@@ -95,9 +99,9 @@ class LoadSeries(ArrayValue):
         Args:
             t: (...) times [s].
         """
-        times = np.asarray(t, dtype=float)
+        times = numbers_in(t, "t must be numbers")
         if not ((times >= 0) & (times <= self.duration)).all():
-            raise InvalidInput(f"the load is known from 0 to {self.duration:g} s, asked for t = {t!r}")
+            raise InvalidInput(f"the load is known from 0 to {self.duration:g} s, asked for t = {shown(t)}")
         result: Array = np.stack([np.interp(times, self.times, c) for c in self.vectors.T], axis=-1)
         return result
 
@@ -108,7 +112,8 @@ class LoadSeries(ArrayValue):
             instants: equal steps, both ends included.
             *also: more times [s].
         """
-        times: Array = np.unique(np.array(also, dtype=float))
+        whole(instants, "instants", least=2, most=MOST_INSTANTS)
+        times: Array = np.unique(finite(also, "times"))
         for more in (self.times, np.linspace(0, self.duration, instants)):
             times = _merged(times, more, 1e-9 * self.duration / instants)
         return LoadSeries(times, self.at(times))

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.display import Pictured
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
 from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.document import Documented
 from regrasp.plans.transition import Transition
@@ -72,9 +72,9 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
 
     def _place(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
         """The step of each time and the time from its start [s]."""
-        times = np.asarray(t, dtype=float)
+        times = numbers_in(t, "t must be numbers")
         if not ((times >= 0) & (times <= self.duration * (1 + 1e-12))).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {shown(t)}")
         lengths = np.array([step.duration for step in self.steps])
         ends = np.cumsum(lengths)
         k = np.minimum(np.searchsorted(ends, times, side="right"), len(self.steps) - 1)

@@ -9,8 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from regrasp.closed_form.straight_path import fastest_duration
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, number, whole
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import (
+    Array,
+    ArrayLike,
+    array,
+    instance,
+    items,
+    limits,
+    number,
+    numbers_in,
+    whole,
+)
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -46,7 +56,7 @@ class TimeScaling(ArrayValue):
 
     def __post_init__(self) -> None:
         duration = number(self.duration, "duration", above=0)
-        values = tuple(array(self.control, "control values", (None,)).tolist())
+        values = tuple(number(c, "control value") for c in items(self.control, "control"))
         falls = all(a >= b for a, b in pairwise(values))
         if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
@@ -64,7 +74,7 @@ class TimeScaling(ArrayValue):
             duration: [s], greater than 0.
             control: values of T, falling from 1 to 0 [-].
         """
-        values = tuple(array(control, "control values", (None,)).tolist())
+        values = items(control, "control")
         return cls(duration, values, min(3, len(values) - 1))
 
     @classmethod
@@ -100,15 +110,9 @@ class TimeScaling(ArrayValue):
             InvalidInput: Where nothing changes or nothing is limited: no duration follows.
         """
         shape = cls.spline(1.0) if shape is None else shape
+        instance(shape, "shape", TimeScaling)
         moved = np.linalg.norm(array(change, "change", (None, None)), axis=1)
-        try:
-            rates = np.broadcast_to(np.asarray(rate_limit, dtype=float), moved.shape)
-        except (TypeError, ValueError):
-            raise InvalidInput(
-                f"rate_limit must be a number or have shape {moved.shape}, got {rate_limit!r}"
-            ) from None
-        if not (rates > 0).all():
-            raise InvalidInput(f"rate_limit must be greater than 0, got {rate_limit!r}")
+        rates = limits(rate_limit, "rate_limit", moved.size)
         duration = fastest_duration(moved.tolist(), rates.tolist(), shape.steepest * shape.duration)
         if duration == 0:
             raise InvalidInput("no force that changes has a rate limit, so no shortest duration follows")
@@ -201,12 +205,9 @@ class TimeScaling(ArrayValue):
         return spline, first, second
 
     def _evaluate(self, derivative: int, t: ArrayLike) -> Array:
-        try:
-            times = np.asarray(t, dtype=float)
-        except (TypeError, ValueError):
-            raise InvalidInput(f"t must be numbers, got {t!r}") from None
+        times = numbers_in(t, "t must be numbers")
         if not ((times >= 0) & (times <= self.duration * (1 + _ROUNDING))).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {shown(t)}")
         times = np.minimum(times, self.duration)
         values: Array = self._splines[derivative](times / self.duration)
         return values / self.duration**derivative if derivative else values

@@ -9,7 +9,7 @@ import numpy as np
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, number
+from regrasp.mechanics.checks import Array, ArrayLike, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
@@ -250,6 +250,7 @@ class Transition(ArrayValue, Documented, Pictured):
         Args:
             scaling: the new clock, of any duration.
         """
+        instance(scaling, "scaling", TimeScaling)
         if self.path.timed:
             raise InvalidInput(
                 "a path planned through instants keeps its times; plan it with another duration"

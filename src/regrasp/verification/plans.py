@@ -19,12 +19,12 @@ from regrasp.mechanics.checks import number
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import check_state, exact, least_angle, rounded
+from regrasp.verification.float_filter import Checked, check_rows
 from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
 from regrasp.verification.regrasps import Regrasp, check_joints
-from regrasp.verification.setpoints import Checked, check_rows
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
 

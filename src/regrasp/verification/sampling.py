@@ -15,10 +15,10 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.float_filter import judge_rows
 from regrasp.verification.protocols import Plan
 from regrasp.verification.records import deciding_forces
 from regrasp.verification.retraced import retraced
-from regrasp.verification.setpoints import judge_rows
 from regrasp.verification.verdict import Verification
 
 _DOUBT = float(RESOLUTION)

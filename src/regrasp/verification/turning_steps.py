@@ -34,9 +34,9 @@ from regrasp.verification.exact import (
     least_angle,
     root,
 )
+from regrasp.verification.float_filter import Checked
 from regrasp.verification.protocols import Plan, Turn
 from regrasp.verification.rotated_loads import TurningLoad, cosine_sine
-from regrasp.verification.setpoints import Checked
 
 # 314159 / 100000 is a little less than pi.
 _BELOW_PI = Fraction(314159, 100000)

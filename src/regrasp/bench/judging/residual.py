@@ -13,7 +13,7 @@ def row_residual(program: Program, x: Array) -> float:
 
     An unknown near zero counts as large as its unit (``regrasp.programs.judging.units``), but no larger than
     the largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count
-    alike, and what is large elsewhere hides nothing. NaN if x is not finite or so large that the rows are not.
+    alike, and what is large elsewhere hides nothing. NaN if x or the rows are not finite.
     """
     if not np.isfinite(x).all():
         return nan

@@ -13,10 +13,10 @@ from pydantic import Field
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.words import Method, Objective, PathObjective
-from regrasp.files.source import naming, path_of, text_of
+from regrasp.files.source import naming, text_of
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
-from regrasp.mechanics.checks import array
+from regrasp.mechanics.checks import array, file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -126,6 +126,7 @@ def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
     Raises:
         InvalidInput: For a plan with numbers that are not finite, and where the file cannot be written.
     """
+    path = file_path(path)
     document = plan_document(plan, path)
     with whole_file(path) as file:
         json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
@@ -141,7 +142,7 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
     Raises:
         InvalidInput: In one message, which names the file and what is wrong in it.
     """
-    path = path_of(path)
+    path = file_path(path)
     text = text_of(path, "a plan in JSON")
     try:
         data = json.loads(text, object_pairs_hook=_unique)

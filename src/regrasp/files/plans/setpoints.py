@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.regrasp_table import RegraspTable
 from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_spacing, check_times
-from regrasp.files.source import path_of, text_of
+from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition, setpoint_columns
 from regrasp.verification import Verification, verify_setpoints
@@ -33,7 +33,8 @@ def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Row
 
     Raises ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points.
     """
-    if plan.duration * rate > _MOST:
+    _check_plan(plan)
+    if plan.duration * number(rate, "rate", above=0) > _MOST:
         raise InvalidInput(
             f"rate {rate:g} for {plan.duration:g} s makes {plan.duration * rate:.3g} set-points; "
             f"at most {_MOST:g} are made"
@@ -74,10 +75,15 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
     Raises:
         InvalidInput: As ``setpoint_blocks`` does, and where the file cannot be written.
     """
+    _check_plan(plan)
     blocks = setpoint_blocks(plan, rate)
     with whole_file(path) as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(_columns(plan))
+        columns = _columns(plan)
+        strange = any("\r" in column for column in columns)  # which csv leaves bare
+        csv.writer(
+            file, lineterminator="\n", quoting=csv.QUOTE_ALL if strange else csv.QUOTE_MINIMAL
+        ).writerow(columns)
         if isinstance(plan, RegraspPlan):
             table = RegraspTable(plan)
             for block in blocks:
@@ -93,9 +99,10 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
 
     rate: rows per second that the file must have; None for any even one.
     Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
-    to the duration, and angles, steps and finger positions not the plan's. ``checked`` is for forces.
+    to the duration, and angles, steps and finger positions that are not the plan's (``checked``: forces).
     """
-    path = path_of(path)
+    path = file_path(path)
+    _check_plan(plan)
     if rate is not None:
         number(rate, "rate", above=0)
     columns = _columns(plan)
@@ -141,6 +148,11 @@ def _shown(columns: list[str]) -> str:
     with StringIO() as line:
         csv.writer(line, lineterminator="").writerow(columns)
         return line.getvalue().replace("\n", "\\n").replace("\r", "\\r")[:200]
+
+
+def _check_plan(plan: object) -> None:
+    if not isinstance(plan, (Transition, RegraspPlan)):
+        raise InvalidInput(f"set-points are of a Transition or a RegraspPlan, got {shown(plan)}")
 
 
 def _steps(plan: Transition | RegraspPlan) -> tuple[Transition, ...]:

@@ -3,6 +3,7 @@
 from math import radians
 from typing import Any, Literal
 
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.scenario import AnyScenario, Scenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
@@ -52,6 +53,8 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
         return _regrasp(scenario)
     if isinstance(scenario, SpaceRegraspScenario):
         return _space_regrasp(scenario)
+    if not isinstance(scenario, Scenario):
+        raise InvalidInput(f"a scenario comes from read_scenario or parse_scenario, got {shown(scenario)}")
     task, load = scenario.task, scenario.external
     if isinstance(task, Rotation):
         return _rotation(scenario, task)

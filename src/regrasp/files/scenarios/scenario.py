@@ -1,5 +1,6 @@
 """A scenario: load, contacts and task, as a person writes them in a TOML file."""
 
+import re
 import tomllib
 from functools import cached_property
 from pathlib import Path
@@ -21,8 +22,9 @@ from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Removal, Rotation
-from regrasp.files.source import path_of, text_of
+from regrasp.files.source import text_of
 from regrasp.files.strict import Strict, validated
+from regrasp.mechanics.checks import file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.rotated_loads import turned_load
@@ -33,6 +35,9 @@ if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
 
 _MOST_BYTES = 2**24  # of a file that people write
+# Keys a.b.c of many parts: reading them takes time with the square of their number.
+_DEEP = 50
+_DEEP_KEY = re.compile(rf"(?<![\w\"'-])(?>[\w\"'-]+[ \t]*\.[ \t]*){{{_DEEP}}}")
 
 
 class ContactEntry(Strict):
@@ -251,7 +256,7 @@ def read_scenario(path: str | Path) -> AnyScenario:
         InvalidInput: In one message, which names the file and lists every problem, each with its key, what
             was expected and what came.
     """
-    path = path_of(path)
+    path = file_path(path)
     return parse_scenario(text_of(path, "a scenario in TOML", most=_MOST_BYTES), path)
 
 
@@ -266,6 +271,9 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
     """
     if not isinstance(text, str):
         raise InvalidInput(f"a scenario is parsed from text in TOML, got {shown(text)}")
+    file = file_path(file)
+    if _DEEP_KEY.search(text):
+        raise InvalidInput(f"{file}: not a scenario: a key of more than {_DEEP} parts")
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Unpack, cast
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -110,7 +111,9 @@ def plan_addition(
     before, first = grasp_and_load(start, first)
     last = series(series.duration) if series is not None else first
     grasp = Grasp((*before, *arriving))
-    if end is not None and (not isinstance(end, GraspState) or end.grasp != grasp or end.load != last):
+    if end is not None:
+        instance(end, "end", GraspState)
+    if end is not None and (end.grasp != grasp or end.load != last):
         raise InvalidInput(
             f"end must be a state of the start's contacts and the new one, in that order "
             f"({', '.join(grasp.names)}), under the same load; got {end!r}"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, choice, number
+from regrasp.mechanics.checks import Array, ArrayLike, choice, limits, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
@@ -18,7 +18,7 @@ from regrasp.planning.changes.given_ends import scaling_of
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.options import INSTANTS, ChangeOptions, PlanOptions
-from regrasp.plans.loads import LoadSeries
+from regrasp.plans.loads import MOST_INSTANTS, LoadSeries
 from regrasp.plans.sampled import SampledPath
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
@@ -49,8 +49,7 @@ class Demands:
             number(self.min_normal, "min_normal", least=0)
         if self.path_objective is not None:
             choice(self.path_objective, "path_objective", PATH_OBJECTIVES)
-        if isinstance(self.instants, bool) or not isinstance(self.instants, int) or self.instants < 3:
-            raise InvalidInput(f"instants must be a whole number of at least 3, got {self.instants!r}")
+        whole(self.instants, "instants", least=3, most=MOST_INSTANTS)
         check_facets(self.facets)
         for name in ("idle_from", "idle_until"):
             if getattr(self, name) is not None:
@@ -82,15 +81,7 @@ class Demands:
         """(n,) force-rate limits, infinite for none [N/s]."""
         if self.rate_limit is None:
             return np.full(len(grasp), inf)
-        try:
-            rates = np.broadcast_to(np.asarray(self.rate_limit, dtype=float), (len(grasp),))
-        except (TypeError, ValueError):
-            raise InvalidInput(
-                f"rate_limit must be a number or have shape ({len(grasp)},), got {self.rate_limit!r}"
-            ) from None
-        if not (rates > 0).all():
-            raise InvalidInput(f"rate_limit must be greater than 0, got {self.rate_limit!r}")
-        return rates
+        return limits(self.rate_limit, "rate_limit", len(grasp))
 
 
 _NONE = Demands()

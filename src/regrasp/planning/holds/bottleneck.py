@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, instance, number, whole
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.sequences import MAX_TURN, Hold
 
@@ -76,16 +76,20 @@ def bottleneck(
     Raises:
         InvalidInput: For what are no places.
     """
+    instance(graph, "graph", HoldGraph)
+    whole(goal_orientation, "goal_orientation", least=0, most=len(graph.angles) - 1)
+    if not 0 < number(max_turn, "max_turn") < pi:
+        raise InvalidInput(f"max_turn must be above 0 and below pi, got {shown(max_turn)}")
     for what, places in (("start", start), ("goal", goal)):
         try:
-            whole = [int(place) for place in places]
-            valid = len(set(whole)) == 3 and min(whole) >= 0 and max(whole) < len(graph.contacts)
-        except (TypeError, ValueError):
+            given = [whole(place, what, least=0) for place in places]
+            valid = len(set(given)) == 3 and max(given) < len(graph.contacts)
+        except TypeError:
             valid = False
         if not valid:
             raise InvalidInput(
                 f"{what} must be three contacts by their places in the graph, 0 to "
-                f"{len(graph.contacts) - 1}, got {places!r}"
+                f"{len(graph.contacts) - 1}, got {shown(places)}"
             )
     ends = _Ends(graph, start, goal, goal_orientation, max_turn)
     way = ends.widest(graph.margins)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
@@ -25,7 +25,13 @@ from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs, arc_lengths, on_arcs
 from regrasp.planning.regrasps.ends import Ends
-from regrasp.planning.regrasps.options import check_steps, settled
+from regrasp.planning.regrasps.options import (
+    MOST_CANDIDATES,
+    MOST_EXTRA,
+    check_steps,
+    settled,
+    turn_below_pi,
+)
 from regrasp.planning.regrasps.remedies import allowed
 from regrasp.planning.regrasps.steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.regrasps.why_not import why_not
@@ -104,6 +110,7 @@ class RegraspProblem(ArrayValue):
         _ = self.criteria
         check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
         number(self.goal_orientation, "goal_orientation")
+        whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
         number(self.min_distance, "min_distance", least=0)
         if not isinstance(self.one_finger, bool):
             raise InvalidInput(f"one_finger must be True or False, got {self.one_finger!r}")
@@ -189,8 +196,9 @@ class RegraspProblem(ArrayValue):
             extra: finger moves beyond the fewest.
             max_turn: in place of the problem's [rad].
         """
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         start, goal, last = self.places
-        turn = self.max_turn if max_turn is None else max_turn
+        turn = self.max_turn if max_turn is None else turn_below_pi(max_turn)
         if self.weights is None:
             return sequences(
                 self.graph, start, goal, last, max_turn=turn, least_margin=self.least_margin,
@@ -213,8 +221,7 @@ class RegraspProblem(ArrayValue):
         Raises:
             Infeasible: Where there is none, and says why.
         """
-        if isinstance(extra, bool) or not isinstance(extra, int) or extra < 0:
-            raise InvalidInput(f"extra must be a whole number of at least 0, got {extra!r}")
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         if extra and self.weights is not None:
             raise InvalidInput("extra trades moves against margin; leave it out, or weights")
         turn, found = self.max_turn, self.sequences(extra)
@@ -239,6 +246,7 @@ class RegraspProblem(ArrayValue):
         Args:
             force: [N].
         """
+        number(force, "force", above=0)
         start, goal = (Grasp(allowed(c, force) for c in grasp) for grasp in (self.start, self.goal))
         most = None if self.max_force is None else max(force, self.max_force)
         return replace(self, start=start, goal=goal, max_force=most)

@@ -8,19 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, rotation
+from regrasp.errors import Infeasible, InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, instance, rotation, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.holds.pairs import MOST_ORIENTATIONS
 from regrasp.planning.holds.sequences import Sequence, preferred
 from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.triples import FACETS, TripleFilter, TripleGraph, directions
 from regrasp.planning.regrasps.ends import Ends
-from regrasp.planning.regrasps.options import check_steps, settled
+from regrasp.planning.regrasps.options import MOST_CANDIDATES, MOST_EXTRA, check_steps, settled
 from regrasp.planning.regrasps.steps import chosen_state, kept, spread_states, step_between
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import FORCE, Objective
@@ -95,13 +96,19 @@ class SpaceRegraspProblem(ArrayValue):
     step_duration: float = 1.0
 
     def __post_init__(self) -> None:
+        from regrasp.mesh.mesh import Mesh
+
+        instance(self.mesh, "mesh", Mesh)
         _ = self.criteria, self.rotation
         load = self.load
         if not isinstance(load, Wrench) or load.dimension != 3 or load.torque.any() or not load.force.any():
             raise InvalidInput(f"load must be a force in space through the centre of mass, got {load!r}")
         check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
-        if isinstance(self.orientations, bool) or not isinstance(self.orientations, int):
-            raise InvalidInput(f"orientations must be a whole number, got {self.orientations!r}")
+        whole(self.orientations, "orientations", least=0, most=MOST_ORIENTATIONS)
+        whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
+        whole(self.seed, "seed", least=0)
+        if self.keep is not None and not callable(self.keep):
+            raise InvalidInput(f"keep must be a function of points and the load, got {shown(self.keep)}")
         _ = self.directions, self.graph
 
     @cached_property
@@ -170,6 +177,7 @@ class SpaceRegraspProblem(ArrayValue):
         Args:
             extra: finger moves beyond the fewest.
         """
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         stances = Quads(self.graph, self.directions, self.max_turn, self.least_margin)
         return preferred(stances, *self.places, extra)
 
@@ -182,8 +190,7 @@ class SpaceRegraspProblem(ArrayValue):
         Raises:
             Infeasible: Where there is none, and says why.
         """
-        if isinstance(extra, bool) or not isinstance(extra, int) or extra < 0:
-            raise InvalidInput(f"extra must be a whole number of at least 0, got {extra!r}")
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         found = self.sequences(extra)
         if not found:
             raise self._why_not()

@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, number
+from regrasp.mechanics.checks import Array, ArrayLike, number, numbers_in
 from regrasp.planning.states.criteria import PEAK_RATIO
 from regrasp.planning.states.objectives import Objective, objective_of
 
@@ -113,10 +113,14 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
     """Flat arrays of one value, or one for every grasp; which of them are whole; the common shape."""
     arrays, leading = [], []
     for (name, size), argument in zip(_SIZES.items(), arguments, strict=False):
-        try:
-            value = np.asarray(argument, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InvalidInput(f"{name} must be an array of numbers, got {type(argument).__name__}") from None
+        if isinstance(argument, np.ndarray) and argument.dtype == np.float64:
+            value = argument  # millions of numbers are not copied
+        else:
+            try:
+                value = numbers_in(argument, name)
+            except InvalidInput:
+                kind = type(argument).__name__
+                raise InvalidInput(f"{name} must be an array of numbers, got {kind}") from None
         if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
             raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
         arrays.append(value)

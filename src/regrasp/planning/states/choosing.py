@@ -3,6 +3,7 @@
 from typing import Unpack
 
 from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.mechanics.checks import whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
@@ -11,6 +12,8 @@ from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import StateOptions, criteria_of, takes
 from regrasp.planning.states.two_fingers import best_forces, is_one_point
 
+MOST_FACETS = 10_000
+"""Sides of a polygon that stands for a circle: one of so many is a circle to eight digits."""
 DEFAULT_BACKEND = "clarabel"
 
 
@@ -52,8 +55,8 @@ def choose_state(
 
 def check_facets(facets: int | None) -> None:
     """Raise ``InvalidInput`` unless ``facets`` is a number of sides, or None."""
-    if facets is not None and (not isinstance(facets, int) or isinstance(facets, bool) or facets < 3):
-        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
+    if facets is not None:
+        whole(facets, "facets", least=3, most=MOST_FACETS)
 
 
 def choose_forces(
@@ -76,8 +79,6 @@ def choose_forces(
         if method == "closed-form":
             raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
         closed = False
-    if len(grasp) < 2:
-        raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
     if method == "closed-form" and facets is not None:
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
     if method == "closed-form" or (method == "auto" and closed and facets is None):

@@ -91,7 +91,8 @@ def _of_those_that_push(
     if len(used) in (0, len(forces)) or not np.isfinite(forces).all():
         return None
     mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
-    rest = chooser.of(used).settled(forces[used], mu, bounds)
+    some = chooser.of(used)
+    rest = some.shifted(forces[used][:, : some.grasp.width], mu, bounds)
     return None if rest is None else _whole(chooser.grasp, used, rest)
 
 
@@ -142,16 +143,21 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
             return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
     twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
-    if (is_twist and used.proves(twist, frictions, bounds)) or used.is_lost(frictions, bounds):
+    if is_twist and used.proves(twist, frictions, bounds):
+        return _Level(None, True, True)
+    # Within a solver's tolerance of the best level a proof is costly and rare: one above it serves.
+    is_near = answer.status is Status.SOLVED and answer.value[-1] >= -FEASIBLE
+    if not is_near and used.is_lost(frictions, bounds):
         return _Level(None, True, True)
     if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
         return _Level(None, False, True)
-    forces = None if known is None else used.nearest(known[list(cones)], frictions, bounds)
+    width = used.grasp.width  # point contacts alone have no torques
+    forces = None if known is None else used.nearest(known[list(cones)][:, :width], frictions, bounds)
     return _Level(None if forces is None else _whole(grasp, cones, forces))
 
 
 def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
     """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
     whole = np.zeros((len(grasp), grasp.width))
-    whole[list(contacts)] = forces
+    whole[list(contacts), : forces.shape[1]] = forces
     return whole

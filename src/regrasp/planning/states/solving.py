@@ -145,15 +145,19 @@ class Chooser:
 
         The least change of all forces does, idle fingers left idle, unless it leaves a cone.
         """
+        found = self.shifted(wanted, frictions, limits)
+        if found is not None:
+            return found
+        return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
+
+    def shifted(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """Forces (n, d) changed least into equilibrium, idle fingers left idle; None if they leave a cone."""
         from regrasp.closed_form.compiled.shift import shifted_inside
 
         mu, limit = np.array(frictions), np.array(limits)
         given = wanted, self.matrix, self.vector, self.grasp.cones.normals, mu, limit
         forces, is_answer = shifted_inside(*given, EQUILIBRIUM / 2)
-        if is_answer:
-            found: Array = forces
-            return found
-        return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
+        return forces if is_answer else None
 
     def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """The forces nearest to ``forces`` in equilibrium, inside cones and limits; None if none are."""

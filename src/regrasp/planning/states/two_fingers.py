@@ -10,7 +10,7 @@ import numpy as np
 from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -46,6 +46,7 @@ class EquilibriumLocus(ArrayValue):
     load: Wrench
 
     def __post_init__(self) -> None:
+        instance(self.grasp, "grasp", Grasp)
         if len(self.grasp) != 2 or self.grasp.dimension != 2:
             raise InvalidInput(
                 f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
@@ -71,6 +72,10 @@ class EquilibriumLocus(ArrayValue):
             contact: name or index of the third.
             force: (2,) of the third finger on the object, object frame [N].
         """
+        instance(grasp, "grasp", Grasp)
+        check_load(grasp, load)
+        if grasp.dimension != 2:
+            raise InvalidInput("an equilibrium locus is of planar contacts, got some in space")
         f = array(force, "force", (2,))
         fixed = grasp[contact]
         wrench = Wrench(f, torque=float(torque(fixed.position, f)[0]))
@@ -100,7 +105,7 @@ class EquilibriumLocus(ArrayValue):
             squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
         """
         ux, uy, phi, a, b, _ = self._frame
-        x = np.asarray(squeeze, dtype=float)[..., None]
+        x = finite(squeeze, "squeeze")[..., None]
         u, p = np.array([ux, uy]), np.array([-uy, ux])
         return np.stack([x * u + a * p, -(x + phi) * u + b * p], axis=-2)
 
@@ -130,6 +135,8 @@ class EquilibriumLocus(ArrayValue):
             reach: how far to show an infinite side [N].
         """
         lo, hi = self.interval
+        if not (isinstance(reach, float) and reach == inf):
+            number(reach, "reach", least=0)
         if self.is_empty:
             raise Infeasible(f"the equilibrium locus of {', '.join(self.grasp.names)} is empty")
         start = lo if isfinite(lo) else (hi if isfinite(hi) else 0.0) - reach
@@ -146,6 +153,7 @@ class EquilibriumLocus(ArrayValue):
             squeeze: inside the interval [N].
         """
         lo, hi = self.interval
+        squeeze = number(squeeze, "squeeze")
         if not lo <= squeeze <= hi:
             where = "the locus is empty" if self.is_empty else f"the locus is [{lo:.9g}, {hi:.9g}]"
             raise InvalidInput(f"squeeze {squeeze!r} is not on the locus; {where}")
@@ -157,6 +165,9 @@ class EquilibriumLocus(ArrayValue):
         Args:
             state: a state of this grasp.
         """
+        instance(state, "state", GraspState)
+        if state.grasp != self.grasp:
+            raise InvalidInput("state must be of the grasp of this locus, got one of other contacts")
         return float(state.forces[0] @ self.direction)
 
     @takes(LimitOptions)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only, whole
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
@@ -27,6 +27,7 @@ from regrasp.planning.states.criteria import ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
+_MOST = 1_000_000  # directions
 COUNT = 400
 """Default number of directions."""
 
@@ -185,8 +186,7 @@ def held_sphere(
             f"a held sphere is of a Grasp in space; in the plane use held_directions; got {grasp!r}"
         )
     number(magnitude, "magnitude", above=0)
-    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-        raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
+    whole(count, "count", least=1, most=_MOST)
     criteria = criteria_of(objective, options)
     directions = even_directions(count)
     values, forces = np.full(count, nan), np.full((count, len(grasp), grasp.width), nan)

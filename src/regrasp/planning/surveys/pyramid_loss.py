@@ -97,7 +97,7 @@ def pyramid_losses(
         Infeasible: Where exact cones do not hold the load.
         InvalidInput: As ``choose_state`` does.
     """
-    if not isinstance(facets, Sequence) or isinstance(facets, str) or not facets:
+    if not isinstance(facets, Sequence) or isinstance(facets, (str, bytes)) or not facets:
         raise InvalidInput(f"facets must be whole numbers, such as (4, 8, 16), got {facets!r}")
     for m in facets:
         check_facets(m)

@@ -8,7 +8,7 @@ import numpy as np
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number, read_only
+from regrasp.mechanics.checks import Array, instance, number, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
@@ -193,6 +193,7 @@ def sensitivity(
             nothing to choose.
         SolverFailed: Where there are no duals, at the very limit of what can be held.
     """
+    instance(grasp, "grasp", Grasp)
     check_load(grasp, load)
     if grasp.dimension != 2:
         raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")

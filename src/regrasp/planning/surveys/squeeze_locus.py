@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, read_only, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.reserve import RESERVE
@@ -19,6 +19,8 @@ from regrasp.planning.states.criteria import PEAK_RATIO, ChosenState, Criteria
 from regrasp.planning.states.escape import infeasible, loose_twist
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.surveys.squeeze_basis import SqueezeBasis, squeeze_basis
+
+_MOST = 10_000_000  # states of a sample
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -110,7 +112,7 @@ class SqueezeLocus(ArrayValue):
         Args:
             squeezes: (..., k) coordinates [N].
         """
-        x = np.asarray(squeezes, dtype=float)
+        x = finite(squeezes, "squeezes")
         if x.ndim == 0 or x.shape[-1] != self.dimension:
             raise InvalidInput(
                 f"squeezes must have {self.dimension} numbers ({', '.join(self.coordinates)}), got {x.shape}"
@@ -126,7 +128,7 @@ class SqueezeLocus(ArrayValue):
         Args:
             forces: (..., n, d) object frame [N], or a state of this grasp.
         """
-        f = forces.forces if isinstance(forces, GraspState) else np.asarray(forces, dtype=float)
+        f = forces.forces if isinstance(forces, GraspState) else finite(forces, "forces")
         if f.shape[-2:] != self.grasp.positions.shape:
             raise InvalidInput(f"forces must have shape (..., {len(self.grasp)}, {self.grasp.dimension})")
         result: Array = np.tensordot(f, self._readings, axes=((-2, -1), (1, 2)))
@@ -180,7 +182,7 @@ class SqueezeLocus(ArrayValue):
         Args:
             point: squeezes (k,) [N], forces (n, d) [N] or a state of this grasp.
         """
-        given = point.forces if isinstance(point, GraspState) else array(point, "point", np.shape(point))
+        given = point.forces if isinstance(point, GraspState) else finite(point, "point")
         if given.ndim == 1 and self.why is not None and loose_twist(self.grasp, self.load) is not None:
             return False
         forces = self.forces(given) if given.ndim == 1 else given
@@ -250,8 +252,8 @@ class SqueezeLocus(ArrayValue):
         """
         from regrasp.planning.surveys.hit_and_run import walked
 
-        if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-            raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
+        whole(count, "count", least=1, most=_MOST)
+        whole(seed, "seed", least=0)
         if isinstance(self._some, Infeasible):
             raise self._some
         criteria = self._criteria("force", peak_ratio)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.plots.escapes.space_escape import draw_escape
 from regrasp.plots.escapes.words import (
@@ -62,6 +62,7 @@ def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, mesh: Any = None,
     Raises:
         InvalidInput: For flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
+    instance(twist, "twist", EscapeTwist)
     triangles = surface_of(mesh, twist.grasp)
     if twist.grasp.dimension == 3:
         drawn: Axes = draw_escape(twist, ax, mesh=triangles, units=units)

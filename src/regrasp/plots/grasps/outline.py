@@ -8,7 +8,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
-from regrasp.mechanics.checks import Array, ArrayLike
+from regrasp.mechanics.checks import Array, ArrayLike, instance
 from regrasp.outline.outline import Outline
 from regrasp.plots.look.style import (
     GREY,
@@ -43,6 +43,7 @@ def plot_outline(
         arc_lengths: (m,) of candidate contacts [m], drawn as dots with their inward normals.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(outline, "outline", Outline)
     outer = outline.polygon()
     size = float(np.ptp(outer, axis=0).max())
     outer, holes = outline.polygon(_DETAIL * size), outline.hole_polygons(_DETAIL * size)

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.plans.transition import Transition
@@ -69,6 +70,7 @@ def plot_state(
     Raises:
         InvalidInput: For flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
+    instance(state, "state", GraspState)
     triangles = surface_of(mesh, state.grasp)
     colours = contact_colours(state.grasp) if colours is None else colours
     scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
@@ -109,6 +111,7 @@ def plot_transition(
         mesh: the object of a grasp in space, as for ``plot_state``.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     triangles = surface_of(mesh, transition.grasp)
     colours = contact_colours(transition.grasp)
     scale = force_scale

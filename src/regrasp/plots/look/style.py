@@ -17,7 +17,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import ArrayLike
+from regrasp.mechanics.checks import ArrayLike, instance
 from regrasp.mechanics.grasp import Grasp
 
 # Okabe and Ito, "Color Universal Design", 2008; yellow, too pale for a line, is left out.
@@ -40,6 +40,7 @@ def contact_colours(grasp: Grasp) -> dict[str, str]:
     Args:
         grasp: whose contacts are to be told apart.
     """
+    instance(grasp, "grasp", Grasp)
     return dict(zip(grasp.names, cycle(PALETTE), strict=False))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import INK, PALETTE, axes_or_new, contact_colours, label_axis, legend, literal
 from regrasp.plots.look.units import SI, Units
@@ -24,6 +24,7 @@ def plot_force_components(transition: Transition, ax: Axes | None = None, *, uni
         ax: the axes to draw on; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     forces = transition.forces(t)
@@ -64,6 +65,7 @@ def plot_wrench_components(
     Raises:
         InvalidInput: For an unknown contact.
     """
+    instance(transition, "transition", Transition)
     i = transition.grasp.index(contact)
     ax = axes_or_new(ax)
     t, d = _times(transition), transition.grasp.dimension

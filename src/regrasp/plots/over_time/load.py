@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
@@ -27,6 +28,7 @@ def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = 
     Raises:
         InvalidInput: Where the load is constant.
     """
+    instance(transition, "transition", Transition)
     if not transition.load_varies:
         raise InvalidInput("the load of this path is constant; there is nothing to draw over time")
     course = transition.course

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.mechanics.checks import Array, choice
+from regrasp.mechanics.checks import Array, choice, instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import GREY, INK, axes_or_new, contact_colours, label_axis, legend, literal
 from regrasp.plots.look.units import SI, Units
@@ -19,6 +19,7 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
         ax: the axes to draw on; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
@@ -38,6 +39,7 @@ def plot_angles(transition: Transition, ax: Axes | None = None, *, units: Units 
         ax: the axes to draw on; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     limits = np.array([contact.half_angle for contact in transition.grasp])
@@ -71,6 +73,7 @@ def plot_margins(
         objective: ``angle`` or ``force``.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     choice(objective, "objective", ("angle", "force"))
     ax = axes_or_new(ax)
     t = _times(transition)

@@ -4,6 +4,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from regrasp.mechanics.checks import instance
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plans.transition import Transition
 from regrasp.plots.grasps.state import force_scale_of, plot_state, plot_transition
@@ -37,6 +38,7 @@ def transition_figure(transition: Transition, *, mesh: Any = None, units: Units 
         mesh: the object of a grasp in space, as for ``plot_state``.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
     ax = _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition)
@@ -68,6 +70,7 @@ def transition_png(transition: Transition) -> bytes:
     Args:
         transition: the transition to draw.
     """
+    instance(transition, "transition", Transition)
     return png(transition_figure(transition))
 
 
@@ -83,6 +86,7 @@ def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> d
         mesh: the object of a grasp in space, as for ``plot_state``.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     drawn: dict[str, Any] = {
         "overview": transition_figure(transition, mesh=mesh, units=units),
         "states": states_figure(transition, mesh=mesh, units=units),
@@ -132,6 +136,7 @@ def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI
         mesh: the object of a grasp in space, as for ``plot_state``.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 3.4)
     grid = figure.add_gridspec(1, 2)
     if transition.grasp.dimension == 3:
@@ -155,6 +160,7 @@ def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
         transition: the transition to draw.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     columns = min(2, len(transition.grasp))
     rows = -(-len(transition.grasp) // columns)
     figure = new_figure(WIDTH * columns, 2.4 * rows)
@@ -170,6 +176,7 @@ def iso_torque_figure(transition: Transition, *, units: Units = SI) -> Figure:
         transition: the transition to draw.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     refuse_space(transition.grasp.dimension)
     state = transition.start if transition.leaving else transition.end
     colours = contact_colours(state.grasp)

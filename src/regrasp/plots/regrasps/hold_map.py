@@ -8,7 +8,7 @@ from matplotlib.colors import ListedColormap
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import HoldGraph
@@ -45,6 +45,7 @@ def plot_hold_map(
             the other finger stays. It moves through the air, so what the line crosses means nothing.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(graph, "graph", HoldGraph)
     if o is not None and not -len(graph.angles) <= o < len(graph.angles):
         raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {o!r}")
     places = np.array([_place(outline, contact) for contact in graph.contacts])

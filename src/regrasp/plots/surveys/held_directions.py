@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, choice, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_state
@@ -44,6 +44,7 @@ def plot_directions(
     Raises:
         InvalidInput: For a grasp in space.
     """
+    instance(grasp, "grasp", Grasp)
     refuse_space(grasp.dimension)
     choice(objective, "objective", ("angle", "force"))
     number(load_size, "load_size", above=0)

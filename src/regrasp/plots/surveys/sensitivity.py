@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.planning.surveys.sensitivity import Sensitivity
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import (
@@ -39,6 +39,7 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
         ax: the axes to draw on; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(sensitivity, "sensitivity", Sensitivity)
     steps, effects = sensitivity.steps(), sensitivity.effects()
     degrees = sensitivity.unit == "rad"
     factor, unit = (np.degrees(1.0), "deg") if degrees else (1.0, units.of(sensitivity.unit))

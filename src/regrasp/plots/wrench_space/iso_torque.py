@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Wedge
 from matplotlib.ticker import MaxNLocator
 
-from regrasp.mechanics.checks import Array, ArrayLike, array
+from regrasp.mechanics.checks import Array, ArrayLike, array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, iso_torque_line
 from regrasp.plots.look.arrows import arrow
@@ -53,6 +53,7 @@ def plot_iso_torque(
     Raises:
         InvalidInput: For a contact in space and for one at the centre of mass, which makes no torque.
     """
+    instance(contact, "contact", Contact)
     refuse_space(contact.dimension)
     ax = axes_or_new(ax, height=3.0)
     shown = None if force is None else array(force, "force", (2,))

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from regrasp.errors import Infeasible
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.objectives import Objective, objective_of
 from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -58,6 +58,7 @@ def plot_locus(
     Raises:
         Infeasible: For an empty locus.
     """
+    instance(locus, "locus", EquilibriumLocus)
     sought = objective_of(objective)
     if locus.is_empty:
         raise Infeasible(f"the equilibrium locus of {', '.join(locus.grasp.names)} is empty: nothing to draw")

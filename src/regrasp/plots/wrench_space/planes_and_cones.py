@@ -11,7 +11,7 @@ import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from regrasp.errors import Infeasible
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.wrench_space import WrenchCone, WrenchPlane
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plots.look.space_axes import boxed
@@ -64,6 +64,7 @@ def plot_wrench_plane(
         colour: of Matplotlib.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(plane, "plane", WrenchPlane)
     corners = plane.wrench(reach * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]))
     ax = wrench_axes(ax, [corners])
     _surface(ax, corners, colour, 0.1, gid=f"plane {plane.contact.name}")
@@ -89,6 +90,7 @@ def plot_wrench_cone(
         shadow: draw the friction cone C_i too, the sector's projection along tau onto the plane of the apex.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(cone, "cone", WrenchCone)
     corners = cone_corners(cone, reach)
     ax = wrench_axes(ax, [corners])
     _surface(ax, corners, colour, 0.22, gid=f"cone {cone.contact.name}")
@@ -124,6 +126,7 @@ def plot_locus_segment(
     Raises:
         Infeasible: For an empty locus.
     """
+    instance(locus, "locus", EquilibriumLocus)
     if locus.is_empty:
         raise Infeasible(f"the equilibrium locus of {', '.join(locus.grasp.names)} is empty: nothing to draw")
     ax = wrench_axes(ax)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench_space import WrenchLoop
@@ -52,6 +52,7 @@ def plot_wrench_loop(
     Raises:
         InvalidInput: For a grasp in space.
     """
+    instance(state, "state", GraspState)
     refuse_space(state.grasp.dimension)
     colours = contact_colours(state.grasp) if colours is None else colours
     loop = WrenchLoop(state, order)
@@ -78,6 +79,7 @@ def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = 
         ax: the axes to draw on; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     grasp = transition.grasp
     refuse_space(grasp.dimension)
     colours = contact_colours(grasp)

@@ -45,6 +45,8 @@ def polished(
     """
     sizes = np.sqrt((forces**2).sum(axis=1))
     largest = float(sizes.max())
+    if not ((sizes > 0) & (sizes < TRACE * largest)).any():
+        return forces
     grasp = chooser.grasp
     used = np.flatnonzero(sizes > _NOTHING * largest).tolist()
     if 0 < len(used) < np.count_nonzero(sizes):
