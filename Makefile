@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test bench mutants clean
+.PHONY: demo test quick bench mutants clean
 
 demo: $(VENV)/installed
 	$(BIN)/regrasp demo
@@ -18,6 +18,13 @@ test: $(VENV)/installed-dev
 	rm -rf $(VENV)/bench
 	$(BIN)/regrasp bench --quick -o $(VENV)/bench
 	$(BIN)/regrasp bench report $(VENV)/bench
+
+# The inner loop: what a change most often breaks, in under a minute.
+quick: $(VENV)/installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/pytest -n auto -m "not slow"
 
 bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py

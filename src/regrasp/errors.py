@@ -25,6 +25,9 @@ class InvalidInput(RegraspError, ValueError):
     """An argument, a scenario or a plan file is not what it must be; nothing was computed.
 
     The message is one line, whatever values it names.
+
+    Args:
+        message: one line: what was expected, what came, what to do.
     """
 
     def __init__(self, message: str) -> None:
@@ -43,6 +46,10 @@ class Infeasible(RegraspError):
 
     ``certificate`` is the ``EscapeTwist`` that proves it, a ``RegraspObstacle`` of a whole regrasp, or None
     where only the message can say why.
+
+    Args:
+        message: one line: what was expected, what came, what to do.
+        certificate: what proves it, or None.
     """
 
     def __init__(self, message: str, certificate: Any = None) -> None:
@@ -55,7 +62,13 @@ class SolverUnavailable(RegraspError):
 
 
 class SolverFailed(RegraspError):
-    """A solver's answer did not pass our own audit. Carries the ``program`` and the ``solution``."""
+    """A solver's answer did not pass our own audit. Carries the ``program`` and the ``solution``.
+
+    Args:
+        message: one line: what was expected, what came, what to do.
+        program: what was to be solved.
+        solution: the answer that did not pass.
+    """
 
     def __init__(self, message: str, program: Any = None, solution: Any = None) -> None:
         super().__init__(message)

@@ -24,6 +24,8 @@ from regrasp.bench.running.solvers import Solver, chosen_solvers, installed_solv
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program
 
+pytestmark = pytest.mark.contract
+
 # -- solvers and settings -------------------------------------------------------------------------------
 
 

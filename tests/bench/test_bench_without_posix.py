@@ -5,6 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.contract
+
 
 def test_it_starts_without_fcntl_and_resource(tmp_path: Path) -> None:
     for name in ("fcntl", "resource"):

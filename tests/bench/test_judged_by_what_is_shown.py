@@ -19,6 +19,8 @@ from regrasp.bench.running.answer import Answer
 from regrasp.bench.running.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
 from regrasp.programs import Block, Cone, Program
 
+pytestmark = pytest.mark.oracle
+
 INFEASIBLE = list(FAMILIES["infeasible"].problems())[::4]
 
 

@@ -11,6 +11,8 @@ from regrasp.files.scenarios.templates import NAMES, template
 from regrasp.verification import verify
 from scenarios import regrasp
 
+pytestmark = pytest.mark.end_to_end
+
 OPTION = re.compile(r"^# (\w+ = .*)$")
 
 

@@ -16,6 +16,8 @@ from regrasp.cli import statuses
 from regrasp.cli.speech import plain
 from scenarios import PAPER, edited, regrasp
 
+pytestmark = pytest.mark.end_to_end
+
 posix = pytest.mark.skipif(os.name != "posix", reason="sends signals as POSIX systems do")
 
 

@@ -13,6 +13,8 @@ import regrasp as rg
 from regrasp.files import write_plan, write_setpoints
 from scenarios import edited, regrasp
 
+pytestmark = pytest.mark.contract
+
 FORGED = "x\nverified in exact arithmetic\neach of 9999 set-points verified too\r\x1b[2J\u2028y"
 GRASP = rg.Grasp(
     rg.Contact(r, n, 0.3, name=name)

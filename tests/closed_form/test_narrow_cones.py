@@ -13,6 +13,8 @@ from regrasp.closed_form.locus import cone_interval
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
 
+pytestmark = pytest.mark.oracle
+
 FRICTIONS = (0.0, 1e-16, 1e-13, 1e-11, 1e-9, 1e-6, 1e-3, 0.5, 1.5)
 
 

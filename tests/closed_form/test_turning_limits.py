@@ -13,6 +13,8 @@ from regrasp.closed_form.load_cone import own_reach, pair_for_turning
 from regrasp.closed_form.turning_margin import NO_HOLD, UNSURE, turning_margin
 from strategies import random_pair
 
+pytestmark = pytest.mark.oracle
+
 
 @pytest.mark.parametrize("swapped", [False, True])
 def test_each_finger_s_limit_binds(swapped: bool) -> None:

@@ -12,6 +12,8 @@ import regrasp as rg
 from regrasp.programs import available_backends
 from scenarios import edited, regrasp
 
+pytestmark = pytest.mark.contract
+
 METHODS = ", ".join(("auto", "closed-form", *available_backends()))
 
 # name -> (scenario, exit status, message); every line of a message starts with the file's name.

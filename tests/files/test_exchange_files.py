@@ -8,6 +8,8 @@ import regrasp as rg
 from places import ROOT
 from regrasp.files import parse_scenario, plan_scenario, read_plan, read_scenario, write_plan
 
+pytestmark = pytest.mark.contract
+
 EXCHANGE = (ROOT / "examples" / "exchange.toml").read_text(encoding="utf-8")
 
 

@@ -22,6 +22,8 @@ from regrasp.files.scenarios.templates import NAMES, template
 from scenarios import PAPER, edited
 from values import removal
 
+pytestmark = pytest.mark.contract
+
 READERS: dict[str, Callable[[Path], object]] = {
     "scenario": read_scenario,
     "plan": read_plan,

@@ -20,6 +20,8 @@ import regrasp as rg
 from paper import GRASP
 from values import VALUES, escape
 
+pytestmark = pytest.mark.contract
+
 WAYS: dict[str, Callable[[Any], Any]] = {
     "pickled": lambda value: pickle.loads(pickle.dumps(value)),
     "pickled, oldest protocol": lambda value: pickle.loads(pickle.dumps(value, protocol=2)),

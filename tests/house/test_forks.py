@@ -11,7 +11,10 @@ import pytest
 import regrasp as rg
 from values import problem, space_problem
 
-pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+pytestmark = [
+    pytest.mark.contract,
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here"),
+]
 
 LIMIT = 300
 """Seconds: machine code for one thread is compiled in the child where none was kept."""

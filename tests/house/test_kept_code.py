@@ -16,6 +16,8 @@ import pytest
 import regrasp
 from regrasp import compilation
 
+pytestmark = pytest.mark.contract
+
 SOURCE = """
 from regrasp.compilation import kept
 

@@ -13,6 +13,8 @@ import regrasp as rg
 from refusals import refusal
 from values import VALUES, removal, rotation
 
+pytestmark = pytest.mark.contract
+
 PLAIN = [name for name, make in VALUES.items() if hasattr(make(), "to_dict") and name != "ChosenState"]
 FINITE = st.floats(-1e100, 1e100, allow_subnormal=False)
 

@@ -12,6 +12,8 @@ import regrasp.plots
 from refusals import refusal
 from wrong_calls import called_wrongly, cases, rows
 
+pytestmark = pytest.mark.contract
+
 ROWS = rows()
 
 # Records of results: they are made by the verbs, and hold what they are given.

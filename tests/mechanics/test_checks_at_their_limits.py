@@ -8,6 +8,8 @@ import pytest
 import regrasp as rg
 from regrasp.mechanics.exact.refining import proven
 
+pytestmark = pytest.mark.contract
+
 FACING = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.0), rg.Contact([1, 0], [-1, 0], 0.0)])
 
 

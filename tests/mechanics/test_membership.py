@@ -14,6 +14,8 @@ sys.path.append(str(ROOT / "benchmarks"))
 from boundary import boundary
 from exact_judge import is_held, state_faults
 
+pytestmark = pytest.mark.oracle
+
 
 def check(grasp: rg.Grasp, load: rg.Wrench) -> bool:
     forces = vertex_forces(grasp, load, grasp.frictions)

@@ -16,6 +16,8 @@ from regrasp.mesh import parts
 from regrasp.mesh.files import stl
 from solids import bumpy, seeds
 
+pytestmark = pytest.mark.contract
+
 BOX = rg.Mesh.box(1, 2, 3)
 SHEET = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 

@@ -13,6 +13,8 @@ from regrasp.mesh import parts
 from regrasp.outline import parts as outlines
 from solids import bumpy, is_inside, motions, seeds
 
+pytestmark = pytest.mark.oracle
+
 RADIUS, WALL = 0.04, 0.004
 MUG = rg.Mesh.revolved(
     [(0, 0), (RADIUS, 0), (RADIUS, 0.1), (RADIUS - WALL, 0.1), (RADIUS - WALL, WALL), (0, WALL)]

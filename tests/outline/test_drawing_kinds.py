@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 import regrasp as rg
 from regrasp.outline.dxf.curves import turned
 
+pytestmark = pytest.mark.contract
+
 RECT = '<rect width="20" height="10"/>'
 HOLE = '<circle cx="5" cy="5" r="2"/>'
 HOLED = 200 - 4 * pi

@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 
 import regrasp as rg
 
+pytestmark = pytest.mark.contract
+
 SECONDS = 10.0
 
 

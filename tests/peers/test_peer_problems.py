@@ -23,6 +23,8 @@ from peers import (  # noqa: E402
 from regrasp.programs import Status, solve  # noqa: E402
 from regrasp.programs.facts import BACKENDS  # noqa: E402
 
+pytestmark = pytest.mark.oracle
+
 PROBLEMS = peers()
 
 

@@ -13,6 +13,8 @@ import million
 from exact_judge import is_escape, is_held, state_faults
 from hostile import problem
 
+pytestmark = pytest.mark.oracle
+
 FIRST = 5_000_000
 """Other problems than the benchmark's."""
 

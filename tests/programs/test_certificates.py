@@ -14,6 +14,8 @@ from regrasp.programs.judging.proofs import infeasibility_residual, unboundednes
 from regrasp.programs.judging.verdict import PROVEN, judged
 from regrasp.programs.solution import Solution
 
+pytestmark = pytest.mark.contract
+
 QP = [name for name in available_backends() if name != "cvxpy"]
 SILENT = ("daqp", "quadprog")  # they hand no certificate of infeasibility out
 

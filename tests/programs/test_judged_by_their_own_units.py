@@ -17,6 +17,8 @@ from regrasp.programs.judging.compiled_audit import measures
 from regrasp.programs.judging.verdict import judged
 from regrasp.programs.solution import Solution
 
+pytestmark = pytest.mark.contract
+
 QP = [name for name in available_backends() if name != "cvxpy"]
 
 

@@ -8,6 +8,8 @@ from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
 from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
 from regrasp.programs import backends as table
 
+pytestmark = pytest.mark.oracle
+
 QP_ONLY = [name for name in available_backends() if not table.BACKENDS[name].second_order]
 CONIC = [name for name in available_backends() if table.BACKENDS[name].second_order] + [
     "cvxpy:CLARABEL",

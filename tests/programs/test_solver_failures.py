@@ -14,6 +14,8 @@ from regrasp.programs import Block, Cone, Program, Status, available_backends, s
 from regrasp.programs import backends as table
 from regrasp.programs.facts import BACKENDS, Backend
 
+pytestmark = pytest.mark.contract
+
 
 def least_square():
     return Program(

@@ -19,6 +19,8 @@ from plan_truth import truth
 from regrasp.files import read_plan, write_plan, write_setpoints
 from regrasp.files.plans.setpoints import checked, read_setpoints
 
+pytestmark = pytest.mark.oracle
+
 GRASP = rg.Grasp(
     rg.Contact(r, n, 0.3, name=name)
     for name, r, n in (("P1", [-4, -4], [1, 1]), ("P2", [4, -5], [-1, 2]), ("P3", [0, 8], [0, -1]))

@@ -11,6 +11,8 @@ from scipy.linalg import expm
 import regrasp as rg
 from foreign import Plan, course, turn
 
+pytestmark = pytest.mark.contract
+
 EPS = 2.0**-40
 
 

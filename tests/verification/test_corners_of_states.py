@@ -9,6 +9,8 @@ import regrasp as rg
 from foreign import Plan, Record, course, cross, places, turn
 from regrasp.verification import verify_setpoints
 
+pytestmark = pytest.mark.contract
+
 EPS = 2.0**-40
 
 

@@ -8,6 +8,8 @@ import pytest
 import regrasp as rg
 from foreign import Plan, Record, course, cross, solid_cross, turn
 
+pytestmark = pytest.mark.contract
+
 CROSSES = {"plane": cross, "space": solid_cross}
 
 

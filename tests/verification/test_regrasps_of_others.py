@@ -13,6 +13,8 @@ import pytest
 import regrasp as rg
 from foreign import Plan, course, turn
 
+pytestmark = pytest.mark.contract
+
 EPS = 2.0**-40
 AXIS = np.array([0.0, 0.0, 1.0])
 FRICTION = 0.75

@@ -11,6 +11,8 @@ import regrasp as rg
 from foreign import Plan, Record, Scaling, course, cross, soft_pair, solid_cross, turn
 from regrasp.verification import verify_setpoints
 
+pytestmark = pytest.mark.contract
+
 EPS = 2.0**-40
 CROSSES = {"plane": cross, "space": solid_cross}
 PLANE = rg.Grasp(

@@ -13,6 +13,8 @@ import regrasp as rg
 from foreign import Plan, cross, places, soft_pair, solid_cross, spoilt
 from regrasp.verification import RESOLUTION, verify_setpoints
 
+pytestmark = pytest.mark.contract
+
 EPS = float(RESOLUTION)
 CROSSES = {"plane": cross, "space": solid_cross}
 

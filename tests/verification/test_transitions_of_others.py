@@ -10,6 +10,8 @@ import pytest
 import regrasp as rg
 from foreign import Plan, Record, Scaling, course, cross, places, solid_cross, turn
 
+pytestmark = pytest.mark.contract
+
 CROSSES = {"plane": cross, "space": solid_cross}
 EPS = 2.0**-40
 

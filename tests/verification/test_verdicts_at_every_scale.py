@@ -13,7 +13,7 @@ from regrasp.verification import verify_setpoints
 from regrasp.verification.exact import root, rounded
 
 POWERS = st.sampled_from([-1000, -700, -549, -480, -300, -100, 0, 100, 300, 479, 509, 600, 900])
-pytestmark = pytest.mark.filterwarnings("error")
+pytestmark = [pytest.mark.laws, pytest.mark.filterwarnings("error")]
 
 
 def all_verdicts(grasp, forces, load=None) -> list[bool]:

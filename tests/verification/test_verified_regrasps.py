@@ -9,6 +9,8 @@ import regrasp as rg
 from box import BOX, GOAL, MU, START, WEIGHT
 from regrasp.plans.sampled import SampledPath
 
+pytestmark = pytest.mark.contract
+
 OUTLINE = rg.Outline.ellipse(2, 1)
 
 

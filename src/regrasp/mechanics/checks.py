@@ -4,14 +4,26 @@ import os
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike as ArrayLike
+
+    Array = NDArray[np.float64]
+else:
+    # Classes that print as their short names alone in signatures and ``help``.
+    Array, ArrayLike = (
+        type(name, (), {"__doc__": words, "__module__": "builtins"})
+        for name, words in (
+            ("Array", "A NumPy array of floats."),
+            ("ArrayLike", "Whatever NumPy makes an array of: numbers, lists of numbers, arrays."),
+        )
+    )
 
 
 def array(value: ArrayLike, what: str, shape: tuple[int | None, ...]) -> Array:

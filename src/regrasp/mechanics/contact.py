@@ -6,10 +6,8 @@ from functools import cached_property
 from math import atan, hypot
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number, point
+from regrasp.mechanics.checks import Array, ArrayLike, number, point
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -22,17 +20,21 @@ _UNIT = 2.0**-51
 class Contact(ArrayValue):
     """A finger's point contact with Coulomb friction: it pushes along ``normal`` and never pulls.
 
-    position: (d,) [m], object frame, origin at the centre of mass; d is 2 or 3.
-    normal: (d,), points **into** the object; any non-zero vector, stored with unit length.
-    friction: Coulomb coefficient mu >= 0; the friction cone has half-angle atan(mu).
-    max_force: largest force magnitude the finger can make [N], or None for no limit; of a soft finger the
-    largest |(f, mu m / torsion)|, its torque counted as the tangential force that uses as much friction.
-    torsion: in space, of a soft finger: the most torque about the normal per normal force [m], greater than
-    0, or None for a point contact. Together with the tangential force it stays inside the limit surface
-    (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research 15, 1996).
-    name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
+    Args:
+        position: (d,) [m], object frame, origin at the centre of mass; d is 2 or 3.
+        normal: (d,), points **into** the object; any non-zero vector, stored with unit length [-].
+        friction: Coulomb coefficient mu >= 0 [-]; the friction cone has half-angle atan(mu).
+        max_force: largest force magnitude the finger can make [N], or None for no limit; of a soft finger the
+            largest |(f, mu m / torsion)|, its torque counted as the tangential force that uses as much
+            friction.
+        torsion: in space, of a soft finger: the most torque about the normal per normal force [m], greater
+            than 0, or None for a point contact. Together with the tangential force it stays inside the limit
+            surface (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research
+            15, 1996).
+        name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
 
-    Raises ``InvalidInput`` for anything else.
+    Raises:
+        InvalidInput: For anything else.
     """
 
     position: Array
@@ -114,11 +116,19 @@ class Contact(ArrayValue):
         return (*self.position.tolist(), *self.normal.tolist(), self.friction)
 
     def named(self, name: str) -> "Contact":
-        """The same contact under another name."""
+        """The same contact under another name.
+
+        Args:
+            name: of any letters, not empty.
+        """
         return self.changed(name=name)
 
     def changed(self, **fields: Any) -> "Contact":
-        """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``."""
+        """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``.
+
+        Args:
+            **fields: ``friction`` [-], ``max_force`` [N], ``torsion`` [m] or ``name``, as of ``Contact``.
+        """
         kept = {"max_force": self.max_force, "torsion": self.torsion, "name": self.name} | fields
         return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
 
@@ -134,7 +144,14 @@ class Contact(ArrayValue):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Contact":
-        """The contact of plain data. Raises ``InvalidInput`` for other keys and as ``Contact`` does."""
+        """The contact of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``Contact`` does.
+        """
         optional = ("name", "max_force", "torsion")
         return cls(**entries(data, "a contact", ("position", "normal", "friction"), optional))
 

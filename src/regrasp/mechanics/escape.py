@@ -23,13 +23,17 @@ NEVER = 1e9
 class EscapeTwist(ArrayValue, Pictured):
     """A small motion of the object on which the load does more work than the contacts can oppose.
 
-    twist: (3,) in the plane, (6,) in space: velocity of the centre of mass, then angular velocity; of any
-    length but zero, so work along it is best read per radian or per metre, as ``amount`` measures it.
-    frictions, limits: (n,) friction coefficients and force limits [N] it was found for.
-
     Were G f = -w_ext, then twist . G f = -twist . w_ext < 0; but finger i moves with v_i = v + omega x r_i
     and forces in its cone cannot do work below -limit_i * opposition_i. ``is_proof`` decides this in exact
     rational arithmetic on the numbers stored here.
+
+    Args:
+        grasp: the contacts that cannot hold.
+        load: the load they cannot hold, object frame [N, N m].
+        twist: (3,) in the plane, (6,) in space: velocity of the centre of mass, then angular velocity; of any
+            length but zero, so work along it is best read per radian or per metre, as ``amount`` measures it.
+        frictions: (n,) friction coefficients it was found for [-].
+        limits: (n,) force limits it was found for [N].
     """
 
     grasp: Grasp

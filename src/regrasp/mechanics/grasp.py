@@ -25,9 +25,14 @@ COINCIDENT = 1e-12
 class Grasp(ArrayValue):
     """Contacts on one object, addressed by name or by index.
 
-    Unnamed contacts are named P1, P2, ... by their place, or the next such name that is free. Raises
-    ``InvalidInput`` for an empty grasp, contacts of different dimension, equal names and
-    contacts at one point with one normal.
+    Unnamed contacts are named P1, P2, ... by their place, or the next such name that is free.
+
+    Args:
+        contacts: one or more, of one dimension.
+
+    Raises:
+        InvalidInput: For an empty grasp, contacts of different dimension, equal names and contacts at one
+            point with one normal.
     """
 
     contacts: tuple[Contact, ...]
@@ -62,7 +67,14 @@ class Grasp(ArrayValue):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Grasp":
-        """The grasp of plain data. Raises ``InvalidInput`` for other keys and as ``Grasp`` does."""
+        """The grasp of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``Grasp`` does.
+        """
         contacts = listed(entries(data, "a grasp", ("contacts",))["contacts"], "contacts of a grasp")
         return cls(map(Contact.from_dict, contacts))
 
@@ -74,7 +86,11 @@ class Grasp(ArrayValue):
         return tuple(str(contact.name) for contact in self.contacts)
 
     def index(self, contact: str | int) -> int:
-        """The place of a contact given by name or by index (negative counts from the end)."""
+        """The place of a contact given by name or by index (negative counts from the end).
+
+        Args:
+            contact: name or index; a negative one counts from the end.
+        """
         if isinstance(contact, str):
             for i, known in enumerate(self.contacts):
                 if known.name == contact:
@@ -102,22 +118,39 @@ class Grasp(ArrayValue):
     # -- other grasps ---------------------------------------------------------------------------------
 
     def subset(self, contacts: Iterable[str | int]) -> "Grasp":
-        """The grasp of the contacts named, in the order named."""
+        """The grasp of the contacts named, in the order named.
+
+        Args:
+            contacts: names or indices.
+        """
         return Grasp(self[contact] for contact in items(contacts, "contacts"))
 
     def without(self, contact: str | int) -> "Grasp":
-        """The grasp after one finger left."""
+        """The grasp after one finger left.
+
+        Args:
+            contact: name or index of the finger that leaves.
+        """
         gone = self.index(contact)
         if len(self) == 1:
             raise InvalidInput(f"the last contact, {self.names[0]!r}, cannot be taken from a grasp")
         return self._of(self.contacts[:gone] + self.contacts[gone + 1 :])
 
     def with_contact(self, contact: Contact) -> "Grasp":
-        """The grasp after one finger arrived; its contact comes last."""
+        """The grasp after one finger arrived; its contact comes last.
+
+        Args:
+            contact: of the finger that arrives.
+        """
         return Grasp((*self.contacts, contact))
 
     def replaced(self, contact: str | int, by: Contact) -> "Grasp":
-        """The grasp with one contact in the place of another."""
+        """The grasp with one contact in the place of another.
+
+        Args:
+            contact: name or index of the one that goes.
+            by: the one that takes its place.
+        """
         gone = self.index(contact)
         return Grasp(by if i == gone else c for i, c in enumerate(self.contacts))
 
@@ -216,7 +249,11 @@ class Grasp(ArrayValue):
         return read_only(self.cones.matrix / self.lengths[:, None])
 
     def wrenches(self, forces: Array) -> Array:
-        """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces."""
+        """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces.
+
+        Args:
+            forces: (..., n, d) of the fingers on the object, object frame [N]; (..., n, 4) with soft fingers.
+        """
         if not isinstance(forces, np.ndarray) or forces.shape[-2:] != (len(self), self.width):
             forces = finite(forces, "forces", (len(self), self.width))
         pushed = forces[..., : self.dimension]

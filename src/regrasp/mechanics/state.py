@@ -8,11 +8,10 @@ from operator import mul
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
-from regrasp.mechanics.checks import Array, array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import IDLE, Margins, margins
 from regrasp.mechanics.plain import entries
@@ -28,11 +27,14 @@ _ROUNDING = 2.0**-50
 class GraspState(ArrayValue):
     """A grasp, the load on the object and the finger forces, taken as they are.
 
-    forces: (n, d) [N], force of each finger **on the object**, object frame; (n, 4) where a finger is soft,
-    the last number its torque about the normal [N m], 0 for point contacts.
-
     Nothing is corrected: ``residual`` says how far G f + w_ext is from zero and ``margins`` how far each
     force is inside its cone; ``balanced()`` is the nearest state in equilibrium inside the cones.
+
+    Args:
+        grasp: the n contacts.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        forces: (n, d) [N], force of each finger **on the object**, object frame; (n, 4) where a finger is
+            soft, the last number its torque about the normal [N m], 0 for point contacts.
     """
 
     grasp: Grasp
@@ -65,7 +67,14 @@ class GraspState(ArrayValue):
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> "GraspState":
-        """The state of plain data. Raises ``InvalidInput`` for other keys and as ``GraspState`` does."""
+        """The state of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``GraspState`` does.
+        """
         given = entries(data, "a state", ("grasp", "load", "forces"))
         return GraspState(Grasp.from_dict(given["grasp"]), Wrench.from_dict(given["load"]), given["forces"])
 
@@ -104,12 +113,20 @@ class GraspState(ArrayValue):
         return tuple(name for name, yes in zip(self.grasp.names, used, strict=True) if yes)
 
     def force(self, contact: str | int) -> Array:
-        """(d,) force of one finger, by name or index [N]; (4,) in a grasp with soft fingers."""
+        """(d,) force of one finger, by name or index [N]; (4,) in a grasp with soft fingers.
+
+        Args:
+            contact: name or index.
+        """
         force: Array = self.forces[self.grasp.index(contact)]
         return force
 
     def without(self, contact: str | int) -> "GraspState":
-        """The state seen without one contact and its force."""
+        """The state seen without one contact and its force.
+
+        Args:
+            contact: name or index.
+        """
         gone = self.grasp.index(contact)
         return GraspState(self.grasp.without(gone), self.load, np.delete(self.forces, gone, axis=0))
 
@@ -117,6 +134,9 @@ class GraspState(ArrayValue):
         """Whether this is an equilibrium to rounding, inside the cones and limits less the reserve.
 
         Judged once for each reserve, so that many plans may start from one state.
+
+        Args:
+            reserve: fraction of every friction coefficient that is kept back [-].
         """
         reserve = reserve_fraction(reserve)
         if reserve not in self._verdicts:
@@ -152,7 +172,12 @@ class GraspState(ArrayValue):
 
         Least change of all forces together, sum |f_i - f_i given|^2. ``reserve`` is the fraction of every
         friction coefficient kept back. A state that is balanced already is returned as it is.
-        Raises ``Infeasible`` when this grasp has no such state.
+
+        Args:
+            reserve: fraction of every friction coefficient that is kept back [-].
+
+        Raises:
+            Infeasible: When this grasp has no such state.
         """
         reserve_fraction(reserve)
         if self.is_balanced(reserve=reserve):

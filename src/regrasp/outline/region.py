@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
 from regrasp.mechanics.value import numbers
 
 # Neighbours nearer than this, as a fraction of the ring's size, are one vertex: a ring closed up to rounding.

@@ -6,10 +6,9 @@ from math import inf
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, finite, number, numbers_in, whole
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, numbers_in, whole
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
@@ -22,9 +21,13 @@ MOST_INSTANTS = 100_000
 class LoadSeries(ArrayValue):
     """A load known at instants and linear in time between them.
 
-    times: (k,) [s], rising from 0. vectors: (k, 3) in the plane, (k, 6) in space: force, then torque about
-    the centre of mass, in the object frame [N, N m].
-    Raises ``InvalidInput`` for anything else.
+    Args:
+        times: (k,) [s], rising from 0.
+        vectors: (k, 3) in the plane, (k, 6) in space: force, then torque about the centre of mass, in the
+            object frame [N, N m].
+
+    Raises:
+        InvalidInput: For anything else.
     """
 
     times: Array
@@ -48,7 +51,14 @@ class LoadSeries(ArrayValue):
         instants: int = 101,
         also: Sequence[float] = (),
     ) -> "LoadSeries":
-        """A function of time at ``instants`` equal steps from 0 to ``duration``, and at more times [s]."""
+        """A function of time at ``instants`` equal steps from 0 to ``duration``, and at more times [s].
+
+        Args:
+            load: the load at a time [s], object frame [N, N m].
+            duration: [s], greater than 0.
+            instants: equal steps from 0 to ``duration``, both ends included.
+            also: more times [s].
+        """
         if not callable(load):
             raise InvalidInput(f"load must be a function of time that returns a Wrench, got {shown(load)}")
         count = whole(instants, "instants", least=2, most=MOST_INSTANTS)
@@ -64,7 +74,14 @@ class LoadSeries(ArrayValue):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "LoadSeries":
-        """The series of plain data. Raises ``InvalidInput`` for other keys and as ``LoadSeries`` does."""
+        """The series of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``LoadSeries`` does.
+        """
         return cls(**entries(data, "a load series", ("times", "vectors")))
 
     @property
@@ -77,7 +94,11 @@ class LoadSeries(ArrayValue):
         return Wrench.from_vector(self.at(number(t, "t", least=0)))
 
     def at(self, t: ArrayLike) -> Array:
-        """(..., 3) or (..., 6) at times in [0, duration] [s]."""
+        """(..., 3) or (..., 6) at times in [0, duration] [s].
+
+        Args:
+            t: (...) times [s].
+        """
         times = numbers_in(t, "t must be numbers")
         if not ((times >= 0) & (times <= self.duration)).all():
             raise InvalidInput(f"the load is known from 0 to {self.duration:g} s, asked for t = {shown(t)}")
@@ -85,7 +106,12 @@ class LoadSeries(ArrayValue):
         return result
 
     def refined(self, instants: int, *also: float) -> "LoadSeries":
-        """The same load known at ``instants`` equal steps, too, and at the times of ``also`` [s]."""
+        """The same load known at ``instants`` equal steps, too, and at the times of ``also`` [s].
+
+        Args:
+            instants: equal steps, both ends included.
+            *also: more times [s].
+        """
         whole(instants, "instants", least=2, most=MOST_INSTANTS)
         times: Array = np.unique(finite(also, "times"))
         for more in (self.times, np.linspace(0, self.duration, instants)):

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, numbers_in
+from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
 from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.document import Documented
 from regrasp.plans.transition import Transition
@@ -34,9 +34,11 @@ class FingerMove(ArrayValue):
 class RegraspPlan(ArrayValue, Documented, Pictured):
     """Transitions that carry an object from one three-finger grasp to another.
 
-    steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most three.
-    orientations: (len(steps) + 1,) the object's angle before the first step, and after each [rad].
-    margin: the least angle margin of the holds on the way [rad].
+    Args:
+        steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most
+            three.
+        orientations: (len(steps) + 1,) the object's angle before the first step, and after each [rad].
+        margin: the least angle margin of the holds on the way [rad].
     """
 
     steps: tuple[Transition, ...]
@@ -56,7 +58,11 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
         return max(step.friction_needed for step in self.steps)
 
     def orientation(self, t: ArrayLike) -> Array:
-        """The object's angle [rad] at times in [0, duration] [s], of the shape of t."""
+        """The object's angle [rad] at times in [0, duration] [s], of the shape of t.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         k, local = self._place(t)
         result = np.empty(local.shape)
         for step in range(len(self.steps)):

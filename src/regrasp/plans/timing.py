@@ -7,11 +7,20 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.straight_path import fastest_duration
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, instance, items, limits, number, numbers_in, whole
+from regrasp.mechanics.checks import (
+    Array,
+    ArrayLike,
+    array,
+    instance,
+    items,
+    limits,
+    number,
+    numbers_in,
+    whole,
+)
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -32,9 +41,13 @@ class TimeScaling(ArrayValue):
     The first control value is 1, the last 0 and none rises. A B-spline stays within its control values and
     falls where they fall, so 0 <= T <= 1 and T' <= 0 hold at every t, not only at samples.
 
-    duration: [s], greater than 0.
-    control: (k,) control values. degree: of the polynomial pieces, at most k - 1.
-    Raises ``InvalidInput`` otherwise.
+    Args:
+        duration: [s], greater than 0.
+        control: (k,) control values.
+        degree: of the polynomial pieces, at most k - 1.
+
+    Raises:
+        InvalidInput: For control values that rise or do not fall from 1 to 0, and another degree or duration.
     """
 
     duration: float
@@ -55,18 +68,31 @@ class TimeScaling(ArrayValue):
 
     @classmethod
     def spline(cls, duration: float, control: Sequence[float] = PAPER_CONTROL) -> "TimeScaling":
-        """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default."""
+        """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default.
+
+        Args:
+            duration: [s], greater than 0.
+            control: values of T, falling from 1 to 0 [-].
+        """
         values = items(control, "control")
         return cls(duration, values, min(3, len(values) - 1))
 
     @classmethod
     def minimum_jerk(cls, duration: float) -> "TimeScaling":
-        """1 - 10 s^3 + 15 s^4 - 6 s^5 with s = t / duration: zero velocity and acceleration at both ends."""
+        """1 - 10 s^3 + 15 s^4 - 6 s^5 with s = t / duration: zero velocity and acceleration at both ends.
+
+        Args:
+            duration: [s], greater than 0.
+        """
         return cls(duration, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), 5)
 
     @classmethod
     def linear(cls, duration: float) -> "TimeScaling":
-        """1 - t / duration: the fastest shape under rate limits, with a jump of rate at both ends."""
+        """1 - t / duration: the fastest shape under rate limits, with a jump of rate at both ends.
+
+        Args:
+            duration: [s], greater than 0.
+        """
         return cls(duration, (1.0, 0.0), 1)
 
     @classmethod
@@ -75,10 +101,13 @@ class TimeScaling(ArrayValue):
     ) -> "TimeScaling":
         """The shortest scaling of a shape under force-rate limits (docs/facts.md, 4).
 
-        change: (n, d) forces at one end less those at the other [N].
-        rate_limit: |f_i'(t)| allowed [N/s], one number or (n,), infinite for no limit.
-        shape: whose control values to use; the paper's spline by default.
-        Raises ``InvalidInput`` where nothing changes or nothing is limited: no duration follows.
+        Args:
+            change: (n, d) forces at one end less those at the other [N].
+            rate_limit: |f_i'(t)| allowed [N/s], one number or (n,), infinite for no limit.
+            shape: whose control values to use; the paper's spline by default.
+
+        Raises:
+            InvalidInput: Where nothing changes or nothing is limited: no duration follows.
         """
         shape = cls.spline(1.0) if shape is None else shape
         instance(shape, "shape", TimeScaling)
@@ -95,11 +124,22 @@ class TimeScaling(ArrayValue):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "TimeScaling":
-        """The scaling of plain data. Raises ``InvalidInput`` for other keys and as ``TimeScaling`` does."""
+        """The scaling of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``TimeScaling`` does.
+        """
         return cls(**entries(data, "a time scaling", ("duration", "control", "degree")))
 
     def lasting(self, duration: float) -> "TimeScaling":
-        """The same shape over another duration."""
+        """The same shape over another duration.
+
+        Args:
+            duration: [s], greater than 0.
+        """
         return TimeScaling(duration, self.control, self.degree)
 
     def reversed(self) -> "TimeScaling":
@@ -111,11 +151,19 @@ class TimeScaling(ArrayValue):
         return self._evaluate(0, t)
 
     def velocity(self, t: ArrayLike) -> Array:
-        """T'(t) [1/s]."""
+        """T'(t) [1/s].
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self._evaluate(1, t)
 
     def acceleration(self, t: ArrayLike) -> Array:
-        """T''(t) [1/s^2]; zero everywhere for a linear scaling, whose jumps at the ends it does not see."""
+        """T''(t) [1/s^2]; zero everywhere for a linear scaling, whose jumps at the ends it does not see.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self._evaluate(2, t)
 
     @property

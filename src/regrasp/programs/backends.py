@@ -53,17 +53,21 @@ def solve(
 ) -> Solution:
     """Solve a program and audit the answer.
 
-    backend: a name of ``available_backends()``, ``cvxpy:<SOLVER>``, or ``auto``: the first installed one
-    whose answer is sound (a warning is logged for each that was not).
-    throw: raise ``SolverFailed`` for an answer that is neither sound nor a proven impossibility; without it
-    such an answer is returned with its status.
-    time_limit: [s] for the solver; one that has no such option is run in a process of its own and ended.
-    isolated: run the solver in a process of its own in any case, so that its crash is an error like others;
-    that takes a second to start.
-    options: passed to the back end as they are.
+    Args:
+        program: the program.
+        backend: a name of ``available_backends()``, ``cvxpy:<SOLVER>``, or ``auto``: the first installed one
+            whose answer is sound (a warning is logged for each that was not).
+        throw: raise ``SolverFailed`` for an answer that is neither sound nor a proven impossibility; without
+            it such an answer is returned with its status.
+        time_limit: [s] for the solver; one that has no such option is run in a process of its own and ended.
+        isolated: run the solver in a process of its own in any case, so that its crash is an error like
+            others; that takes a second to start.
+        **options: passed to the back end as they are.
 
-    Raises ``SolverUnavailable`` for a back end unknown or not installed, ``InvalidInput`` for a program
-    with second-order cones on a back end that takes none and for an objective that is not convex.
+    Raises:
+        SolverUnavailable: For a back end unknown or not installed.
+        InvalidInput: For a program with second-order cones on a back end that takes none and for an objective
+            that is not convex.
     """
     if time_limit is not None and not 0 < time_limit < inf:
         raise InvalidInput(f"time_limit must be a positive number of seconds or None, got {time_limit!r}")

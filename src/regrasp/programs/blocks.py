@@ -2,11 +2,17 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike as ArrayLike
+
+    Array = NDArray[np.float64]
+else:  # as in ``mechanics.checks``, of which programs know nothing
+    Array, ArrayLike = (type(name, (), {"__module__": "builtins"}) for name in ("Array", "ArrayLike"))
 
 
 class Cone(Enum):
@@ -19,7 +25,13 @@ class Cone(Enum):
 
 @dataclass(frozen=True)
 class Block:
-    """``count`` cones of one kind and size, in consecutive rows."""
+    """``count`` cones of one kind and size, in consecutive rows.
+
+    Args:
+        cone: their kind.
+        size: rows of each.
+        count: how many of them.
+    """
 
     cone: Cone
     size: int

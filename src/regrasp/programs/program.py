@@ -28,10 +28,16 @@ __all__ = ["Array", "Block", "Cone", "Program"]
 class Program:
     """The data of a conic program.
 
-    P: (n, n) sparse, symmetric positive semidefinite, both triangles. q: (n,).
-    A: (m, n) sparse. b: (m,). blocks: the cones, covering the m rows in order.
-    size: of an x that matters, by which an answer near x = 0 is judged; 0 to judge by the answer itself.
-    Raises ``InvalidInput`` for shapes that do not fit and data that are not finite.
+    Args:
+        P: (n, n) sparse, symmetric positive semidefinite, both triangles.
+        q: (n,).
+        A: (m, n) sparse.
+        b: (m,).
+        blocks: the cones, covering the m rows in order.
+        size: of an x that matters, by which an answer near x = 0 is judged; 0 to judge by the answer itself.
+
+    Raises:
+        InvalidInput: For shapes that do not fit and data that are not finite.
     """
 
     P: sparse.csc_matrix
@@ -58,7 +64,11 @@ class Program:
             _check_finite(name, values)
 
     def with_right_side(self, b: Array) -> "Program":
-        """The same program with another b (m,), at little cost: nothing but b is looked at again."""
+        """The same program with another b (m,), at little cost: nothing but b is looked at again.
+
+        Args:
+            b: (m,).
+        """
         if b.shape != self.b.shape:
             raise InvalidInput(f"b must have shape {self.b.shape}, got {b.shape}")
         _check_finite("b", b)
@@ -82,13 +92,24 @@ class Program:
         return f"program of {self.q.size} unknowns, {rows}"
 
     def save(self, path: str | Path) -> Path:
-        """Write the program to ``path``, a NumPy archive of plain arrays; returns the path."""
+        """Write the program to ``path``, a NumPy archive of plain arrays; returns the path.
+
+        Args:
+            path: the archive to write.
+        """
         arrays = {"q": self.q, "b": self.b, "cones": self.codes, "size": np.array(self.size)}
         return write_arrays(Path(path), arrays, {"P": self.P, "A": self.A})
 
     @staticmethod
     def load(path: str | Path) -> "Program":
-        """The program that ``save`` wrote. Raises ``InvalidInput`` for a file that holds none."""
+        """The program that ``save`` wrote.
+
+        Args:
+            path: an archive of ``save``.
+
+        Raises:
+            InvalidInput: For a file that holds none.
+        """
         arrays, matrices = read_arrays(Path(path))
         kinds = list(Cone)
         try:

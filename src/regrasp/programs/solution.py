@@ -36,10 +36,16 @@ class Status(Enum):
 class Solution:
     """The answer of a back end. Residuals are properties, computed here from the data and not believed.
 
-    value: (n,) x; for UNBOUNDED the direction of descent. NaN where the back end gave none.
-    duals: (m,) z, with P x + q + A'z = 0 and z in K*; for INFEASIBLE the certificate.
-    iterations: as the back end counts, or None. build_time, solve_time: [s], making its data and its call.
-    said: the back end's own word for its status.
+    Args:
+        program: what was asked.
+        backend: who answered.
+        status: how it ended.
+        value: (n,) x; for UNBOUNDED the direction of descent. NaN where the back end gave none.
+        duals: (m,) z, with P x + q + A'z = 0 and z in K*; for INFEASIBLE the certificate.
+        iterations: as the back end counts, or None.
+        build_time: making its data [s].
+        solve_time: its call [s].
+        said: the back end's own word for its status.
     """
 
     program: Program

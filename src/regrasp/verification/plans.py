@@ -39,13 +39,18 @@ def verify(
 
     Of a regrasp every step is checked, and every joint between two steps.
 
-    load: a function of time [s] that the plan was made for. The plan's load is linear between its instants
-    and is what the forces balance exactly; the function may differ from it between them. That gap must be
-    less than the margins can take: forces that balance the function must exist inside cones and limits.
-    curvature: a bound on the second derivative of the load, |F''| and |tau''| / grasp.size [N/s^2], which
-    proves the gap (a measured one that is larger refutes it). Without it the gap is measured between the
-    instants, and the verdict says so.
-    Raises ``InvalidInput`` for what is no plan, no load function or no curvature.
+    Args:
+        plan: a transition or a regrasp, whoever made it.
+        load: a function of time [s] that the plan was made for. The plan's load is linear between its
+            instants and is what the forces balance exactly; the function may differ from it between them.
+            That gap must be less than the margins can take: forces that balance the function must exist
+            inside cones and limits.
+        curvature: a bound on the second derivative of the load, |F''| and |tau''| / grasp.size [N/s^2], which
+            proves the gap (a measured one that is larger refutes it). Without it the gap is measured between
+            the instants, and the verdict says so.
+
+    Raises:
+        InvalidInput: For what is no plan, no load function or no curvature.
     """
     if hasattr(plan, "steps") and hasattr(plan, "orientations"):
         if load is not None:

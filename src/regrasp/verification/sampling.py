@@ -33,8 +33,11 @@ def verify_setpoints(
     Each must hold the object, and be the plan's at its time to 2^-40 of the largest force; the fingers that
     carry none at an end carry none there; least normal forces and rates of the record are kept.
 
-    times: (m,) rising, from the start of the plan [s]; spread evenly over it if left out.
-    angles: (m,) of the object from the start [rad], needed where it turns; the load turns the other way.
+    Args:
+        plan: the plan they are of.
+        forces: (m, n, d) object frame [N]; (m, n, 4) with soft fingers.
+        times: (m,) rising, from the start of the plan [s]; spread evenly over it if left out.
+        angles: (m,) of the object from the start [rad], needed where it turns; the load turns the other way.
     """
     start, duration = plan.start, plan.scaling.duration
     n, d = start.forces.shape

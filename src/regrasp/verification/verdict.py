@@ -11,13 +11,16 @@ from regrasp.verification.exact import RESOLUTION
 class Verification(ArrayValue):
     """The verdict on a plan.
 
-    violations: each broken condition in words; none for a valid plan.
-    worst_residual: largest equilibrium residual checked, relative to the forces [-].
-    least_angle: smallest angle margin of the contacts in use [rad], for information; infinite where none is.
-    least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0 inside.
-    load_gap: largest difference of the plan's load from the load function given [N], torque divided by the
-    grasp's size; None where none was given. load_gap_is_proven: from a bound on the load's curvature, and not
-    measured between the instants.
+    Args:
+        violations: each broken condition in words; none for a valid plan.
+        worst_residual: largest equilibrium residual checked, relative to the forces [-].
+        least_angle: smallest angle margin of the contacts in use [rad], for information; infinite where none
+            is.
+        least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0
+            inside.
+        load_gap: largest difference of the plan's load from the load function given [N], torque divided by
+            the grasp's size; None where none was given.
+        load_gap_is_proven: from a bound on the load's curvature, and not measured between the instants.
     """
 
     violations: tuple[str, ...]

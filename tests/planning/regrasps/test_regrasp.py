@@ -11,6 +11,8 @@ from regrasp.closed_form.choice import ANGLE, best_squeeze
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 
+pytestmark = pytest.mark.laws
+
 WEIGHT = rg.Wrench([0, -3.0])
 ELLIPSE = rg.Outline.ellipse(2, 1)
 

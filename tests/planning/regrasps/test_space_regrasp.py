@@ -16,6 +16,8 @@ from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.triples import TripleGraph, directions
 from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
 
+pytestmark = pytest.mark.oracle
+
 
 def fewest_moves(graph, near, start, goal, o, margin):
     """Fewest finger moves with holds of at least ``margin``, by breadth-first search over every stance."""

@@ -19,6 +19,8 @@ from regrasp.closed_form.compiled.two_fingers import BLOCK
 from regrasp.closed_form.locus import squeeze_interval
 from strategies import Pair, lattice_pair, random_pair
 
+pytestmark = pytest.mark.oracle
+
 ULP = 4
 NAMES = ("r1", "n1", "mu1", "r2", "n2", "mu2", "force", "torque")
 PAPER = {

@@ -13,6 +13,8 @@ sys.path.append(str(ROOT / "benchmarks"))
 from boundary import KINDS, Boundary, boundary
 from exact_judge import is_escape, is_held, state_faults
 
+pytestmark = pytest.mark.laws
+
 OBJECTIVES = ("effort", "angle", "peak", "force", "friction_use", "peak_normal")
 CASES = [(d, kind) for d in (2, 3) for kind in KINDS if d == 3 or kind != "box turns"]
 

@@ -10,6 +10,8 @@ from paper import GRASP, LOAD
 from space import random_grasp, random_load
 from strategies import comfortable_pair, comfortable_triple
 
+pytestmark = pytest.mark.oracle
+
 TWO = GRASP.without("P3")
 
 

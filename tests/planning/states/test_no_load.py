@@ -15,6 +15,8 @@ from strategies import comfortable_triple
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
 
+pytestmark = pytest.mark.laws
+
 MARGINS = ("angle", "force", "friction_use")
 LEAST = ("effort", "peak", "peak_normal")
 

@@ -24,6 +24,8 @@ from regrasp.planning.states.program import state_program
 from space import random_grasp, random_load, soft_random
 from strategies import comfortable_pair, comfortable_triple
 
+pytestmark = pytest.mark.contract
+
 
 def test_the_words_are_known_everywhere() -> None:
     assert tuple(OBJECTIVES) == get_args(ObjectiveName)

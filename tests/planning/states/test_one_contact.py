@@ -7,6 +7,8 @@ import regrasp as rg
 from models import OBJECTIVES
 from space import random_load, soft_random
 
+pytestmark = pytest.mark.laws
+
 FLOOR = rg.Contact([0, -1], [0, 1], 0.5, name="floor")
 SIDE = rg.Contact([0.5, -1], [0, 1], 0.5, name="side")
 WEIGHT = rg.Wrench([0, -2.0])

@@ -13,6 +13,8 @@ from regrasp.mechanics.exact.membership import vertex_forces
 sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
 
+pytestmark = pytest.mark.laws
+
 OBJECTIVES = ("effort", "angle", "peak", "force", "friction_use", "peak_normal")
 
 

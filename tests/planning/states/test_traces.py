@@ -7,6 +7,8 @@ import regrasp as rg
 from space import random_grasp, random_load, random_rotation
 from strategies import comfortable_triple
 
+pytestmark = pytest.mark.laws
+
 OBJECTIVES = ("angle", "friction_use", "effort", "peak", "peak_normal", "force")
 
 

@@ -119,7 +119,12 @@ class _Regrasp(_Header):
 def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
     """Write a plan with everything needed to read it back and verify it.
 
-    Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
+    Args:
+        plan: a ``Transition`` or a ``RegraspPlan``.
+        path: the file, in JSON.
+
+    Raises:
+        InvalidInput: For a plan with numbers that are not finite, and where the file cannot be written.
     """
     path = file_path(path)
     document = plan_document(plan, path)
@@ -131,7 +136,11 @@ def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
 def read_plan(path: str | Path) -> Transition | RegraspPlan:
     """The plan of a file that ``write_plan`` wrote; judge it with ``regrasp.verify``.
 
-    Raises one ``InvalidInput`` that names the file and what is wrong in it.
+    Args:
+        path: a file that ``write_plan`` wrote.
+
+    Raises:
+        InvalidInput: In one message, which names the file and what is wrong in it.
     """
     path = file_path(path)
     text = text_of(path, "a plan in JSON")

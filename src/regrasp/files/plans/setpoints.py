@@ -66,9 +66,14 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
     the place of ``angle`` stand ``qw``, ``qx``, ``qy``, ``qz``, the unit quaternion from the object's frame
     to its frame at the start; its sign never jumps.
 
-    rate: rows per second; both ends of the plan, and of every step, have a row. Every number reads back as
-    the same double.
-    Raises ``InvalidInput`` as ``setpoint_blocks`` does, and where the file cannot be written.
+    Args:
+        plan: a ``Transition`` or a ``RegraspPlan``.
+        path: the file, in CSV.
+        rate: rows per second; both ends of the plan, and of every step, have a row. Every number reads back
+            as the same double.
+
+    Raises:
+        InvalidInput: As ``setpoint_blocks`` does, and where the file cannot be written.
     """
     _check_plan(plan)
     blocks = setpoint_blocks(plan, rate)

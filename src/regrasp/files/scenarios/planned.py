@@ -40,7 +40,15 @@ _SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
 
 
 def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
-    """What a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
+    """What a scenario asks for.
+
+    Args:
+        scenario: what ``read_scenario`` or ``parse_scenario`` returned.
+
+    Raises:
+        Infeasible: As the planner does.
+        InvalidInput: As the planner does.
+    """
     if isinstance(scenario, RegraspScenario):
         return _regrasp(scenario)
     if isinstance(scenario, SpaceRegraspScenario):

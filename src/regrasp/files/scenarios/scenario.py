@@ -123,7 +123,11 @@ class Scenario(Strict):
         return LoadSeries([e.time for e in self.load], [e.wrench.vector for e in self.load])
 
     def wrench(self, end: Literal["start", "end"]) -> Wrench:
-        """The load at an end of the task."""
+        """The load at an end of the task.
+
+        Args:
+            end: ``start`` or ``end``.
+        """
         external = self.external
         if isinstance(external, Wrench):
             if isinstance(self.task, Rotation) and end == "end":
@@ -245,8 +249,12 @@ AnyScenario = Scenario | RegraspScenario | SpaceRegraspScenario
 def read_scenario(path: str | Path) -> AnyScenario:
     """The scenario of a TOML file.
 
-    Raises one ``InvalidInput`` that names the file and lists every problem, each with its key, what was
-    expected and what came.
+    Args:
+        path: a file in TOML.
+
+    Raises:
+        InvalidInput: In one message, which names the file and lists every problem, each with its key, what
+            was expected and what came.
     """
     path = file_path(path)
     return parse_scenario(text_of(path, "a scenario in TOML", most=_MOST_BYTES), path)
@@ -256,6 +264,10 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
     """The scenario of a text in TOML; ``file`` is the name that errors give. Raises as ``read_scenario``.
 
     Files that the text names are relative to the folder of ``file``.
+
+    Args:
+        text: in TOML.
+        file: the name that errors give; files that the text names are relative to its folder.
     """
     if not isinstance(text, str):
         raise InvalidInput(f"a scenario is parsed from text in TOML, got {shown(text)}")

@@ -6,10 +6,10 @@ from math import inf
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, choice, limits, number, whole
+from regrasp.mechanics.checks import Array, ArrayLike, choice, limits, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench

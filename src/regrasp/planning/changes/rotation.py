@@ -9,10 +9,9 @@ from math import ceil, cos, pi, radians
 from typing import NamedTuple, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, ArrayLike, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import unit_axis
 from regrasp.mechanics.rotated_loads import load_between, still_part, turned_load
@@ -58,13 +57,6 @@ def plan_rotation(
 ) -> Transition:
     """Forces over time while the object turns and all fingers stay.
 
-    start: the state to start from; or a grasp, whose state is then chosen under ``load``.
-    angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size, with a
-    warning beyond a whole turn. degrees: the same in degrees, in the place of ``angle``, without a warning.
-    axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in space
-    only. The load is fixed in the world, such as a weight; in the object frame it turns the other way.
-    end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
-    options
     Everything else is as for ``plan_removal``.
 
     Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
@@ -72,7 +64,23 @@ def plan_rotation(
     turn (a torque in the plane, a load along the axis in space), every one of them must exist, and one more
     between each two, under a turning part that is larger by 1 / cos(step / 2); steps are halved down to
     ``STEP`` / 16 until it does.
-    Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
+
+    Args:
+        start: the state to start from; or a grasp, whose state is then chosen under ``load``.
+        angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size, with a
+            warning beyond a whole turn.
+        degrees: the same in degrees, in the place of ``angle``, without a warning.
+        axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in
+            space only. The load is fixed in the world, such as a weight; in the object frame it turns the
+            other way.
+        load: before the turn, object frame; fixed in the world [N, N m].
+        end: the state after the turn, under the load there; chosen if not given, as are the states on the
+            way.
+        objective: what states are chosen for.
+        options
+
+    Raises:
+        Infeasible: Where no states bridge the turn or a force limit does not let them.
     """
     options = kept_limits(start, objective, options)
     criteria = criteria_of(objective, options)

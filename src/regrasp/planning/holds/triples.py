@@ -7,13 +7,13 @@ from math import comb, cos, inf, pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.closed_form.pyramid import facet_angles
 from regrasp.closed_form.three_fingers import HOLDS, three_finger_hold
 from regrasp.closed_form.triple_program import Fingers
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number, whole
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions

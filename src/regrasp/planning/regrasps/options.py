@@ -3,10 +3,8 @@
 from math import pi
 from typing import Any, Required
 
-from numpy.typing import ArrayLike
-
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import choice, number
+from regrasp.mechanics.checks import ArrayLike, choice, number
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.weights import RegraspWeights

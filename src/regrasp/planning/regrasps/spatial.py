@@ -7,10 +7,9 @@ from math import atan2, cos, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput, shown
-from regrasp.mechanics.checks import Array, instance, rotation, whole
+from regrasp.mechanics.checks import Array, ArrayLike, instance, rotation, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -43,19 +42,36 @@ _SAME = 1e-9
 class SpaceRegraspProblem(ArrayValue):
     """From one grasp of four fingers to another: what is asked, its triples that hold, and the plans.
 
-    mesh: a ``Mesh``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and at the
-    contacts of ``start`` and ``goal``, four each, relative to the centre of mass.
-    load: a force through the centre of mass, fixed in the world, seen from the object before it turns.
-    orientations: directions of the load, seen from the object, that are tried, spread over the sphere; the
-    start's and the goal's are tried besides. 1 forbids turning.
-    goal_rotation: (3, 3) from the object's frame in the end to its frame at the start; the same if not given.
-    objective: what the state of every hold is chosen for. states: ``each``, or ``joint``: all states in one
-    program, for the widest worst force margin and then the least change of force.
-    max_turn: largest turn during one step [rad], below pi. least_margin: angle margin [rad] that every hold
-    must have in its inner pyramids of ``facets`` faces. min_distance [m], keep: which three fingers may hold
-    together. seed: of the candidates. max_force, peak_ratio, reserve: as for ``choose_state``. step_duration:
-    [s] of each step.
-    Raises ``InvalidInput`` for arguments that are not what they must be.
+    Args:
+        mesh: a ``Mesh``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and at
+            the contacts of ``start`` and ``goal``, four each, relative to the centre of mass.
+        start: four contacts, relative to the centre of mass [m].
+        goal: four contacts at the end, relative to the centre of mass [m].
+        load: a force through the centre of mass, fixed in the world, seen from the object before it turns
+            [N].
+        friction: Coulomb coefficient of the candidates [-].
+        orientations: directions of the load, seen from the object, that are tried, spread over the sphere;
+            the start's and the goal's are tried besides. 1 forbids turning.
+        goal_rotation: (3, 3) from the object's frame in the end to its frame at the start; the same if not
+            given.
+        candidates: how many points are spread over the mesh.
+        objective: what the state of every hold is chosen for.
+        states: ``each``, or ``joint``: all states in one program, for the widest worst force margin and then
+            the least change of force.
+        max_turn: largest turn during one step [rad], below pi.
+        least_margin: angle margin [rad] that every hold must have in its inner pyramids of ``facets`` faces.
+        min_distance: least distance of two fingers that hold together [m].
+        keep: which three fingers may hold together, by reach or collision: a function of points (k, 3) of
+            each of them, relative to the centre of mass [m], that returns (k,) booleans; all if not given.
+        facets: faces of the inner pyramids in which holds are judged.
+        seed: of the candidates.
+        max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
+        peak_ratio: as for ``choose_state`` [-].
+        reserve: as for ``choose_state`` [-].
+        step_duration: [s] of each step.
+
+    Raises:
+        InvalidInput: For arguments that are not what they must be.
     """
 
     mesh: "Mesh"
@@ -156,13 +172,24 @@ class SpaceRegraspProblem(ArrayValue):
         return self.ends.start, self.ends.goal, int(_angle(self.directions[0], last) > _SAME)
 
     def sequences(self, extra: int = 0) -> list[Sequence]:
-        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins."""
+        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins.
+
+        Args:
+            extra: finger moves beyond the fewest.
+        """
         whole(extra, "extra", least=0, most=MOST_EXTRA)
         stances = Quads(self.graph, self.directions, self.max_turn, self.least_margin)
         return preferred(stances, *self.places, extra)
 
     def plans(self, extra: int = 0) -> list[SpaceRegraspPlan]:
-        """The plan of each sequence. Raises ``Infeasible`` where there is none, and says why."""
+        """The plan of each sequence.
+
+        Args:
+            extra: finger moves beyond the fewest.
+
+        Raises:
+            Infeasible: Where there is none, and says why.
+        """
         whole(extra, "extra", least=0, most=MOST_EXTRA)
         found = self.sequences(extra)
         if not found:

@@ -26,15 +26,24 @@ def choose_state(
 ) -> ChosenState:
     """The best forces of a grasp under a load.
 
-    objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
-    ``peak``, the least largest force; ``peak_normal`` and ``sum_normal``, the least largest normal force and
-    the least sum of them; ``friction_use``, the least largest fraction of the friction available; an
-    objective of one's own, such as a ``ForceCost``; or ``Criteria``, which hold the limits, too.
-    options
     What limits came to is in the result's ``force_limits``; what facets cost, ``pyramid_losses`` tells.
 
-    Returns a ``GraspState`` with the record of its choice. Raises ``Infeasible`` with the escape twist when
-    no forces exist, ``InvalidInput`` for arguments that are not what they must be.
+    Args:
+        grasp: two contacts or more, in the plane or in space.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
+            ``peak``, the least largest force; ``peak_normal`` and ``sum_normal``, the least largest normal
+            force and the least sum of them; ``friction_use``, the least largest fraction of the friction
+            available; an objective of one's own, such as a ``ForceCost``; or ``Criteria``, which hold the
+            limits, too.
+        options
+
+    Returns:
+        A ``GraspState`` with the record of its choice.
+
+    Raises:
+        Infeasible: With the escape twist when no forces exist.
+        InvalidInput: For arguments that are not what they must be.
     """
     if not isinstance(grasp, Grasp):
         raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")

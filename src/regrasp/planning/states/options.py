@@ -10,11 +10,11 @@ from dataclasses import replace
 from functools import cache, lru_cache, wraps
 from inspect import Parameter, Signature, cleandoc, signature
 from re import sub
+from textwrap import fill
 from typing import Annotated, Any, NamedTuple, ParamSpec, TypedDict, TypeVar, get_args, get_type_hints
 
-from numpy.typing import ArrayLike
-
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import ArrayLike
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import Objective, objective_of
@@ -22,6 +22,8 @@ from regrasp.plans.timing import TimeScaling
 
 BALANCE_TOLERANCE = 1e-3
 INSTANTS = 101
+WIDTH = 100
+"""Columns of a docstring's words."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -163,11 +165,18 @@ def takes(options: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def _with_words(text: str, options: Mapping[str, tuple[Any, Option]]) -> str:
-    """A docstring with the words of options in the place of its line ``options``."""
-    lines = [
-        f"{name}: {option.words}; {option.default!r} if not given." for name, (_, option) in options.items()
+    """A docstring with the words of options in the place of the line ``options`` of its ``Args``."""
+    entries = [
+        fill(
+            f"{name}: {option.words}; {option.default!r} if not given.",
+            WIDTH,
+            initial_indent=" " * 4,
+            subsequent_indent=" " * 8,
+            break_on_hyphens=False,
+        )
+        for name, (_, option) in options.items()
     ]
-    return sub(r"(?m)^options$", lambda _: "\n".join(lines), text)
+    return sub(r"(?m)^    options$", lambda _: "\n".join(entries), text)
 
 
 _LIMITS = (*LimitOptions.__annotations__, "min_normal")

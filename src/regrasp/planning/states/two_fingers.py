@@ -6,12 +6,11 @@ from math import inf, isfinite, isnan
 from typing import Unpack, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array, finite, instance, number
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -32,9 +31,15 @@ balanced to rounding by forces at both."""
 class EquilibriumLocus(ArrayValue):
     """LS_B: all forces of two planar contacts that balance a load inside both friction cones (Section III-B).
 
-    They differ by the squeeze x only, the component of f_1 along the unit vector from P_1 to P_2 [N].
-    The locus is judged with the full friction and without force limits; ``best`` keeps a reserve back.
-    Raises ``InvalidInput`` unless the grasp has two planar contacts.
+    They differ by the squeeze x only, the component of f_1 along the unit vector from P_1 to P_2 [N]. The
+    locus is judged with the full friction and without force limits; ``best`` keeps a reserve back.
+
+    Args:
+        grasp: two planar contacts.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+
+    Raises:
+        InvalidInput: Unless the grasp has two planar contacts.
     """
 
     grasp: Grasp
@@ -60,6 +65,12 @@ class EquilibriumLocus(ArrayValue):
 
         The given wrench acts like a part of the load: the locus is that of the other two contacts under
         ``load`` plus w = (f, r x f).
+
+        Args:
+            grasp: three planar contacts.
+            load: external wrench on the object about its centre of mass, object frame [N, N m].
+            contact: name or index of the third.
+            force: (2,) of the third finger on the object, object frame [N].
         """
         instance(grasp, "grasp", Grasp)
         check_load(grasp, load)
@@ -88,25 +99,40 @@ class EquilibriumLocus(ArrayValue):
         return np.array(self._frame[:2])
 
     def forces(self, squeeze: ArrayLike) -> Array:
-        """Forces (2, 2) at a squeeze, (m, 2, 2) at m of them [N]; in equilibrium for any squeeze."""
+        """Forces (2, 2) at a squeeze, (m, 2, 2) at m of them [N]; in equilibrium for any squeeze.
+
+        Args:
+            squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
+        """
         ux, uy, phi, a, b, _ = self._frame
         x = finite(squeeze, "squeeze")[..., None]
         u, p = np.array([ux, uy]), np.array([-uy, ux])
         return np.stack([x * u + a * p, -(x + phi) * u + b * p], axis=-2)
 
     def wrenches(self, squeeze: ArrayLike) -> Array:
-        """Wrenches (2, 3) at a squeeze, (m, 2, 3) at m of them [N, N m]."""
+        """Wrenches (2, 3) at a squeeze, (m, 2, 3) at m of them [N, N m].
+
+        Args:
+            squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
+        """
         forces = self.forces(squeeze)
         return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
 
     def margins(self, squeeze: ArrayLike) -> Margins:
-        """Margins of both contacts at a squeeze, or at m of them."""
+        """Margins of both contacts at a squeeze, or at m of them.
+
+        Args:
+            squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
+        """
         return margins(self.forces(squeeze), self.grasp.normals, self.grasp.frictions)
 
     def segment(self, reach: float = inf) -> Array:
         """(2, 3) ends of LS_B in wrench space, as values of w_1.
 
         An infinite end is cut off ``reach`` [N] beyond the finite one; beyond zero if both are infinite.
+
+        Args:
+            reach: how far to show an infinite side [N].
         """
         lo, hi = self.interval
         if not (isinstance(reach, float) and reach == inf):
@@ -121,7 +147,11 @@ class EquilibriumLocus(ArrayValue):
         return result
 
     def state(self, squeeze: float) -> GraspState:
-        """The state at a squeeze inside the interval; ``InvalidInput`` outside it."""
+        """The state at a squeeze inside the interval; ``InvalidInput`` outside it.
+
+        Args:
+            squeeze: inside the interval [N].
+        """
         lo, hi = self.interval
         squeeze = number(squeeze, "squeeze")
         if not lo <= squeeze <= hi:
@@ -130,7 +160,11 @@ class EquilibriumLocus(ArrayValue):
         return GraspState(self.grasp, self.load, self.forces(squeeze))
 
     def squeeze(self, state: GraspState) -> float:
-        """The squeeze of a state of this grasp [N]."""
+        """The squeeze of a state of this grasp [N].
+
+        Args:
+            state: a state of this grasp.
+        """
         instance(state, "state", GraspState)
         if state.grasp != self.grasp:
             raise InvalidInput("state must be of the grasp of this locus, got one of other contacts")
@@ -142,7 +176,9 @@ class EquilibriumLocus(ArrayValue):
     ) -> ChosenState:
         """The best state on the locus for an objective, in closed form; see ``choose_state``.
 
-        options
+        Args:
+            objective: a word, an objective of one's own, or ``Criteria``.
+            options
         """
         criteria = criteria_of(objective, options)
         return ChosenState(self.grasp, self.load, criteria, best_forces(self.grasp, self.load, criteria))

@@ -56,12 +56,19 @@ def plot_state(
     In space the axes are 3-D, at one scale along x, y and z, and the object is its ``mesh``, translucent, for
     the arrows lie inside it.
 
-    force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's extent.
-    colours: of the contacts by name; by their place in the grasp if not given.
-    absent: names of contacts whose finger is not there in this state: an open circle marks the place.
-    mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the object
-    frame with the centre of mass at the origin.
-    Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
+    Args:
+        state: the state to draw.
+        ax: the axes to draw on; new ones if not given.
+        force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's
+            extent.
+        colours: of the contacts by name; by their place in the grasp if not given.
+        absent: names of contacts whose finger is not there in this state: an open circle marks the place.
+        mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the
+            object frame with the centre of mass at the origin.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
     instance(state, "state", GraspState)
     triangles = surface_of(mesh, state.grasp)
@@ -96,6 +103,13 @@ def plot_transition(
     """The forces at both states of a transition and the path of each force head between them (Fig. 10).
 
     Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        force_scale: length of a unit force [m/N]; chosen if not given.
+        mesh: the object of a grasp in space, as for ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(transition, "transition", Transition)
     triangles = surface_of(mesh, transition.grasp)

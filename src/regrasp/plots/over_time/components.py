@@ -17,7 +17,13 @@ _DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 
 
 def plot_force_components(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """f_x, f_y and in space f_z of every finger: a colour for each finger, a dash for each component."""
+    """f_x, f_y and in space f_z of every finger: a colour for each finger, a dash for each component.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
     instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
@@ -48,8 +54,16 @@ def plot_wrench_components(
 ) -> Axes:
     """The wrench of one finger about the centre of mass over time: forces, and torques dashed on the right.
 
-    Six lines in space, three in the plane; a colour for each axis. Raises ``InvalidInput`` for an unknown
-    contact.
+    Six lines in space, three in the plane; a colour for each axis.
+
+    Args:
+        transition: the transition to draw.
+        contact: name or index of the finger.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For an unknown contact.
     """
     instance(transition, "transition", Transition)
     i = transition.grasp.index(contact)

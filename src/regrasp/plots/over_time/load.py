@@ -18,7 +18,15 @@ _SAMPLES = 201
 def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """External force and torque on the object over time, in the object frame; dots where it is given.
 
-    The torque has its own axis on the right. Raises ``InvalidInput`` where the load is constant.
+    The torque has its own axis on the right.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: Where the load is constant.
     """
     instance(transition, "transition", Transition)
     if not transition.load_varies:

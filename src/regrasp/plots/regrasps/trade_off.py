@@ -17,6 +17,10 @@ def plot_trade_off(plans: Sequence[RegraspPlan], ax: Axes | None = None) -> Axes
 
     Each disc is a plan: its finger moves, the least angle margin of its holds, and beside it that margin
     and its steps. Between two discs a further move buys nothing, so the line is level.
+
+    Args:
+        plans: of ``plan_regrasps``, by rising number of moves.
+        ax: the axes to draw on; new ones if not given.
     """
     plans = items(plans, "plans")
     given = () if isinstance(plans, RegraspPlan) else items(plans, "plans")

@@ -33,7 +33,16 @@ def plot_directions(
 
     Shaded: the directions held at all, exact (``held_directions``). Line: the margin of the state
     chosen for each of them under a load of ``load_size`` [N], as ``choose_state`` does by default.
-    objective: ``angle`` [deg] or ``force`` [N]. ax: polar. Raises ``InvalidInput`` for a grasp in space.
+
+    Args:
+        grasp: planar contacts.
+        load_size: magnitude of the load [N].
+        ax: polar.
+        objective: ``angle`` [deg] or ``force`` [N].
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For a grasp in space.
     """
     instance(grasp, "grasp", Grasp)
     refuse_space(grasp.dimension)

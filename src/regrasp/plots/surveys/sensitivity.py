@@ -33,6 +33,11 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
 
     A bar per contact for its friction, its place along the boundary's tangent, its normal and its force
     limit, where one is given; below them the load's force and torque. Angles are in degrees.
+
+    Args:
+        sensitivity: what ``regrasp.sensitivity`` found.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(sensitivity, "sensitivity", Sensitivity)
     steps, effects = sensitivity.steps(), sensitivity.effects()

@@ -3,10 +3,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.planning.states.objectives.objective import ConvexObjective
@@ -16,10 +15,16 @@ from regrasp.planning.states.objectives.objective import ConvexObjective
 class ForceCost(ConvexObjective):
     """The least sum of weights_i |f_i - towards_i|^2 + prices_i . f_i, of a user's own.
 
-    weights: a number or (n,), each at least 0. towards: (n, w) forces to stay near [N], zero if not given.
-    prices: (n, w) what a force costs in each direction, object frame. n, w are those of the grasps it is used
-    for; forces are as the cones measure them, so that a soft finger's torque counts as mu m / torsion.
-    Raises ``InvalidInput`` for costs that are not convex or bounded by nothing.
+    Args:
+        name: its word, in messages and files.
+        weights: a number or (n,), each at least 0.
+        towards: (n, w) forces to stay near [N], zero if not given.
+        prices: (n, w) what a force costs in each direction, object frame. n, w are those of the grasps it is
+            used for; forces are as the cones measure them, so that a soft finger's torque counts as mu m /
+            torsion.
+
+    Raises:
+        InvalidInput: For costs that are not convex or bounded by nothing.
     """
 
     weights: Array = field(default_factory=lambda: np.ones(()))
@@ -46,19 +51,33 @@ class ForceCost(ConvexObjective):
             object.__setattr__(self, key, None if value is None else array(value, key, (None, None)))
 
     def of_contacts(self, forces: Array, grasp: Grasp) -> Array:
-        """(..., n) weights_i |f_i - towards_i|^2 + prices_i . f_i."""
+        """(..., n) weights_i |f_i - towards_i|^2 + prices_i . f_i.
+
+        Args:
+            forces: (..., n, w) as the cones measure them [N].
+            grasp: of n contacts.
+        """
         self._check(grasp)
         away = forces if self.towards is None else forces - self.towards
         cost: Array = self.weights * (away**2).sum(axis=-1)
         return cost if self.prices is None else cost + (self.prices * forces).sum(axis=-1)
 
     def squares(self, grasp: Grasp) -> Array:
-        """(n,) the weights, the largest one 1."""
+        """(n,) the weights, the largest one 1.
+
+        Args:
+            grasp: of n contacts.
+        """
         self._check(grasp)
         return np.broadcast_to(self.weights / self.weights.max(), (len(grasp),))
 
     def linear(self, grasp: Grasp, unit: float) -> Array | None:
-        """(n, w) (prices_i - 2 weights_i towards_i) / (unit times the largest weight)."""
+        """(n, w) (prices_i - 2 weights_i towards_i) / (unit times the largest weight).
+
+        Args:
+            grasp: of n contacts.
+            unit: of the forces in the program [N].
+        """
         if self.towards is None and self.prices is None:
             return None
         cost = np.zeros((len(grasp), grasp.width)) if self.prices is None else self.prices
@@ -77,7 +96,11 @@ class ForceCost(ConvexObjective):
         return not self.follows_unit
 
     def scale(self, unit: float) -> float:
-        """unit^2 times the largest weight."""
+        """unit^2 times the largest weight.
+
+        Args:
+            unit: of the forces in the program [N].
+        """
         return unit**2 * float(self.weights.max())
 
     def _check(self, grasp: Grasp) -> None:
