@@ -99,6 +99,11 @@ VALUES: dict[str, Callable[[], Any]] = {
     "GraspState": lambda: STATE,
     "Margins": lambda: removal().end.margins,  # one of them is not a number
     "ChosenState": lambda: rg.choose_state(GRASP, LOAD),
+    "Criteria": lambda: rg.Criteria("effort", max_force=9.0, min_normal=(0.1, 0.2)),
+    "ForceCost": lambda: rg.ForceCost("mine", [1, 2], towards=[[1, 0], [0, 1]], prices=[[0, 1], [1, 0]]),
+    "StraightPath": lambda: removal().path,
+    "SampledPath": lambda: bent().path,
+    "TurningPath": lambda: rotation().path,
     "EquilibriumLocus": lambda: rg.EquilibriumLocus(PAIR, LOAD),
     "SqueezeLocus": lambda: rg.SqueezeLocus(GRASP, LOAD),
     "EscapeTwist": escape,

@@ -155,7 +155,10 @@ def test_without_any_folder_to_write_to(tmp_path: Path) -> None:
         "from regrasp.programs import Rows, solve\n"
         "rows = Rows(2)\n"
         "rows.at_least_zero(np.eye(2), -1.0)\n"
-        "print(solve(rows.program([1.0, 1.0]), 'clarabel').value.round(6).tolist(), regrasp.__file__)\n"
+        "program = rows.program([1.0, 1.0])\n"
+        "for _ in range(201):  # audits compile where there are many\n"
+        "    solution = solve(program, 'clarabel')\n"
+        "print(solution.value.round(6).tolist(), regrasp.__file__)\n"
     )
     environment = os.environ | {
         "PYTHONPATH": str(tmp_path),

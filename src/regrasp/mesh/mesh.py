@@ -316,6 +316,8 @@ class Mesh(ArrayValue):
                 degrees, and for a point farther from the surface than a tenth of the object's largest side.
         """
         given = array(point, "point", (3,))
+        if not isinstance(outside, bool):
+            raise InvalidInput(f"outside must be True or False, got {shown(outside)}")
         if along is not None and outside:
             raise InvalidInput("give one of along and outside")
         if along is not None:

@@ -1,16 +1,20 @@
 """The straight path of Eq. 1-3."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from regrasp.closed_form.straight_path import straight_path
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.path import Path
 from regrasp.plans.timing import TimeScaling
 
 
-class StraightPath(Path):
+@dataclass(frozen=True, eq=False)
+class StraightPath(ArrayValue, Path):
     """f = f_end + (f_start - f_end) u under one load. With fixed contacts both ends prove it (fact 1)."""
 
     def check(self, start: GraspState, end: GraspState, scaling: TimeScaling) -> None:

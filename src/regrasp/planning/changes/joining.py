@@ -99,7 +99,9 @@ def joined(
 
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
-    if criteria.presses and demands.min_normal is None and not isinstance(criteria.min_normal, tuple):
+    if criteria.presses and demands.min_normal is None:
+        if isinstance(criteria.min_normal, tuple):
+            raise InvalidInput("a plan takes one min_normal for all fingers that stay, not one for each")
         demands = replace(demands, min_normal=criteria.min_normal)
     start, end, record = change.start, change.end, change.record
     grasp = start.grasp

@@ -60,7 +60,8 @@ def settled(problem: Any) -> Criteria:
     """
     entries = described(LimitOptions)
     given = {name: getattr(problem, name) for name in entries}
-    changed = {name: value for name, value in given.items() if value != entries[name][1].default}
+    defaults = {name: option.default for name, (_, option) in entries.items()}
+    changed = {k: v for k, v in given.items() if not isinstance(v, float | None) or v != defaults[k]}
     criteria = criteria_of(problem.objective, changed)
     criteria.refuse_pressing("a regrasp")
     for name in ("objective", *entries):

@@ -1,9 +1,12 @@
 """What a state is chosen for, and under which limits."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 from typing import NamedTuple
+
+import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number
@@ -32,7 +35,7 @@ class Criteria:
             them to this multiple (at least 1) of the least peak force with which the grasp holds the load, or
             to a contact's own limit if that is smaller.
         reserve: fraction of every friction coefficient kept back [-].
-        min_normal: least normal force of every finger [N], or a tuple of one for each contact; 0 for none.
+        min_normal: least normal force of every finger [N], or (n,) one for each contact; 0 for none.
 
     Raises:
         InvalidInput: For anything else.
@@ -50,7 +53,7 @@ class Criteria:
         max_force: float | None = None,
         peak_ratio: float = PEAK_RATIO,
         reserve: float = RESERVE,
-        min_normal: float | tuple[float, ...] | None = 0.0,
+        min_normal: float | Sequence[float] | Array | None = 0.0,
     ) -> None:
         object.__setattr__(self, "objective", objective_of(objective))
         if max_force is not None:
@@ -60,10 +63,7 @@ class Criteria:
         object.__setattr__(self, "max_force", max_force)
         object.__setattr__(self, "peak_ratio", peak_ratio)
         object.__setattr__(self, "reserve", reserve)
-        least = min_normal or 0.0
-        for value in least if isinstance(least, tuple) else (least,):
-            number(value, "min_normal", least=0)
-        object.__setattr__(self, "min_normal", least)
+        object.__setattr__(self, "min_normal", _least_normal(min_normal))
 
     @property
     def unbounded(self) -> bool:
@@ -131,6 +131,17 @@ class Criteria:
                 f"objective {self.objective.name!r} under a zero load needs max_force: any squeeze holds it, "
                 f"so no force follows from the load"
             )
+
+
+def _least_normal(given: float | Sequence[float] | Array | None) -> float | tuple[float, ...]:
+    if given is None:
+        return 0.0
+    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str | bytes):
+        return number(given, "min_normal", least=0)
+    several = [number(value, "each min_normal", least=0) for value in given]
+    if not several:
+        raise InvalidInput("min_normal must be a number or one for each contact [N], got none")
+    return tuple(several)
 
 
 class ChosenForces(NamedTuple):

@@ -57,8 +57,8 @@ class StateOptions(LimitOptions, total=False):
     """How one state is chosen."""
 
     min_normal: Annotated[
-        float | tuple[float, ...] | None,
-        Option(None, "least normal force of every finger [N], or a tuple of one for each contact"),
+        ArrayLike | None,
+        Option(None, "least normal force of every finger [N], or (n,) one for each contact"),
     ]
 
     method: Annotated[

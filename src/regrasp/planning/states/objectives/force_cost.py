@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array
+from regrasp.mechanics.checks import Array, ArrayLike, array, numbers_in
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.planning.states.objectives.objective import ConvexObjective
@@ -38,7 +38,8 @@ class ForceCost(ConvexObjective):
         towards: ArrayLike | None = None,
         prices: ArrayLike | None = None,
     ) -> None:
-        given = array(weights, "weights", (None,) if np.ndim(weights) else ())
+        several = numbers_in(weights, "weights must be a number or (n,)").ndim > 0
+        given = array(weights, "weights", (None,) if several else ())
         if (given < 0).any() or not given.any():
             raise InvalidInput(f"weights must be at least 0, and one of them above it, got {weights!r}")
         if not isinstance(name, str) or name in OBJECTIVES:
