@@ -50,6 +50,9 @@ def solved_forces(
         # At the limit of what can be held solvers fail or guess. That is no verdict; a proof is.
         reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
         if reason is None or reason.certificate is None:
+            if criteria.unbounded and min(criteria.limits(grasp)) < inf:
+                with suppress(Infeasible, SolverFailed):  # forces as large as the limits are the unit
+                    return _solved(grasp, load, criteria, backend, facets, loose=1.0)
             anyway = _by_newton(grasp, load, criteria, backend, facets)
             if anyway is not None:
                 return anyway
@@ -126,7 +129,16 @@ def _by_newton(
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 
-def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None) -> ChosenForces:
+def _solved(
+    grasp: Grasp,
+    load: Wrench,
+    criteria: Criteria,
+    backend: str,
+    facets: int | None,
+    *,
+    loose: float = LOOSE,
+) -> ChosenForces:
+    """The best forces; force limits are at most ``loose`` units of the programs, where they bind."""
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
     if criteria.unbounded and chooser.load_size <= VANISHING * min(limits) and max(limits) < inf:
@@ -147,7 +159,7 @@ def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets
         with suppress(Infeasible, SolverFailed):  # what the cap forbids is no verdict
             return _solved(grasp, load, capped, backend, facets)._replace(force_limits=tuple(limits))
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
-        chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
+        chooser.rescale(max(chooser.unit, min(limits) / loose))
     least = None
     if criteria.unbounded and inf in limits:
         least = chooser.best(PEAK, frictions, limits)
