@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from regrasp import __version__
+from regrasp.cli_simulating import simulate
 from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverUnavailable
 
 if TYPE_CHECKING:
@@ -220,6 +221,9 @@ def bench_export(folder: Path, families: tuple[str, ...]) -> None:
     if unknown:
         raise InvalidInput(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
     click.echo(f"wrote {export([FAMILIES[name] for name in families or FAMILIES], folder)}")
+
+
+commands.add_command(simulate)
 
 
 def main() -> None:

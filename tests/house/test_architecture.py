@@ -32,6 +32,7 @@ FLOORS: dict[str, Set[str]] = {
         "plans",
         "planning",
     },
+    "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "execution"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
@@ -47,7 +48,17 @@ FLOORS: dict[str, Set[str]] = {
         "verification",
         "files",
     },
-    "plots": {"errors", "mechanics", "outline", "mesh", "closed_form", "plans", "planning", "plots"},
+    "plots": {
+        "errors",
+        "mechanics",
+        "outline",
+        "mesh",
+        "closed_form",
+        "plans",
+        "planning",
+        "execution",
+        "plots",
+    },
     "bench": {
         "errors",
         "mechanics",
@@ -59,8 +70,10 @@ FLOORS: dict[str, Set[str]] = {
         "plots",
         "bench",
     },
+    "cli_simulating": {"", "errors", "execution", "files", "plots"},
     "cli": {
         "",
+        "cli_simulating",
         "errors",
         "mechanics",
         "outline",
@@ -119,6 +132,8 @@ HEAVY = {
     "ezdxf",
     "trimesh",
     "plotly",
+    "mujoco",
+    "rosbags",
 }
 LINES = 360
 FILES = 15
@@ -207,7 +222,9 @@ def may_import(module: str, package: str) -> bool:
         # The benchmark calls solvers with their own defaults, which the back ends do not.
         return module in (f"regrasp.programs.{package}_backend", f"regrasp.bench.calls.{package}_call")
     if package in ("click", "rich"):
-        return here == "cli"
+        return here in ("cli", "cli_simulating")
+    if package == "mujoco":
+        return module in ("regrasp.execution.engine", "regrasp.execution.from_mujoco")
     if package == "shapely":
         return here in ("outline", "mesh")
     if package in ("svgpathtools", "ezdxf"):
@@ -306,6 +323,8 @@ OFFENCES = [
     ("regrasp.plans.timing", "import_module('matplotlib')", "matplotlib"),
     ("regrasp.plans.timing", "from .. import plots", "regrasp.plots"),
     ("regrasp.plans.timing", "import shapely", "shapely"),
+    ("regrasp.execution.simulation", "import mujoco", "mujoco"),
+    ("regrasp.planning", "from regrasp.execution import simulate", "regrasp.execution"),
     ("regrasp.plots.pages.page_scene", "from plotly import graph_objects", "plotly"),
     ("regrasp.outline.svg", "from ..files.source import text_of", "regrasp.files.source"),
     ("regrasp.outline.outline", "from regrasp.mesh import Mesh", "regrasp.mesh"),
