@@ -214,6 +214,8 @@ def may_import(module: str, package: str) -> bool:
         return here == "plots"
     if package == "plotly":
         return module == "regrasp.plots.pages.page"
+    if package == "rosbags":
+        return module == "regrasp.files.plans.bag"
     if package == "pydantic":
         return here == "files"
     if package == "numba":
@@ -224,7 +226,7 @@ def may_import(module: str, package: str) -> bool:
     if package in ("click", "rich"):
         return here in ("cli", "cli_simulating")
     if package == "mujoco":
-        return module in ("regrasp.execution.engine", "regrasp.execution.from_mujoco")
+        return module == "regrasp.execution.engine"
     if package == "shapely":
         return here in ("outline", "mesh")
     if package in ("svgpathtools", "ezdxf"):
