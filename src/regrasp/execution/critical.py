@@ -9,7 +9,7 @@ from regrasp.mechanics.checks import number
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 
-_LEAST, _MOST = 1e-4, 1e3
+_LEAST, _MOST = 1e-4, 30.0
 
 
 def critical_friction(
@@ -29,17 +29,18 @@ def critical_friction(
 
     guess = min(max(plan.friction_needed, 10 * _LEAST), _MOST / 10)
     below, above = guess / step**2, guess * step**2
+    leap = step**4
     if holds(above):
         while holds(below):
-            above, below = below, below / step**8
+            above, below, leap = below, below / leap, leap**2
             if below < _LEAST:
                 raise InvalidInput(f"this plan holds in physics under any friction, even {above:.2g}")
     else:
         below = above
-        while not holds(above := above * step**8):
-            below = above
+        while not holds(above := above * leap):
+            below, leap = above, leap**2
             if above > _MOST:
-                raise InvalidInput("this plan holds in physics under no friction")
+                raise InvalidInput(f"this plan holds in physics under no friction, not even {above:.2g}")
     while above / below > step:
         middle = (above * below) ** 0.5
         if holds(middle):
