@@ -32,6 +32,7 @@ FLOORS: dict[str, Set[str]] = {
         "plans",
         "planning",
     },
+    "motions": {"errors", "mechanics", "outline", "plans", "motions"},
     "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "execution"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
@@ -228,7 +229,7 @@ def may_import(module: str, package: str) -> bool:
     if package == "mujoco":
         return module == "regrasp.execution.engine"
     if package == "shapely":
-        return here in ("outline", "mesh")
+        return here in ("outline", "mesh", "motions")
     if package in ("svgpathtools", "ezdxf"):
         return here == "outline"
     if package == "trimesh":
