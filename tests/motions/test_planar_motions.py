@@ -22,7 +22,7 @@ SHAPES = {
     "ellipse": rg.Outline.ellipse(0.04, 0.02),
     "star": rg.Outline(STAR),
     "hook": rg.Outline([[0, 0], [0.09, 0], [0.09, 0.02], [0.02, 0.02], [0.02, 0.07], [0, 0.07]]),
-    "wrench": parts.wrench(),
+    "bracket": parts.bracket(),
 }
 
 
@@ -212,8 +212,29 @@ def test_tips_that_stand_in_the_way_are_named() -> None:
     ellipse = SHAPES["ellipse"]
     near = [ellipse.contact_at(s * ellipse.length, friction=0.8) for s in (0.25, 0.26, 0.75)]
     plan = rg.plan_removal(rg.Grasp(near), "P1", load=rg.Wrench([0, -1.0]))
-    with pytest.raises(rg.Infeasible, match="before step 2 finger 1 finds no way from P1 to P1"):
+    with pytest.raises(
+        rg.Infeasible, match=r"finger 1 finds no way from P1 to P1: at P1, .*, the tip of finger 2 is too near"
+    ):
         plan_motions(plan, ellipse, tip_radius=RADIUS, clearance=CLEARANCE)
+
+
+def test_two_rooms_without_a_door_are_told_apart() -> None:
+    """Tips that stand at the mouth of a pocket shut the finger inside in."""
+    pocket = rg.Outline(
+        [[0, 0], [0.1, 0], [0.1, 0.05], [0.06, 0.05], [0.06, 0.01], [0.04, 0.01], [0.04, 0.05], [0, 0.05]]
+    )
+    com = pocket.centre_of_mass
+    places = [[0.05, 0.01], [0.04, 0.045], [0.06, 0.045], [0.02, 0.0], [0.05, 0.0], [0.08, 0.0]]
+    contacts = [
+        rg.Contact(np.array(p) - com, n, 0.8, name=f"C{k}")
+        for k, (p, n) in enumerate(
+            zip(places, ([0, -1], [-1, 0], [1, 0], [0, 1], [0, 1], [0, 1]), strict=True)
+        )
+    ]
+    with pytest.raises(rg.Infeasible, match="no way from C0 to C3: the object and other tips shut C3 in"):
+        plan_motions(moved(contacts), pocket, tip_radius=RADIUS, clearance=CLEARANCE)
+    wide = plan_motions(moved(contacts), pocket, tip_radius=0.001, clearance=0.001)
+    assert wide.motions[0].way.points[:, 1].max() > 0.05 - com[1]
 
 
 def test_what_is_not_planar_is_refused() -> None:

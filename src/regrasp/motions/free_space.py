@@ -16,7 +16,7 @@ from regrasp.outline.outline import Outline
 _ARC = 6  # chords of a quarter of a circle
 _ROOM = 1 / 4  # of the clearance, kept besides it for roundings of corners
 _FINE = 1e-4  # the same where a tip touches
-_CHORD = 1 / 20  # of the clearance: how far the polygon of a smooth outline may be from it
+_CHORD = 1 / 20  # of the clearance: how far chords may be from a smooth outline, and few sides from these
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,11 @@ class FreeSpace:
 
     @classmethod
     def around(cls, outline: Outline, tip_radius: float, clearance: float) -> "FreeSpace":
-        """That of an outline; a smooth one is a polygon within a twentieth of the clearance."""
-        slack = _CHORD * clearance
-        body, fine = (shapely.Polygon(outline.polygon(part * clearance)) for part in (_CHORD, _FINE))
-        return cls(body, slack, tip_radius, clearance, fine)
+        """That of an outline, which a polygon of few sides within a tenth of the clearance stands for."""
+        within = _CHORD * clearance
+        chords, fine = (shapely.Polygon(outline.polygon(part * clearance)) for part in (_CHORD, _FINE))
+        body = shapely.simplify(chords, within)  # moves the boundary by as much again, at most
+        return cls(body, 2 * within, tip_radius, clearance, fine)
 
     @property
     def reach(self) -> float:

@@ -122,12 +122,7 @@ def _moved(
             if way is not None:
                 break
         else:
-            first = waiting[0]
-            x, y = stands[now[first][0]].tip(now[first][1]).tolist()
-            raise Infeasible(
-                f"before step {k + 1} finger {first + 1} finds no way from {now[first][0]} to "
-                f"{after[first][0]}: at ({x:.6g}, {y:.6g}) the object and other tips shut it in"
-            )
+            raise Infeasible(_shut_in(k, waiting[0], now, after[waiting[0]], stands, space))
         duration = way.shortest_time(*limits)
         gaps = _gaps(
             way,
@@ -140,6 +135,21 @@ def _moved(
         clock += duration
         now[i] = after[i]
         waiting.remove(i)
+
+
+def _shut_in(
+    k: int, i: int, now: list[Place], target: Place, stands: dict[str, _Stand], space: FreeSpace
+) -> str:
+    """Which finger finds no way and where it is shut in."""
+    said = f"before step {k + 1} finger {i + 1} finds no way from {now[i][0]} to {target[0]}: "
+    for place in (now[i][0], target[0]):
+        piece = np.array([stands[place].tip(True), stands[place].tip(False)])
+        for j, (name, on) in enumerate(now):
+            if j != i and not _tips_clear(piece, stands[name].tip(on)[None], space):
+                x, y = stands[place].contact.position.tolist()
+                return f"{said}at {place}, ({x:.6g}, {y:.6g}), the tip of finger {j + 1} is too near"
+    x, y = stands[target[0]].contact.position.tolist()
+    return f"{said}the object and other tips shut {target[0]} in, ({x:.6g}, {y:.6g})"
 
 
 def _way(
