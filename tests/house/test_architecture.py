@@ -33,7 +33,7 @@ FLOORS: dict[str, Set[str]] = {
         "planning",
     },
     "motions": {"errors", "mechanics", "outline", "plans", "motions"},
-    "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "execution"},
+    "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "motions", "execution"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},

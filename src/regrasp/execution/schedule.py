@@ -12,6 +12,7 @@ from regrasp.execution.setup import Setup
 from regrasp.execution.units import Units, steps_of
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
+from regrasp.motions.value import Motions
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 from regrasp.plans.transition import Transition
@@ -78,7 +79,7 @@ def contacts_of(plan: Transition | RegraspPlan) -> tuple[Contact, ...]:
     return tuple(found.values())
 
 
-def phases(plan: Transition | RegraspPlan, units: Units) -> Iterator[Phase]:
+def phases(plan: Transition | RegraspPlan, units: Units, motions: Motions | None = None) -> Iterator[Phase]:
     """What happens in a run, in order."""
     steps = steps_of(plan)
     fingers = plan.fingers if isinstance(plan, RegraspPlan) else (plan.grasp.names,)
@@ -90,12 +91,12 @@ def phases(plan: Transition | RegraspPlan, units: Units) -> Iterator[Phase]:
         last = [old if name is None else name for name, old in zip(fingers[k], last, strict=True)]
         there = tuple(Place(name, at is not None) for name, at in zip(last, fingers[k], strict=True))
         if there != now:
-            yield Phase(k, "start", move, now, there)
+            yield Phase(k, "start", move if motions is None else motions.pause(k), now, there)
         yield Phase(k, "way", step.duration, there, there)
         now = there
     gone = tuple(Place(p.name, p.touches and p.name not in steps[-1].leaving) for p in now)
     if gone != now:
-        yield Phase(len(steps) - 1, "end", move, now, gone)
+        yield Phase(len(steps) - 1, "end", move if motions is None else motions.pause(len(steps)), now, gone)
     yield Phase(len(steps) - 1, "end", hold, gone, gone)
 
 
@@ -114,9 +115,13 @@ def schedule(plan: Transition | RegraspPlan, setup: Setup, units: Units) -> Sche
             tips[str(c.name)] = tips[str(c.name)] + error - (error @ c.normal) * c.normal
     starts = np.cumsum([0.0, *(step.duration for step in steps)])
     lift = _LIFT * max(step.grasp.size for step in steps)
-    blocks = []
-    for phase in phases(plan, units):
-        local, *rest = _block(plan, phase, contacts, tips, lift, dt)
+    blocks, done, motions = [], -1.0, setup.motions  # done: on the clock of motions, which does not settle
+    if motions is not None and motions.plan != plan:
+        raise InvalidInput("motions must be those of the plan that is simulated")
+    for phase in phases(plan, units, motions):
+        ways = _Ways(tips, {str(c.name): c.normal for c in contacts}, lift, motions, max(done, 0.0))
+        local, *rest = _block(plan, phase, contacts, ways, dt)
+        done = 0.0 if done < 0 else done + phase.length
         blocks.append((starts[phase.step] + local, *rest))
     clock, planned, forces, targets, at, rotations, loads = (
         np.concatenate(p) for p in zip(*blocks, strict=True)
@@ -133,8 +138,7 @@ def _block(
     plan: Transition | RegraspPlan,
     phase: Phase,
     contacts: tuple[Contact, ...],
-    tips: dict[str, Array],
-    lift: float,
+    ways: "_Ways",
     dt: float,
 ) -> tuple[Array, Array, Array, Array, NDArray[np.intp], Array, Array]:
     """Time in the step, planned forces, forces, targets, places, orientations and loads of a phase."""
@@ -144,14 +148,13 @@ def _block(
     local = step.duration * {"start": np.zeros(m), "way": s, "end": np.ones(m)}[phase.part]
     turned = _rotations(plan, phase.step, step, local)
     index = {str(c.name): i for i, c in enumerate(contacts)}
-    normal = {str(c.name): c.normal for c in contacts}
     d = step.grasp.dimension
     planned = np.zeros((m, len(contacts), d))
     planned[:, [index[name] for name in step.grasp.names]] = step.forces(local)
     k = len(phase.before)
     forces, targets, at = np.zeros((m, k, d)), np.zeros((m, k, d)), np.full((m, k), -1)
     for i, (a, b) in enumerate(zip(phase.before, phase.after, strict=True)):
-        way, contact = _way(a, b, tips, normal, lift, s)
+        way, contact = ways.of(i, a, b, s, phase.length)
         targets[:, i] = np.einsum("mij,mj->mi", turned, way)
         at[:, i] = [index[name] if name else -1 for name in contact]
         if a == b and a.touches:
@@ -162,6 +165,31 @@ def _block(
     else:
         loads = np.concatenate([np.einsum("mij,mj->mi", turned, load[:, j : j + 3]) for j in (0, 3)], axis=1)
     return local, planned, forces, targets, at, turned, loads
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """Where tips are in the object's frame: at contacts, off them, on ways of their own or of ``motions``.
+
+    tips, normals: by contact. lift: how far off. begins: of this phase, on the clock of the motions [s].
+    """
+
+    tips: dict[str, Array]
+    normals: dict[str, Array]
+    lift: float
+    motions: Motions | None
+    begins: float
+
+    def of(self, finger: int, a: Place, b: Place, s: Array, length: float) -> tuple[Array, list[str]]:
+        """(m, d) where a tip is in the object's frame, and the contact it may touch there."""
+        if self.motions is None:
+            return _way(a, b, self.tips, self.normals, self.lift, s)
+        t = np.minimum(self.begins + (s * length if a != b else np.zeros_like(s)), self.motions.duration)
+        where = self.motions.positions(t)[:, finger]
+        near = {p.name: np.linalg.norm(where - self.tips[p.name], axis=1) for p in (a, b) if p.touches}
+        reach = self.motions.tip_radius
+        at = [next((n for n, away in near.items() if away[m] < reach), "") for m in range(s.size)]
+        return where, at
 
 
 def _way(

@@ -12,6 +12,7 @@ from regrasp.mechanics.checks import Array, array, number
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
+from regrasp.motions.value import Motions
 from regrasp.outline.outline import Outline
 
 _POSITIVE = (
@@ -39,6 +40,8 @@ class Setup(ArrayValue):
     delays: (k,) by which the clock of each finger is late [s].
     disturbance: a load, as a function of the time of the run [s], on top of the plan's, in the world frame.
     settle, hold, move_time: before the plan, after it, and for fingers that change places [s].
+    motions: the ways of free fingers, as ``plan_motions`` has them for this plan, with its radius of tips;
+    without them fingers fly over what is between, without touching it.
     timestep: of the simulation [s]. Longer steps than the default are refused: contacts then creep.
     """
 
@@ -57,6 +60,7 @@ class Setup(ArrayValue):
     settle: float | None = None
     hold: float | None = None
     move_time: float | None = None
+    motions: Motions | None = None
     timestep: float | None = None
 
     def __post_init__(self) -> None:
@@ -66,6 +70,10 @@ class Setup(ArrayValue):
                 object.__setattr__(self, name, number(value, name, above=0))
         if self.shape is not None and not isinstance(self.shape, (Outline, Mesh)):
             raise InvalidInput(f"shape must be an Outline or a Mesh, got {type(self.shape).__name__}")
+        if self.motions is not None and (self.contact_errors is not None or self.tip_radius is not None):
+            raise InvalidInput(
+                "motions say where tips touch and their radius: leave contact_errors and tip_radius out"
+            )
         if self.disturbance is not None and not callable(self.disturbance):
             raise InvalidInput(
                 f"disturbance must be a function of time that returns a Wrench, got {self.disturbance!r}"

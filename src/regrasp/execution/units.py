@@ -55,6 +55,7 @@ def units_of(plan: Transition | RegraspPlan, setup: Setup) -> Units:
     time = sqrt(mass * length / (MASS * force))
     stiffness = _STIFFNESS * PEAK / SIZE if setup.stiffness is None else setup.stiffness * length / force
     damping = setup.damping
+    radius = setup.tip_radius if setup.motions is None else setup.motions.tip_radius
     step = TIMESTEP if setup.timestep is None else setup.timestep / time
     if step > TIMESTEP * (1 + 1e-9):
         raise InvalidInput(
@@ -65,7 +66,7 @@ def units_of(plan: Transition | RegraspPlan, setup: Setup) -> Units:
         length, force, time, MASS, stiffness,
         _DAMPING * 2 * sqrt(stiffness * MASS) if damping is None else damping * length / (force * time),
         _FINGER * MASS if setup.finger_mass is None else setup.finger_mass / mass * MASS,
-        _TIP * SIZE if setup.tip_radius is None else setup.tip_radius / length,
+        _TIP * SIZE if radius is None else radius / length,
         step,
         *(
             default if given is None else given / time

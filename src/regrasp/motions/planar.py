@@ -60,8 +60,8 @@ def plan_motions(
             motions.append(motion)
             clock += motion.duration
         clock += steps[k].duration if k < len(steps) else 0.0
-    tips = tuple(np.array([stands[n].tip(on) for n, on in stop]) for stop in stops[1:])
-    touching = tuple(np.array([on for _, on in stop]) for stop in stops[1:])
+    tips = np.array([[stands[n].tip(on) for n, on in stop] for stop in stops[1:]])
+    touching = np.array([[on for _, on in stop] for stop in stops[1:]])
     return Motions(plan, tuple(motions), tips, touching, radius, keep)
 
 

@@ -40,15 +40,15 @@ class Motion(ArrayValue):
 class Motions(ArrayValue):
     """A plan with the ways of its free fingers: the clock stands for a step while fingers move before it.
 
-    plan, motions: in order. tips: for each step (k, 2) where the tips' centres are while it lasts [m].
-    touching: for each step (k,) whether each finger is at its contact. Both have an entry more, for the end.
+    plan, motions: in order. tips: (steps + 1, k, 2) where the tips' centres are during each step, and at last
+    [m]. contacts: (steps + 1, k) whether each finger is at its contact then.
     tip_radius, clearance: as asked for [m].
     """
 
     plan: Transition | RegraspPlan
     motions: tuple[Motion, ...]
-    tips: tuple[Array, ...]
-    contacts: tuple[NDArray[np.bool_], ...]
+    tips: Array
+    contacts: NDArray[np.bool_]
     tip_radius: float
     clearance: float
 
@@ -66,6 +66,10 @@ class Motions(ArrayValue):
         lengths = np.array([0.0, *(step.duration for step in self.steps)])
         result: Array = np.cumsum(pauses + lengths)
         return result
+
+    def pause(self, step: int) -> float:
+        """How long fingers move before a step, or after the last [s]."""
+        return sum(motion.duration for motion in self.motions if motion.step == step)
 
     @property
     def duration(self) -> float:
@@ -103,8 +107,8 @@ class Motions(ArrayValue):
 
     def _over_time(self, t: ArrayLike) -> tuple[Array, Array, NDArray[np.bool_]]:
         times, k = self._places(t)
-        positions, velocities = np.array(self.tips)[k], np.zeros((times.size, *self.tips[0].shape))
-        touching = np.array(self.contacts)[k]
+        positions, velocities = self.tips[k], np.zeros((times.size, *self.tips.shape[1:]))
+        touching = self.contacts[k]
         for motion in self.motions:
             x = (times - motion.start) / motion.duration
             before, during = (k == motion.step) & (x <= 0), (x > 0) & (x < 1)
