@@ -17,7 +17,7 @@ from regrasp.mechanics.contact import Contact
 _OPTION = " ".join(
     [
         'cone="elliptic"',  # circular cones, as in the plan: pyramids let 0.7 of the friction slip sideways
-        'impratio="1000"',  # of friction to normals in stiffness: at 1 a held object slides off in seconds
+        'impratio="1000"',  # friction as much stiffer than normals: at 1 a thousand times the slip
         'integrator="implicitfast"',  # damping of the fingers inside the step
         'tolerance="1e-12" iterations="200"',  # the solver's own default stops at a residual that creeps
         'gravity="0 0 0"',  # the plan's load is applied as a wrench, whatever it is made of
