@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test bench clean
+.PHONY: demo test quick bench mutants clean
 
 demo: $(VENV)/installed
 	$(BIN)/regrasp demo
@@ -19,6 +19,13 @@ test: $(VENV)/installed-dev
 	$(BIN)/regrasp bench --quick -o $(VENV)/bench
 	$(BIN)/regrasp bench report $(VENV)/bench
 
+# The inner loop: what a change most often breaks, in under a minute.
+quick: $(VENV)/installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/pytest -n auto -m "not slow"
+
 bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py
 	$(BIN)/python benchmarks/programs.py
@@ -26,6 +33,10 @@ bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/space.py
 	$(BIN)/regrasp bench --settings default --settings mid --settings high --repeat 3 --time-limit 5 -o benchmarks/solvers
 	$(BIN)/regrasp bench report benchmarks/solvers
+
+# Hours; goes on where it was ended. `make mutants AREAS=verification` does one.
+mutants: $(VENV)/installed-dev
+	$(BIN)/python benchmarks/mutants $(AREAS)
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

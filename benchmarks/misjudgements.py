@@ -34,9 +34,8 @@ from regrasp.programs import (
     available_backends,
     clarabel_backend,
     cvxpy_backend,
-    qpsolvers_backend,
 )
-from regrasp.programs.backends import BACKENDS
+from regrasp.programs.facts import BACKENDS
 
 RESULTS = Path(__file__).parent / "results" / "misjudgements.json"
 FACETS = 24
@@ -45,6 +44,13 @@ OBJECTIVES = ("effort", "peak")
 SETTINGS = ("default", "ours")
 CLARABEL = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas", "tol_infeas_abs", "tol_infeas_rel"), 1e-8)
 """Clarabel's defaults."""
+
+# Options by the names that qpsolvers has for them, where these differ from the solver's own.
+OURS = {
+    "osqp": {**BACKENDS["osqp"].options, "polishing": True},
+    "proxqp": {"eps_abs": 1e-10, "eps_rel": 0.0, "rho": 1e-2},
+    "highs": {},
+}
 
 
 def program_of(case: Degenerate, objective: str) -> Program:
@@ -62,7 +68,7 @@ def asked(program: Program, solver: str, settings: str) -> Solution:
         return clarabel_backend.solve(program, solver, **(CLARABEL if settings == "default" else {}))
     if solver.startswith("cvxpy"):
         return cvxpy_backend.solve(program, solver)
-    options = {} if settings == "default" else qpsolvers_backend._DEFAULTS.get(solver, {})
+    options = {} if settings == "default" else OURS.get(solver, BACKENDS[solver].options)
     equal = np.zeros(program.b.size, dtype=bool)
     for block, rows in program.slices:
         equal[rows] = block.cone is Cone.ZERO

@@ -19,7 +19,7 @@ from types import SimpleNamespace
 import numpy as np
 
 def right(program, **settings):
-    from regrasp.bench.calls.clarabel_call import Session, layout
+    from regrasp.programs.calls.clarabel_call import Session, layout
     found = Session(layout(program), tol_feas=1e-9).solve()
     return SimpleNamespace(status=found.status, x=found.x, duals=found.duals, iterations=found.iterations)
 

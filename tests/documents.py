@@ -3,21 +3,27 @@
 import io
 import re
 from contextlib import redirect_stdout
+from itertools import pairwise
 from pathlib import Path
 
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
+def examples(path: Path) -> list[tuple[str, str]]:
+    """(code, promised output) for each python block."""
+    blocks = [*_BLOCK.findall(path.read_text(encoding="utf-8")), ("", "")]
+    return [
+        (code, following[1] if following[0] == "text" else "")
+        for (language, code), following in pairwise(blocks)
+        if language == "python"
+    ]
+
+
 def executed(path: Path) -> list[tuple[str, str, str]]:
     """(code, promised output, actual output) for each python block; blocks share one namespace."""
-    blocks = _BLOCK.findall(path.read_text(encoding="utf-8"))
     namespace: dict[str, object] = {}
     result = []
-    for i, (language, code) in enumerate(blocks):
-        if language != "python":
-            continue
-        following = blocks[i + 1] if i + 1 < len(blocks) else ("", "")
-        promised = following[1] if following[0] == "text" else ""
+    for code, promised in examples(path):
         printed = io.StringIO()
         with redirect_stdout(printed):
             exec(compile(code, str(path), "exec"), namespace)

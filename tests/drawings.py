@@ -1,4 +1,4 @@
-"""Random drawings with areas known by Green's theorem, for the tests of readers: none of their code is used."""
+"""Random drawings with areas known by Green's theorem, to test readers with: nothing of theirs is used."""
 
 from dataclasses import dataclass, replace
 
@@ -149,7 +149,7 @@ def rectangle(x: float, y: float, w: float, h: float) -> list[Segment]:
     return [Line(a, b) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
 
 
-# -- SVG ------------------------------------------------------------------------------------------------------
+# -- SVG ----------------------------------------------------------------------------------------------------
 
 
 def path_data(rng: Generator, loop: list[Segment], close: str = "Z") -> str:
@@ -181,10 +181,8 @@ def _arc_words(arc: Arc, base: np.ndarray) -> str:
     axes, radii, other = np.linalg.svd(np.column_stack([arc.u, arc.v]))
     degrees = np.degrees(np.arctan2(axes[1, 0], axes[0, 0]))
     counter = np.linalg.det(axes) * np.linalg.det(other) * turn > 0
-    words = [
-        f"{float(radii[0])!r} {float(radii[1])!r} {float(degrees)!r} {int(abs(p.end - p.start) > np.pi)} {int(counter)} {_n(p.b - base)}"
-        for p in parts
-    ]
+    ellipse = f"{float(radii[0])!r} {float(radii[1])!r} {float(degrees)!r}"
+    words = [f"{ellipse} {int(abs(p.end - p.start) > np.pi)} {int(counter)} {_n(p.b - base)}" for p in parts]
     return "A" + (words[0] if len(parts) == 1 else words[0] + "A" + words[1])
 
 

@@ -1,6 +1,20 @@
 """The errors regrasp raises. Each message says what was expected, what came, and what to do."""
 
+import re
 from typing import Any
+
+# A value in a message is a reminder, not a listing.
+_SHOWN = 120
+
+
+def shown(value: Any) -> str:
+    """A value as a message shows it: on one line, not long, whatever it is."""
+    try:
+        text = repr(value)
+    except Exception:  # a number of too many digits to print, or a class whose own repr fails
+        text = f"a value of type {type(value).__name__}"
+    text = re.sub(r"\s+", " ", text)
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
 class RegraspError(Exception):
@@ -8,7 +22,23 @@ class RegraspError(Exception):
 
 
 class InvalidInput(RegraspError, ValueError):
-    """An argument, a scenario or a plan file is not what it must be; nothing was computed."""
+    """An argument, a scenario or a plan file is not what it must be; nothing was computed.
+
+    The message is one line, whatever values it names.
+
+    Args:
+        message: one line: what was expected, what came, what to do.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(re.sub(r"\s*\n\s*", " ", message))
+
+
+class InvalidFile(InvalidInput):
+    """A file with any number of problems, a line each."""
+
+    def __init__(self, message: str) -> None:
+        super(InvalidInput, self).__init__(message)
 
 
 class Infeasible(RegraspError):
@@ -16,6 +46,10 @@ class Infeasible(RegraspError):
 
     ``certificate`` is the ``EscapeTwist`` that proves it, a ``RegraspObstacle`` of a whole regrasp, or None
     where only the message can say why.
+
+    Args:
+        message: one line: what was expected, what came, what to do.
+        certificate: what proves it, or None.
     """
 
     def __init__(self, message: str, certificate: Any = None) -> None:
@@ -28,7 +62,13 @@ class SolverUnavailable(RegraspError):
 
 
 class SolverFailed(RegraspError):
-    """A solver's answer did not pass our own audit. Carries the ``program`` and the ``solution``."""
+    """A solver's answer did not pass our own audit. Carries the ``program`` and the ``solution``.
+
+    Args:
+        message: one line: what was expected, what came, what to do.
+        program: what was to be solved.
+        solution: the answer that did not pass.
+    """
 
     def __init__(self, message: str, program: Any = None, solution: Any = None) -> None:
         super().__init__(message)

@@ -15,6 +15,8 @@ from regrasp.bench.running.problem import Verdict
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program, Status, solve
 
+pytestmark = pytest.mark.oracle
+
 MOST = 400  # unknowns of what is solved again
 SMALL = [p for family in FAMILIES.values() for p in family.problems() if p.program.q.size <= MOST]
 CONIC = [p for p in SMALL if not p.is_qp]

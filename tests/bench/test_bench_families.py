@@ -10,6 +10,8 @@ from regrasp.bench.families import FAMILIES
 from regrasp.bench.running.problem import Truth, Verdict
 from regrasp.programs import Status, solve
 
+pytestmark = pytest.mark.oracle
+
 MOST = 3000  # unknowns; the largest paths are left to the benchmark itself
 PROBLEMS = {
     name: [p for p in family.problems() if p.program.q.size <= MOST] for name, family in FAMILIES.items()

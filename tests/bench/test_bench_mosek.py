@@ -12,6 +12,8 @@ from regrasp.bench.families import FAMILIES
 from regrasp.bench.running.problem import Verdict
 from regrasp.programs import Block, Cone, Program, Status, solve
 
+pytestmark = pytest.mark.oracle
+
 mosek = pytest.importorskip("mosek")
 CONIC = [p for family in FAMILIES.values() for p in family.problems() if not p.is_qp]
 

@@ -45,6 +45,8 @@ from regrasp.bench.running.warmth import warmths
 from regrasp.errors import InvalidInput
 from regrasp.plots.surveys.solvers import plot_growth, solver_looks
 
+pytestmark = pytest.mark.oracle
+
 DOCS = ROOT / "docs"
 LIMIT = 10.0
 RIGHT = Row(

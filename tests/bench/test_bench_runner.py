@@ -22,6 +22,8 @@ from regrasp.bench.running.solvers import Solver
 from regrasp.bench.running.store import ROWS, Store, read_rows
 from regrasp.errors import InvalidInput
 
+pytestmark = pytest.mark.end_to_end
+
 # -- durable rows ---------------------------------------------------------------------------------------
 
 RUNNER = """

@@ -18,6 +18,8 @@ from processes import hear_interrupts
 from regrasp.files import parse_scenario, plan_scenario, read_plan
 from scenarios import PAPER, edited, regrasp
 
+pytestmark = pytest.mark.end_to_end
+
 EXAMPLES = ROOT / "examples"
 PLAN = plan_scenario(parse_scenario(PAPER))
 NUMBERS = ["plan.json", "setpoints.csv"]

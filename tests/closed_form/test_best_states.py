@@ -12,6 +12,8 @@ from regrasp.closed_form import best
 from regrasp.mechanics import margins
 from strategies import Pair, comfortable_pair, lattice_pair, random_pair
 
+pytestmark = pytest.mark.oracle
+
 
 def values(pair: Pair, forces: np.ndarray, objective: str) -> np.ndarray:
     return objective_values(forces, np.array([pair.n1, pair.n2]), np.array([pair.mu1, pair.mu2]), objective)

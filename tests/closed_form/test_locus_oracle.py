@@ -23,6 +23,8 @@ from oracle import ExactLocus, locus, sines
 from regrasp.closed_form.locus import squeeze_interval
 from strategies import POWERS, Pair, lattice_pair, pairs, random_pair
 
+pytestmark = pytest.mark.oracle
+
 EPS = 2.0**-52
 K = 4
 

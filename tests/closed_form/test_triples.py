@@ -29,6 +29,8 @@ from triple_programs import (
     widest_angle,
 )
 
+pytestmark = pytest.mark.oracle
+
 seeds = st.integers(0, 10**6)
 facet_counts = st.sampled_from([4, 6, 8, 12, 16])
 

@@ -12,6 +12,8 @@ import regrasp as rg
 from regrasp.programs import available_backends
 from scenarios import edited, regrasp
 
+pytestmark = pytest.mark.contract
+
 METHODS = ", ".join(("auto", "closed-form", *available_backends()))
 
 # name -> (scenario, exit status, message); every line of a message starts with the file's name.
@@ -133,7 +135,10 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         ["contacts: contacts of one grasp must have different names, 'P1' came twice"],
     ),
     "coincident contacts": (
-        edited(("position = [4.0, -5.0]", "position = [-4.0, -4.0]")),
+        edited(
+            ("position = [4.0, -5.0]", "position = [-4.0, -4.0]"),
+            ("normal = [-1.0, 2.0]", "normal = [1.0, 1.0]"),
+        ),
         2,
         ["contacts: contacts 'P1' and 'P2' coincide at [-4.0, -4.0]; place them at different points"],
     ),
@@ -223,12 +228,18 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "kind missing": (
         edited(('kind = "removal"', "")),
         2,
-        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', found no such key"],
+        [
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "found no such key"
+        ],
     ),
     "kind not planned yet": (
         edited(('kind = "removal"', 'kind = "juggling"')),
         2,
-        ["task.kind: expected 'removal' or 'addition' or 'rotation' or 'regrasp', got 'juggling'"],
+        [
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "got 'juggling'"
+        ],
     ),
     "unknown contact": (
         edited(('contact = "P3"', 'contact = "P4"')),
@@ -253,8 +264,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         [
             "task.time: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, contact, whole_objective, rate_limit, "
-            "min_normal, path_objective, idle_time, instants, facets, kind"
+            "max_force, peak_ratio, reserve, balance_tolerance, contact, rate_limit, min_normal, "
+            "path_objective, instants, facets, whole_objective, idle_time, kind"
         ],
     ),
     "no duration": (
@@ -348,8 +359,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "contacts[0].friction: expected a number of at least 0, got -1",
             "task.rate: expected a number greater than 0, got 0",
             "task.kin: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, contact, whole_objective, rate_limit, "
-            "min_normal, path_objective, idle_time, instants, facets, kind",
+            "max_force, peak_ratio, reserve, balance_tolerance, contact, rate_limit, min_normal, "
+            "path_objective, instants, facets, whole_objective, idle_time, kind",
         ],
     ),
     # -- infeasible -------------------------------------------------------------------------------------
@@ -393,8 +404,11 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     ),
     "two fingers, one leaves": (
         edited((P2, ""), NO_FORCES[0], NO_FORCES[2]),
-        2,
-        ["a grasp needs two contacts or more to hold a load, got 1"],
+        3,
+        [
+            "no forces of P1 balance Wrench(force=(-1.5, -3.5), torque=0): none resists turning about P1, "
+            "about which the load has a torque; the object escapes by turning clockwise about (-4, -4)"
+        ],
     ),
 }
 
@@ -520,7 +534,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         "contacts of one grasp must have different names, 'P1' came twice",
     ),
     "Grasp: coincident": (
-        lambda: rg.Grasp([P1, rg.Contact([-4, -4], [0, 1], 0.3, name="Q")]),
+        lambda: rg.Grasp([P1, rg.Contact([-4, -4], [1, 1], 0.3, name="Q")]),
         rg.InvalidInput,
         "contacts 'P1' and 'Q' coincide at [-4.0, -4.0]; place them at different points",
     ),
@@ -583,8 +597,8 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     ),
     "choose_state: one contact": (
         lambda: rg.choose_state(rg.Grasp([P1]), LOAD),
-        rg.InvalidInput,
-        "a grasp needs two contacts or more to hold a load, got 1",
+        rg.Infeasible,
+        re.compile(r"no forces of P1 balance .*: none resists turning about P1, about which the load has .*"),
     ),
     "choose_state: peak ratio below 1": (
         lambda: rg.choose_state(TWO, LOAD, peak_ratio=0.5),
@@ -722,7 +736,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         "contact must be the Contact that arrives, got 'P3'",
     ),
     "plan_addition: where a finger is": (
-        lambda: rg.plan_addition(TWO, rg.Contact([-4, -4], [1, 0], 0.3, name="Q"), load=LOAD),
+        lambda: rg.plan_addition(TWO, rg.Contact([-4, -4], [1, 1], 0.3, name="Q"), load=LOAD),
         rg.InvalidInput,
         "contacts 'P1' and 'Q' coincide at [-4.0, -4.0]; place them at different points",
     ),

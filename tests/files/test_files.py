@@ -31,6 +31,8 @@ from regrasp.files.staging import whole_file, whole_folder
 from regrasp.plans.record import Choice, Record
 from scenarios import PAPER, edited
 
+pytestmark = pytest.mark.contract
+
 EXAMPLES = ROOT / "examples"
 
 

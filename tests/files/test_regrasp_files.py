@@ -30,6 +30,8 @@ from regrasp.verification import verify_setpoints
 from regrasp_moves import check_moves
 from scenarios import regrasp
 
+pytestmark = pytest.mark.contract
+
 EXAMPLES = ROOT / "examples"
 
 WEIGHT = rg.Wrench([0, -3.0])

@@ -8,6 +8,8 @@ from places import ROOT
 from regrasp.files import parse_scenario, plan_scenario, read_plan, read_scenario, write_plan, write_setpoints
 from regrasp.files.plans.setpoints import checked, read_setpoints
 
+pytestmark = pytest.mark.contract
+
 EXAMPLES = ROOT / "examples"
 TEXT = """
 [load]

@@ -32,6 +32,8 @@ from regrasp_moves import check_moves
 from scenarios import regrasp
 from space import random_rotation
 
+pytestmark = pytest.mark.contract
+
 EXAMPLES = ROOT / "examples"
 EXAMPLE = EXAMPLES / "space-regrasp.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")

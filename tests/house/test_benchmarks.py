@@ -11,6 +11,8 @@ import pytest
 from places import ROOT
 from regrasp.closed_form.choice import OBJECTIVES
 
+pytestmark = pytest.mark.end_to_end
+
 SCRIPT = ROOT / "benchmarks" / "closed_form.py"
 ROWS = {
     *(f"{size}_{objective}" for size in ("one", "batch") for objective in OBJECTIVES),

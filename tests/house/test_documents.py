@@ -3,10 +3,12 @@ from pathlib import Path
 
 import pytest
 
-from documents import executed
+from documents import examples, executed
 from places import ROOT
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+pytestmark = pytest.mark.documents
+
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -16,11 +18,11 @@ def test_python_blocks_print_what_the_page_says(page: Path) -> None:
 
 
 def test_readme_has_examples_to_run() -> None:
-    assert len(executed(ROOT / "README.md")) >= 5
+    assert len(examples(ROOT / "README.md")) >= 5
 
 
 def test_first_example_of_the_readme_is_short() -> None:
-    code, promised, _ = executed(ROOT / "README.md")[0]
+    code, promised = examples(ROOT / "README.md")[0]
     assert len([line for line in code.splitlines() if line.strip()]) <= 15
     assert promised.strip()
 

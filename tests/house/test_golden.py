@@ -10,6 +10,8 @@ import regrasp as rg
 from oracle import locus
 from places import TESTS
 
+pytestmark = pytest.mark.golden
+
 GOLDEN = json.loads((TESTS / "golden.json").read_text())
 MADE_UP = GOLDEN["reconstruction"]
 NAMES = ("P1", "P2", "P3")

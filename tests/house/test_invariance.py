@@ -14,6 +14,8 @@ from invariance import Frame, frames, numbered
 from models import OBJECTIVES
 from strategies import comfortable_pair, held_pairs, held_triples, pairs, random_pair
 
+pytestmark = pytest.mark.laws
+
 
 @given(pairs(), frames)
 @settings(max_examples=150)

@@ -15,6 +15,8 @@ from models import OBJECTIVES
 from oracle import is_held
 from strategies import POWERS, Pair, grooves, held_pairs, held_triples, uneven_sizes
 
+pytestmark = pytest.mark.laws
+
 objectives = st.sampled_from(OBJECTIVES)
 firm = st.sampled_from([0.1, 0.25, 0.3, 0.5, 1.0, 2.0, 5.0])
 slippery = st.sampled_from([1e-8, 1e-6, 1e-3, 0.1, 0.3, 1.0, 5.0])

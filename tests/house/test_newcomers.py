@@ -9,6 +9,8 @@ import regrasp as rg
 from regrasp.files.plans.setpoints import read_setpoints, write_setpoints
 from scenarios import edited, regrasp
 
+pytestmark = pytest.mark.contract
+
 THREE = [
     rg.Contact([-4, -4], [1, 1], 0.3),
     rg.Contact([4, -5], [-1, 2], 0.3),

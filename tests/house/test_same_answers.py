@@ -17,6 +17,8 @@ from answer_states import STATES
 from answers import Answer, Told, Value, document, load, save, told_by
 from same_answers import ALLOWED, differences, main
 
+pytestmark = pytest.mark.contract
+
 FORCES = np.array([[3.0, -4.0], [0.1, 0.0], [nan, inf]])
 
 

@@ -4,11 +4,14 @@ from itertools import pairwise
 from math import pi
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
 from space import random_grasp, random_load, random_rotation, rotated
+
+pytestmark = pytest.mark.laws
 
 SEEDS = st.integers(0, 10**6)
 POWERS = st.integers(-6, 6).map(lambda k: 10.0**k)

@@ -9,6 +9,8 @@ import pytest
 
 import regrasp as rg
 
+pytestmark = pytest.mark.oracle
+
 
 @dataclass(frozen=True)
 class Task:

@@ -11,6 +11,8 @@ import regrasp as rg
 from regrasp.mechanics.margins import margins
 from strategies import POWERS
 
+pytestmark = pytest.mark.laws
+
 COMPONENTS = st.floats(-5, 5).map(lambda x: round(x, 3) + 0.0)
 FRICTIONS = st.one_of(st.just(0.0), st.floats(0.01, 3).map(lambda x: round(x, 3)))
 

@@ -7,6 +7,8 @@ import regrasp as rg
 from regrasp.closed_form.compiled.shift import shifted_inside
 from space import random_grasp, random_load
 
+pytestmark = pytest.mark.oracle
+
 TOLERANCE = 1e-13
 
 

@@ -10,6 +10,8 @@ import regrasp as rg
 from regrasp.files import read_plan, write_plan
 from space import random_rotation, soft_random
 
+pytestmark = pytest.mark.laws
+
 PAIR = [([-1, 0, 0], [1, 0, 0]), ([1, 0, 0.1], [-1, 0, 0])]
 TWIST = rg.Wrench([0, 0, -1.0], [0.05, 0, 0])
 

@@ -11,6 +11,8 @@ import regrasp as rg
 from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, WrenchLoop, WrenchPlane, iso_torque_line
 from strategies import Pair, coordinates, directions, frictions, held_pairs, held_triples, points
 
+pytestmark = pytest.mark.laws
+
 PAPER = rg.Grasp(
     [
         rg.Contact([-4, -4], [1, 1], 0.3, name="P1"),

@@ -14,6 +14,8 @@ from regrasp.mesh import parts
 from regrasp.outline import parts as outlines
 from solids import Motion, angle, bumpy, is_inside, motions, seeds
 
+pytestmark = pytest.mark.oracle
+
 BOX = rg.Mesh.box(2, 3, 4)
 CONE = rg.Mesh.revolved([(0, 0), (1, 0), (0, 2)])
 few = settings(max_examples=25, deadline=None)

@@ -13,6 +13,8 @@ from places import ROOT
 from regrasp.mesh import parts
 from solids import bumpy, is_inside
 
+pytestmark = pytest.mark.contract
+
 BOX = rg.Mesh.box(2, 3, 4)
 BRACKET = ROOT / "examples" / "bracket.stl"
 

@@ -1,4 +1,4 @@
-"""What is seen in a drawing is read, the rest left out and said so; what is no object is refused, with why."""
+"""What is seen in a drawing is read, the rest left out and said so; what is no object is refused with why."""
 
 from math import pi
 from pathlib import Path
@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
-from regrasp.outline.dxf_curves import turned
+from regrasp.outline.dxf.curves import turned
+
+pytestmark = pytest.mark.contract
 
 RECT = '<rect width="20" height="10"/>'
 HOLE = '<circle cx="5" cy="5" r="2"/>'
@@ -98,6 +100,7 @@ SEEN = {
     "flags without spaces": ('<path d="M0 0a10 10 0 0120 0z"/>', 50 * pi),
     "arc that ends where it begins": ('<path d="M0 0A5 5 0 1 1 0 0H20V10H0Z"/>', 200),
     "arc too small to reach": ('<path d="M0 0A1 1 0 0 1 20 0Z"/>', 50 * pi),
+    "a size that is none": (f'<svg width="20" height="10" viewBox="none">{RECT}</svg>', 200),
     "utf-8 names": (f'<g id="größe">{RECT}</g>', 200),
 }  # fmt: skip
 
@@ -151,8 +154,9 @@ def test_a_clip_is_followed_or_said(tmp_path: Path) -> None:
         + "</g>"
     )
     assert rg.Outline.from_file(svg(tmp_path, clip.format(50))).notes == ()
-    with pytest.warns(UserWarning, match="cut by a clip-path, which is not followed: 1 rect"):
+    with pytest.warns(UserWarning, match="cut by a clip-path, which is not followed: 1 rect") as warned:
         rg.Outline.from_file(svg(tmp_path, clip.format(10)))
+    assert warned[0].filename == __file__
 
 
 def test_everything_hidden_says_so(tmp_path: Path) -> None:
@@ -334,6 +338,14 @@ def test_the_frame_of_a_spline_fit_is_no_outline(tmp_path: Path, sides: int) -> 
 
     found = rg.Outline.from_file(dxf(tmp_path, draw))
     assert found.area == pytest.approx(4.5 * sides * np.sin(2 * pi / sides), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "attributes", ['width="main"', 'width="auto" height="x"', 'viewBox="0 0 100%"', 'width="%"']
+)
+def test_a_page_of_no_size_is_no_fault(tmp_path: Path, attributes: str) -> None:
+    found = rg.Outline.from_file(svg(tmp_path, RECT, attributes))
+    assert (found.area, found.notes) == (200, ())
 
 
 def test_units_are_converted_where_the_file_has_them(tmp_path: Path) -> None:

@@ -23,6 +23,8 @@ from drawings import (
     rectangle,
 )
 
+pytestmark = pytest.mark.oracle
+
 FINE = 1e-5
 
 

@@ -16,6 +16,8 @@ from regrasp.outline import parts
 from regrasp.plots import plot_outline
 from strategies import POWERS, angles, points
 
+pytestmark = pytest.mark.oracle
+
 RECTANGLE = [[0, 0], [4, 0], [4, 2], [0, 2]]
 # A radius for each of seven directions, too even for a spline through them to cross itself.
 RADII = st.lists(st.floats(0.8, 1.6).map(lambda r: round(r, 3)), min_size=7, max_size=7)

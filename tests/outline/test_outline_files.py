@@ -14,6 +14,8 @@ from regrasp.outline import parts
 from regrasp.outline.chains import joined
 from regrasp.outline.flatten import Curve, flattened
 
+pytestmark = pytest.mark.contract
+
 TRAPEZIUM = np.array([[1.0, 2.0], [5.0, 2.0], [4.0, 5.0], [1.0, 4.0]])
 HOLE = np.array([[2.0, 2.5], [3.0, 2.5], [3.0, 3.5]])
 EXPECTED = rg.Outline(TRAPEZIUM, [HOLE])

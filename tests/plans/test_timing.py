@@ -11,6 +11,8 @@ import regrasp as rg
 from regrasp import TimeScaling
 from strategies import POWERS, points
 
+pytestmark = pytest.mark.laws
+
 PAPER = TimeScaling.spline(1.0)
 JERK = TimeScaling.minimum_jerk(1.0)
 LINEAR = TimeScaling.linear(1.0)

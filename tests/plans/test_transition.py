@@ -12,6 +12,8 @@ from places import TESTS
 from regrasp.files import read_plan, write_plan
 from space import soft_random
 
+pytestmark = pytest.mark.laws
+
 REMOVAL = rg.plan_removal(STATE, "P3")
 BALL = rg.Grasp(
     rg.Contact([np.cos(a), np.sin(a), z], [-np.cos(a), -np.sin(a), -z], 0.7)

@@ -11,6 +11,8 @@ from regrasp import plots
 from regrasp.plots.pages.film import moments
 from regrasp.plots.regrasps.moments import as_regrasp
 
+pytestmark = pytest.mark.contract
+
 ELLIPSE = rg.Outline.ellipse(2, 1)
 WEIGHT = rg.Wrench([0, -3.0])
 

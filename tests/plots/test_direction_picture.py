@@ -8,6 +8,8 @@ import regrasp as rg
 from paper import GRASP
 from regrasp import plots
 
+pytestmark = pytest.mark.contract
+
 PAIR = GRASP.subset(["P1", "P2"])
 
 

@@ -12,6 +12,8 @@ import regrasp as rg
 from regrasp import plots
 from regrasp.plots.look.style import PALETTE
 
+pytestmark = pytest.mark.contract
+
 NUMBER = r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?"
 
 

@@ -8,6 +8,8 @@ from regrasp import plots
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 
+pytestmark = pytest.mark.contract
+
 WEIGHT = rg.Wrench([0, -3.0])
 
 

@@ -18,6 +18,8 @@ from regrasp.mechanics.wrench_space import WrenchCone, WrenchLoop, WrenchPlane, 
 from regrasp.plots.look.style import round_below
 from regrasp.plots.look.view import best_view
 
+pytestmark = pytest.mark.contract
+
 PNG = b"\x89PNG\r\n\x1a\n"
 
 

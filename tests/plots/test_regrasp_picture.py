@@ -13,6 +13,8 @@ from regrasp.outline import parts
 from regrasp.plots.look.labels import Labels
 from regrasp.plots.regrasps.trade_off import plot_trade_off
 
+pytestmark = pytest.mark.contract
+
 ELLIPSE = rg.Outline.ellipse(2, 1)
 WEIGHT = rg.Wrench([0, -3.0])
 

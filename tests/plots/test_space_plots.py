@@ -21,6 +21,8 @@ from regrasp.plots.look.arrows import Arrow3D
 from regrasp.plots.look.solids import cone, creases, triangles_of
 from regrasp.plots.surveys import held_sphere
 
+pytestmark = pytest.mark.contract
+
 PNG = b"\x89PNG\r\n\x1a\n"
 
 

@@ -18,6 +18,8 @@ from regrasp.plots.look.arrows import Arrow3D
 from regrasp.plots.pages.film import moments
 from regrasp.plots.regrasps.moments import as_regrasp, moment_of
 
+pytestmark = pytest.mark.contract
+
 BOX = Mesh.box(0.06, 0.05, 0.04)
 WEIGHT = rg.Wrench([0, 0, -2.0])
 LAST = rotation_matrix(np.array([1, 0.3, 0]) / np.hypot(1, 0.3), pi / 2)

@@ -17,6 +17,8 @@ sys.path.append(str(BENCHMARKS))
 from degenerate import degenerate_cases  # noqa: E402
 from misjudgements import FACETS, OBJECTIVES, SETTINGS, has_answer, program_of  # noqa: E402
 
+pytestmark = pytest.mark.contract
+
 KNOWN = json.loads((BENCHMARKS / "results" / "misjudgements.json").read_text(encoding="utf-8"))
 CASES = {case.name: case for case in degenerate_cases()}
 RECORDS = KNOWN["misjudgements"]

@@ -15,6 +15,8 @@ from regrasp import verification
 from regrasp.plans.record import Record
 from strategies import held_triples
 
+pytestmark = pytest.mark.oracle
+
 POSITIONS = {"P1": [-4, -4], "P2": [4, -5], "P3": [0, 8]}
 NORMALS = {"P1": [1, 1], "P2": [-1, 2], "P3": [0, -1]}
 

@@ -9,6 +9,8 @@ import regrasp as rg
 from box import BOX, GOAL, MU, START, WEIGHT
 from regrasp.plans.sampled import SampledPath
 
+pytestmark = pytest.mark.contract
+
 OUTLINE = rg.Outline.ellipse(2, 1)
 
 
@@ -78,6 +80,7 @@ def test_a_regrasp_without_steps():
     assert "one step or more" in "; ".join(rg.verify(rg.RegraspPlan((), (0.0,), 0.1)).violations)
 
 
+@pytest.mark.filterwarnings("ignore:angle is in radians")  # whole turns are meant here
 @pytest.mark.parametrize("angle", [120.0, -300.0, 1e4])
 def test_many_whole_turns(angle):
     ball = rg.Grasp(

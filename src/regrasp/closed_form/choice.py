@@ -13,7 +13,7 @@ from regrasp.closed_form.best import (
     clamp,
     contact_lines,
 )
-from regrasp.closed_form.locus import common_interval, cone_interval, pair_frame, within_limit
+from regrasp.closed_form.locus import common_interval, cone_interval, is_rounding, pair_frame, within_limit
 
 ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE, SUM_NORMAL = range(7)
 OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal", "friction_use", "sum_normal")
@@ -47,7 +47,13 @@ def best_squeeze(
     """
     ux, uy, phi, a, b, parallel = pair_frame(x1, y1, x2, y2, fx, fy, tau)
     lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)
+    if lo1 > hi1 and is_rounding(a, phi, b):  # only the apex is left: nothing across
+        a = 0.0
+        lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)
     lo2, hi2 = cone_interval(nx2 * ux + ny2 * uy, ny2 * ux - nx2 * uy, mu2, b, parallel)
+    if lo2 > hi2 and is_rounding(b, phi, a):
+        b = 0.0
+        lo2, hi2 = cone_interval(nx2 * ux + ny2 * uy, ny2 * ux - nx2 * uy, mu2, b, parallel)
     if limit1 < inf:
         lo1, hi1 = within_limit(lo1, hi1, a, limit1)
     if limit2 < inf:
@@ -83,12 +89,7 @@ def best_squeeze(
                 x = best_friction_use(lo, hi, phi, a, b, first, second)
             else:
                 x = best_force(lo, hi, first, second)
-    # Each force by its own bounds: rounding of a large force would carry a small one out of its cone. Where
-    # rounding of the force across leaves no bounds at all, only the apex is left: that finger is idle.
+    # Each force by its own bounds: rounding of a large force would carry a small one out of its cone.
     y = clamp(-(x + phi), lo2, hi2)
     x = clamp(x, lo1, hi1)
-    if lo1 > hi1:
-        x, a = 0.0, 0.0
-    if lo2 > hi2:
-        y, b = 0.0, 0.0
     return x, (x * ux - a * uy, x * uy + a * ux, y * ux - b * uy, y * uy + b * ux), (limit1, limit2)

@@ -32,7 +32,11 @@ def pair_frame(
     about1, terms1 = tau - (x1 * fy - y1 * fx), abs(tau) + abs(x1 * fy) + abs(y1 * fx)
     about2, terms2 = tau - (x2 * fy - y2 * fx), abs(tau) + abs(x2 * fy) + abs(y2 * fx)
     through1, through2 = abs(about1) <= _CANCELLED * terms1, abs(about2) <= _CANCELLED * terms2
-    if through1 or through2:
+    if through1 and through2 and abs(across) > _CANCELLED * (abs(fx) + abs(fy)):
+        a = b = (
+            -0.5 * across
+        )  # across the line between contacts so near that both count as on the load's line
+    elif through1 or through2:
         a = 0.0 if through2 else -across
         b = 0.0 if through1 else -across
     elif terms2 <= terms1:
@@ -74,15 +78,22 @@ def cone_interval(c: float, s: float, mu: float, a: float, parallel: float) -> t
     else:
         bound = -offset / slope
         hi = bound if bound < hi else hi
-    if mu == 0.0:  # the two rows say f.t = 0; what is left is f.n >= 0
-        if s * s <= small:  # the normal lies along the line
-            if c > 0.0:
-                lo = 0.0 if lo < 0.0 else lo
-            else:
-                hi = 0.0 if hi > 0.0 else hi
-        elif s * a < 0.0:
-            lo, hi = inf, -inf
+    if mu == 0.0 and s * s <= small:  # the two rows say f.t = 0; the normal lies along the line
+        if c > 0.0:
+            lo = 0.0 if lo < 0.0 else lo
+        else:
+            hi = 0.0 if hi > 0.0 else hi
+    elif lo >= hi and hi > -inf and lo < inf:
+        # Across the cone the rows never cross; across its negative, f.n < 0, they always do. The normal force
+        # tells one from the other where rounding of a narrow cone does not.
+        middle = 0.5 * (lo + hi)
+        lo, hi = (middle, middle) if c * middle + s * a >= 0.0 else (inf, -inf)
     return lo, hi
+
+
+def is_rounding(across: float, phi: float, other: float) -> bool:
+    """Whether a force across the line of contacts is lost in the rounding of the load and the other one."""
+    return abs(across) <= _CLOSED * (abs(phi) + abs(other))
 
 
 def common_interval(
@@ -120,7 +131,11 @@ def squeeze_interval(
     """
     ux, uy, phi, a, b, parallel = pair_frame(x1, y1, x2, y2, fx, fy, tau)
     lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, a, parallel)
+    if lo1 > hi1 and is_rounding(a, phi, b):
+        lo1, hi1 = cone_interval(nx1 * ux + ny1 * uy, ny1 * ux - nx1 * uy, mu1, 0.0, parallel)
     lo2, hi2 = cone_interval(nx2 * ux + ny2 * uy, ny2 * ux - nx2 * uy, mu2, b, parallel)
+    if lo2 > hi2 and is_rounding(b, phi, a):
+        lo2, hi2 = cone_interval(nx2 * ux + ny2 * uy, ny2 * ux - nx2 * uy, mu2, 0.0, parallel)
     return common_interval(lo1, hi1, lo2, hi2, phi, a, b)
 
 

@@ -1,27 +1,48 @@
-"""Output written whole or not at all: made in a temporary folder on the same disk, then moved into place."""
+"""Output written whole or not at all: made in a temporary folder on the same disk, then moved into place.
+
+A process that is killed cannot clear its temporary folder; the next one that writes to the same place does.
+Which folders are abandoned is known from locks, which end with the process that holds them.
+"""
 
 import os
+import shutil
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import mkdtemp
 from typing import TextIO
 
 from regrasp.errors import InvalidInput
+from regrasp.files.locks import HAS_LOCKS, lock
+from regrasp.mechanics.checks import file_path
+
+_PREFIX = ".regrasp-"
+# Where there are no locks, a temporary folder this old is nobody's [s].
+_OLD = 86400.0
 
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[TextIO]:
     """A text file that appears at ``path``, in place of an earlier one, when the block ends without error.
 
+    What is there and is no file, a pipe or a device, is written to directly.
     Raises ``InvalidInput`` where it cannot be written.
     """
-    path = Path(path)
-    with _writing(path), TemporaryDirectory(prefix=".regrasp-", dir=path.parent) as temporary:
-        part = Path(temporary, path.name)
-        with part.open("w", encoding="utf-8", newline="") as file:
-            yield file
-        part.replace(path)
+    path = file_path(path)
+    with _writing(path):
+        path = Path(os.path.realpath(path))  # a link stays a link
+        if path.is_dir():
+            raise InvalidInput(f"{path}: expected a file to write, found a folder")
+        if path.exists() and not path.is_file():
+            with path.open("w", encoding="utf-8", newline="") as file:
+                yield file
+            return
+        with _temporary_in(path.parent) as temporary:
+            part = temporary / path.name
+            with part.open("w", encoding="utf-8", newline="") as file:
+                yield file
+            part.replace(path)
 
 
 @contextmanager
@@ -29,34 +50,85 @@ def whole_folder(path: str | Path) -> Iterator[Path]:
     """A folder to write files into; they appear in ``path`` together when the block ends without error.
 
     A folder that is not there is made, its parents too. In one that is, files of equal name are replaced
-    and others left alone; an error, or an interrupt, half-way puts back what was there.
+    and others left alone; an error, or an interrupt, half-way puts back what was there. Of two that write to
+    one folder, one comes after the other.
     Raises ``InvalidInput`` where it cannot be written.
     """
-    with _writing(Path(path)):
+    with _writing(file_path(path)):
         path = Path(path).resolve()
-        if path.is_dir():
-            with TemporaryDirectory(prefix=".regrasp-", dir=path) as temporary:
-                new, old = Path(temporary, "new"), Path(temporary, "old")
-                new.mkdir()
-                old.mkdir()
-                yield new
-                _exchange(new, path, old)
-            return
-        if path.exists():
+        if path.exists() and not path.is_dir():
             raise InvalidInput(f"{path}: expected a folder to write into, found a file")
-        missing = path  # the uppermost folder that is not there
+        missing = path  # the uppermost folder that is not there, or the folder itself
         while not missing.parent.exists():
             missing = missing.parent
-        with TemporaryDirectory(prefix=".regrasp-", dir=missing.parent) as temporary:
-            made = Path(temporary, missing.name)
+        beside = path if path.is_dir() else missing.parent
+        with _temporary_in(beside) as temporary:
+            made = temporary / (missing.name if beside != path else "new")
             folder = made / path.relative_to(missing)
             folder.mkdir(parents=True)
             yield folder
-            made.rename(missing)
+            with _locked(beside):
+                if not missing.exists():
+                    made.rename(missing)
+                    return
+                path.mkdir(parents=True, exist_ok=True)  # by another run meanwhile, if it was not there
+                with nullcontext() if path == beside else _locked(path):
+                    _exchange(folder, path, temporary)
 
 
-def _exchange(new: Path, path: Path, old: Path) -> None:
-    """Move the files of ``new`` into ``path`` and those in their places into ``old``; on any error, back."""
+@contextmanager
+def _temporary_in(folder: Path) -> Iterator[Path]:
+    """A temporary folder in another, which is ours until the block ends; abandoned ones are cleared first."""
+    with _locked(folder):
+        for left in folder.glob(f"{_PREFIX}*"):
+            if left.is_dir() and _is_abandoned(left):
+                shutil.rmtree(left, ignore_errors=True)
+        made = Path(mkdtemp(prefix=_PREFIX, dir=folder))
+        mine = lock(made, wait=False)
+    try:
+        yield made
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+        if mine is not None:
+            os.close(mine)
+
+
+def _is_abandoned(folder: Path) -> bool:
+    """Whether the process whose temporary folder it is has ended; its parent folder is locked by us."""
+    mine = lock(folder, wait=False)
+    if mine is not None:
+        os.close(mine)
+        return True
+    if _has_locks(folder.parent):
+        return False
+    with suppress(OSError):
+        return time.time() - folder.stat().st_mtime > _OLD
+    return False
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """The only process in a folder, where the system has locks."""
+    held = lock(folder, wait=True)
+    try:
+        yield
+    finally:
+        if held is not None:
+            os.close(held)
+
+
+def _has_locks(folder: Path) -> bool:
+    """Whether this disk knows locks: a folder that we hold cannot be locked once more."""
+    again = lock(folder, wait=False)
+    if again is not None:
+        os.close(again)
+    return HAS_LOCKS and again is None
+
+
+def _exchange(new: Path, path: Path, temporary: Path) -> None:
+    """Move the files of ``new`` into ``path`` and those in their places aside; on any error, back."""
+    old = temporary / f"{_PREFIX}old"
+    old.mkdir()
     names = [file.name for file in new.iterdir()]
     for name in names:
         if (path / name).is_dir():

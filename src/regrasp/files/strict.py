@@ -6,7 +6,7 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidFile, shown
 
 
 class Strict(BaseModel):
@@ -24,6 +24,7 @@ _EXPECTED = {
     "greater_than": "a number greater than {gt:g}",
     "greater_than_equal": "a number of at least {ge:g}",
     "less_than": "a number less than {lt:g}",
+    "less_than_equal": "a number of at most {le:g}",
     "list_type": "a list",
     "literal_error": "{expected}",
     "model_attributes_type": "a table",
@@ -47,7 +48,7 @@ def validated(model: type[Model], data: Any, file: str | Path) -> Model:
         lines = [
             f"{file}: {line}" for problem in error.errors() for line in _in_words(model, problem).splitlines()
         ]
-        raise InvalidInput("\n".join(lines)) from None
+        raise InvalidFile("\n".join(lines)) from None
 
 
 def _in_words(model: type[BaseModel], problem: Mapping[str, Any]) -> str:
@@ -101,5 +102,5 @@ def _tag(model: type[BaseModel]) -> Any:
 
 
 def _shown(value: Any) -> str:
-    text = repr(value)
+    text = shown(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

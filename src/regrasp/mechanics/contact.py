@@ -1,14 +1,14 @@
 """A frictional point contact."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan, hypot
 from typing import Any
 
-from numpy.typing import ArrayLike
-
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number, point
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, number, point
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 # A normal whose length is this near to 1 is taken as it is, so that one normalised before (whose length is
@@ -20,17 +20,21 @@ _UNIT = 2.0**-51
 class Contact(ArrayValue):
     """A finger's point contact with Coulomb friction: it pushes along ``normal`` and never pulls.
 
-    position: (d,) [m], object frame, origin at the centre of mass; d is 2 or 3.
-    normal: (d,), points **into** the object; any non-zero vector, stored with unit length.
-    friction: Coulomb coefficient mu >= 0; the friction cone has half-angle atan(mu).
-    max_force: largest force magnitude the finger can make [N], or None for no limit; of a soft finger the
-    largest |(f, mu m / torsion)|, its torque counted as the tangential force that uses as much friction.
-    torsion: in space, of a soft finger: the most torque about the normal per normal force [m], greater than
-    0, or None for a point contact. Together with the tangential force it stays inside the limit surface
-    (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research 15, 1996).
-    name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
+    Args:
+        position: (d,) [m], object frame, origin at the centre of mass; d is 2 or 3.
+        normal: (d,), points **into** the object; any non-zero vector, stored with unit length [-].
+        friction: Coulomb coefficient mu >= 0 [-]; the friction cone has half-angle atan(mu).
+        max_force: largest force magnitude the finger can make [N], or None for no limit; of a soft finger the
+            largest |(f, mu m / torsion)|, its torque counted as the tangential force that uses as much
+            friction.
+        torsion: in space, of a soft finger: the most torque about the normal per normal force [m], greater
+            than 0, or None for a point contact. Together with the tangential force it stays inside the limit
+            surface (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research
+            15, 1996).
+        name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
 
-    Raises ``InvalidInput`` for anything else.
+    Raises:
+        InvalidInput: For anything else.
     """
 
     position: Array
@@ -51,7 +55,11 @@ class Contact(ArrayValue):
         name: str | None = None,
     ) -> None:
         if name is not None and (not isinstance(name, str) or not name.strip()):
-            raise InvalidInput(f"a contact's name must be a non-empty string, got {name!r}")
+            raise InvalidInput(f"a contact's name must be a non-empty string, got {shown(name)}")
+        if name is not None and not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name):
+            raise InvalidInput(
+                f"a contact's name must be Unicode text, got {shown(name)} with half a character"
+            )
         label = "contact" if name is None else f"contact {name!r}"
         where = point(position, f"{label}: position")
         direction = point(normal, f"{label}: normal")
@@ -108,13 +116,44 @@ class Contact(ArrayValue):
         return (*self.position.tolist(), *self.normal.tolist(), self.friction)
 
     def named(self, name: str) -> "Contact":
-        """The same contact under another name."""
+        """The same contact under another name.
+
+        Args:
+            name: of any letters, not empty.
+        """
         return self.changed(name=name)
 
     def changed(self, **fields: Any) -> "Contact":
-        """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``."""
+        """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``.
+
+        Args:
+            **fields: ``friction`` [-], ``max_force`` [N], ``torsion`` [m] or ``name``, as of ``Contact``.
+        """
         kept = {"max_force": self.max_force, "torsion": self.torsion, "name": self.name} | fields
         return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The contact as plain data, which JSON can hold; ``from_dict`` gives back the equal contact."""
+        return {
+            "name": self.name,
+            "position": self.position.tolist(),
+            "normal": self.normal.tolist(),
+            "friction": self.friction,
+            "max_force": self.max_force,
+        } | ({} if self.torsion is None else {"torsion": self.torsion})
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Contact":
+        """The contact of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``Contact`` does.
+        """
+        optional = ("name", "max_force", "torsion")
+        return cls(**entries(data, "a contact", ("position", "normal", "friction"), optional))
 
     def __repr__(self) -> str:
         limit = "" if self.max_force is None else f", max_force={self.max_force:g}"

@@ -8,8 +8,8 @@ from math import hypot, inf
 import numpy as np
 
 from regrasp.display import Pictured
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, array, instance, limits, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.opposition import dot, exact, oppositions
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -23,13 +23,17 @@ NEVER = 1e9
 class EscapeTwist(ArrayValue, Pictured):
     """A small motion of the object on which the load does more work than the contacts can oppose.
 
-    twist: (3,) in the plane, (6,) in space: velocity of the centre of mass, then angular velocity; of any
-    length but zero, so work along it is best read per radian or per metre, as ``amount`` measures it.
-    frictions, limits: (n,) friction coefficients and force limits [N] it was found for.
-
     Were G f = -w_ext, then twist . G f = -twist . w_ext < 0; but finger i moves with v_i = v + omega x r_i
     and forces in its cone cannot do work below -limit_i * opposition_i. ``is_proof`` decides this in exact
     rational arithmetic on the numbers stored here.
+
+    Args:
+        grasp: the contacts that cannot hold.
+        load: the load they cannot hold, object frame [N, N m].
+        twist: (3,) in the plane, (6,) in space: velocity of the centre of mass, then angular velocity; of any
+            length but zero, so work along it is best read per radian or per metre, as ``amount`` measures it.
+        frictions: (n,) friction coefficients it was found for [-].
+        limits: (n,) force limits it was found for [N].
     """
 
     grasp: Grasp
@@ -41,6 +45,16 @@ class EscapeTwist(ArrayValue, Pictured):
     _drawn_by = "regrasp.plots.escapes.escape:escape_png"
 
     def __post_init__(self) -> None:
+        instance(self.grasp, "grasp", Grasp)
+        instance(self.load, "load", Wrench)
+        if self.load.dimension != self.grasp.dimension:
+            raise InvalidInput(f"load must have the grasp's dimension {self.grasp.dimension}")
+        count = len(self.grasp)
+        frictions = array(self.frictions, "frictions", (count,))
+        if (frictions < 0).any():
+            raise InvalidInput(f"frictions must be at least 0, got {shown(self.frictions)}")
+        object.__setattr__(self, "frictions", tuple(frictions.tolist()))
+        object.__setattr__(self, "limits", tuple(limits(self.limits, "limits", count).tolist()))
         object.__setattr__(self, "twist", array(self.twist, "twist", self.load.vector.shape))
         if not self.twist.any():
             raise InvalidInput("an escape twist must not be zero: the object does not move")
@@ -49,7 +63,7 @@ class EscapeTwist(ArrayValue, Pictured):
     def velocities(self) -> Array:
         """(n, d) velocity of the object at each contact, v + omega x r_i."""
         moved: Array = self.grasp.matrix.T @ self.twist
-        return moved.reshape(len(self.grasp), self.grasp.width)[:, : self.grasp.dimension]
+        return read_only(moved.reshape(len(self.grasp), self.grasp.width)[:, : self.grasp.dimension])
 
     @cached_property
     def load_power(self) -> float:

@@ -1,18 +1,20 @@
 """A set of contacts and its grasp matrix."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
+from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, finite, items, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.tangents import tangents_of
-from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.plain import entries, listed
+from regrasp.mechanics.value import ArrayValue, one_line
 from regrasp.mechanics.wrench import torque
 
 # Contacts nearer than this fraction of the largest coordinate are one point in double precision.
@@ -23,19 +25,25 @@ COINCIDENT = 1e-12
 class Grasp(ArrayValue):
     """Contacts on one object, addressed by name or by index.
 
-    Unnamed contacts are named P1, P2, ... by their place, or the next such name that is free. Raises
-    ``InvalidInput`` for an empty grasp, contacts of different dimension, equal names and coincident contacts.
+    Unnamed contacts are named P1, P2, ... by their place, or the next such name that is free.
+
+    Args:
+        contacts: one or more, of one dimension.
+
+    Raises:
+        InvalidInput: For an empty grasp, contacts of different dimension, equal names and contacts at one
+            point with one normal.
     """
 
     contacts: tuple[Contact, ...]
 
     def __init__(self, contacts: Iterable[Contact]) -> None:
-        given = tuple(contacts)
+        given = items(contacts, "contacts of a grasp")
         if not given:
             raise InvalidInput("a grasp needs at least one contact, got none")
         for contact in given:
             if not isinstance(contact, Contact):
-                raise InvalidInput(f"a grasp is made of Contacts, got {contact!r}")
+                raise InvalidInput(f"a grasp is made of Contacts, got {shown(contact)}")
             if contact.dimension != given[0].dimension:
                 raise InvalidInput(
                     f"contacts of one grasp must have one dimension, got {given[0].dimension} "
@@ -53,6 +61,23 @@ class Grasp(ArrayValue):
     def __hash__(self) -> int:
         return self._hash
 
+    def to_dict(self) -> dict[str, Any]:
+        """The grasp as plain data, which JSON can hold; ``from_dict`` gives back the equal grasp."""
+        return {"contacts": [contact.to_dict() for contact in self.contacts]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Grasp":
+        """The grasp of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``Grasp`` does.
+        """
+        contacts = listed(entries(data, "a grasp", ("contacts",))["contacts"], "contacts of a grasp")
+        return cls(map(Contact.from_dict, contacts))
+
     # -- lookup ---------------------------------------------------------------------------------------
 
     @cached_property
@@ -61,14 +86,19 @@ class Grasp(ArrayValue):
         return tuple(str(contact.name) for contact in self.contacts)
 
     def index(self, contact: str | int) -> int:
-        """The place of a contact given by name or by index (negative counts from the end)."""
+        """The place of a contact given by name or by index (negative counts from the end).
+
+        Args:
+            contact: name or index; a negative one counts from the end.
+        """
         if isinstance(contact, str):
             for i, known in enumerate(self.contacts):
                 if known.name == contact:
                     return i
-            raise InvalidInput(f"no contact {contact!r} in this grasp; it has {', '.join(self.names)}")
+            names = ", ".join(map(one_line, self.names))
+            raise InvalidInput(f"no contact {contact!r} in this grasp; it has {names}")
         if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
-            raise InvalidInput(f"a contact is addressed by name or index, got {contact!r}")
+            raise InvalidInput(f"a contact is addressed by name or index, got {shown(contact)}")
         if not -len(self) <= contact < len(self):
             raise InvalidInput(f"no contact {contact} in this grasp; it has {len(self)}, counted from 0")
         return int(contact) % len(self)
@@ -88,22 +118,39 @@ class Grasp(ArrayValue):
     # -- other grasps ---------------------------------------------------------------------------------
 
     def subset(self, contacts: Iterable[str | int]) -> "Grasp":
-        """The grasp of the contacts named, in the order named."""
-        return Grasp(self[contact] for contact in contacts)
+        """The grasp of the contacts named, in the order named.
+
+        Args:
+            contacts: names or indices.
+        """
+        return Grasp(self[contact] for contact in items(contacts, "contacts"))
 
     def without(self, contact: str | int) -> "Grasp":
-        """The grasp after one finger left."""
+        """The grasp after one finger left.
+
+        Args:
+            contact: name or index of the finger that leaves.
+        """
         gone = self.index(contact)
         if len(self) == 1:
             raise InvalidInput(f"the last contact, {self.names[0]!r}, cannot be taken from a grasp")
         return self._of(self.contacts[:gone] + self.contacts[gone + 1 :])
 
     def with_contact(self, contact: Contact) -> "Grasp":
-        """The grasp after one finger arrived; its contact comes last."""
+        """The grasp after one finger arrived; its contact comes last.
+
+        Args:
+            contact: of the finger that arrives.
+        """
         return Grasp((*self.contacts, contact))
 
     def replaced(self, contact: str | int, by: Contact) -> "Grasp":
-        """The grasp with one contact in the place of another."""
+        """The grasp with one contact in the place of another.
+
+        Args:
+            contact: name or index of the one that goes.
+            by: the one that takes its place.
+        """
         gone = self.index(contact)
         return Grasp(by if i == gone else c for i, c in enumerate(self.contacts))
 
@@ -202,7 +249,13 @@ class Grasp(ArrayValue):
         return read_only(self.cones.matrix / self.lengths[:, None])
 
     def wrenches(self, forces: Array) -> Array:
-        """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces."""
+        """(..., n, 3) or (..., n, 6) wrenches (f_i, r_i x f_i), with m_i n_i of soft fingers, of forces.
+
+        Args:
+            forces: (..., n, d) of the fingers on the object, object frame [N]; (..., n, 4) with soft fingers.
+        """
+        if not isinstance(forces, np.ndarray) or forces.shape[-2:] != (len(self), self.width):
+            forces = finite(forces, "forces", (len(self), self.width))
         pushed = forces[..., : self.dimension]
         torques = torque(self.positions, pushed)
         if self.is_soft:
@@ -266,12 +319,21 @@ def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:
 
 
 def _refuse_coincident(contacts: tuple[Contact, ...]) -> None:
+    """At one point two fingers may push along different normals (an inner corner), not along the same one."""
+    for first, second in coincident(contacts):
+        a, b = contacts[first], contacts[second]
+        if abs(a.normal - b.normal).max() <= COINCIDENT:
+            raise InvalidInput(
+                f"contacts {a.name!r} and {b.name!r} coincide at "
+                f"{a.position.tolist()}; place them at different points"
+            )
+
+
+def coincident(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
+    """Pairs of contacts at one point, up to rounding of the largest coordinate."""
     points = [contact.position.tolist() for contact in contacts]
     near = COINCIDENT * max(abs(x) for p in points for x in p)
     for j, p in enumerate(points):
         for i, q in enumerate(points[:j]):
             if all(abs(a - b) <= near for a, b in zip(p, q, strict=True)):
-                raise InvalidInput(
-                    f"contacts {contacts[i].name!r} and {contacts[j].name!r} coincide at "
-                    f"{contacts[i].position.tolist()}; place them at different points"
-                )
+                yield i, j

@@ -6,13 +6,14 @@ from math import inf, nan, pi
 import numpy as np
 
 from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.value import ArrayValue
 
 # A force below this fraction of the largest one is rounding: the contact carries no force.
 IDLE = 2.0**-40
 
 
 @dataclass(frozen=True, eq=False)
-class Margins:
+class Margins(ArrayValue):
     """Margins of each contact, NaN where the contact carries no force and a margin has no meaning.
 
     For one state each is (n,); for m instants each is (m, n).
@@ -57,7 +58,8 @@ def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
     available = np.maximum(frictions * normal, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         use = np.where(normal < 0, inf, tangential / available)
-    straight = (frictions == 0) & (normal > 0) & (tangential <= IDLE * magnitude)  # nothing used of nothing
+    # Nothing used of nothing; a double cannot express the direction of less friction than that.
+    straight = (frictions <= IDLE) & (normal > 0) & (tangential <= IDLE * magnitude)
     return Margins(
         read_only(np.where(idle, nan, angle)),
         read_only(np.where(idle, 0.0, force)),

@@ -4,11 +4,14 @@ A plan is judged with the full friction and the full force limits, in exact arit
 tolerance; it is made with a little less of both.
 """
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import number
 
 RESERVE = 1e-9
 """Default fraction of every friction coefficient kept back."""
+
+NEGLIGIBLE = 1e-9
+"""Friction up to this counts as none in planning: it takes normal forces 1e9 times what it gives."""
 
 # Doubles place the direction of a computed force to a few units of 2^-52 [rad]; keep at least this much.
 _DIRECTION = 2.0**-44
@@ -18,14 +21,16 @@ def reserve_fraction(value: float) -> float:
     """A checked ``reserve``: a fraction, 0 <= reserve < 1."""
     fraction = number(value, "reserve", least=0)
     if fraction >= 1:
-        raise InvalidInput(f"reserve must be less than 1, a fraction of the friction, got {value!r}")
+        raise InvalidInput(f"reserve must be less than 1, a fraction of the friction, got {shown(value)}")
     return fraction
 
 
 def kept_friction(friction: float, reserve: float) -> float:
-    """The friction coefficient planning may use: ``friction`` less the reserve, never below zero."""
+    """The friction coefficient planning may use: ``friction`` less the reserve; zero if ``NEGLIGIBLE``."""
     if reserve == 0:
         return friction
+    if friction <= NEGLIGIBLE:
+        return 0.0
     return max(friction - max(reserve * friction, _DIRECTION), 0.0)
 
 

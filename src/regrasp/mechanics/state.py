@@ -1,18 +1,20 @@
 """Forces of a grasp under a load."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import dist, hypot
 from operator import mul
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
-from regrasp.mechanics.checks import Array, array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import IDLE, Margins, margins
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mechanics.wrench import Wrench
@@ -25,11 +27,14 @@ _ROUNDING = 2.0**-50
 class GraspState(ArrayValue):
     """A grasp, the load on the object and the finger forces, taken as they are.
 
-    forces: (n, d) [N], force of each finger **on the object**, object frame; (n, 4) where a finger is soft,
-    the last number its torque about the normal [N m], 0 for point contacts.
-
     Nothing is corrected: ``residual`` says how far G f + w_ext is from zero and ``margins`` how far each
     force is inside its cone; ``balanced()`` is the nearest state in equilibrium inside the cones.
+
+    Args:
+        grasp: the n contacts.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        forces: (n, d) [N], force of each finger **on the object**, object frame; (n, 4) where a finger is
+            soft, the last number its torque about the normal [N m], 0 for point contacts.
     """
 
     grasp: Grasp
@@ -38,14 +43,40 @@ class GraspState(ArrayValue):
 
     def __init__(self, grasp: Grasp, load: Wrench, forces: ArrayLike) -> None:
         if not isinstance(grasp, Grasp):
-            raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
+            raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
         check_load(grasp, load)
         object.__setattr__(self, "grasp", grasp)
         object.__setattr__(self, "load", load)
         given = array(forces, "forces", (len(grasp), grasp.width))
         if grasp.torsions is not None and given[grasp.torsions == 0, 3].any():
-            raise InvalidInput(f"forces: point contacts make no torque about their normals, got {forces!r}")
+            raise InvalidInput(
+                f"forces: point contacts make no torque about their normals, got {shown(forces)}"
+            )
         object.__setattr__(self, "forces", given)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The state as plain data, which JSON can hold; ``from_dict`` gives back the equal state.
+
+        Of a state that was chosen it is the state, without the record of its choice.
+        """
+        return {
+            "grasp": self.grasp.to_dict(),
+            "load": self.load.to_dict(),
+            "forces": self.forces.tolist(),
+        }
+
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> "GraspState":
+        """The state of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``GraspState`` does.
+        """
+        given = entries(data, "a state", ("grasp", "load", "forces"))
+        return GraspState(Grasp.from_dict(given["grasp"]), Wrench.from_dict(given["load"]), given["forces"])
 
     @cached_property
     def wrenches(self) -> Array:
@@ -82,12 +113,20 @@ class GraspState(ArrayValue):
         return tuple(name for name, yes in zip(self.grasp.names, used, strict=True) if yes)
 
     def force(self, contact: str | int) -> Array:
-        """(d,) force of one finger, by name or index [N]; (4,) in a grasp with soft fingers."""
+        """(d,) force of one finger, by name or index [N]; (4,) in a grasp with soft fingers.
+
+        Args:
+            contact: name or index.
+        """
         force: Array = self.forces[self.grasp.index(contact)]
         return force
 
     def without(self, contact: str | int) -> "GraspState":
-        """The state seen without one contact and its force."""
+        """The state seen without one contact and its force.
+
+        Args:
+            contact: name or index.
+        """
         gone = self.grasp.index(contact)
         return GraspState(self.grasp.without(gone), self.load, np.delete(self.forces, gone, axis=0))
 
@@ -95,7 +134,11 @@ class GraspState(ArrayValue):
         """Whether this is an equilibrium to rounding, inside the cones and limits less the reserve.
 
         Judged once for each reserve, so that many plans may start from one state.
+
+        Args:
+            reserve: fraction of every friction coefficient that is kept back [-].
         """
+        reserve = reserve_fraction(reserve)
         if reserve not in self._verdicts:
             self._verdicts[reserve] = self._judged(reserve)
         return self._verdicts[reserve]
@@ -129,7 +172,12 @@ class GraspState(ArrayValue):
 
         Least change of all forces together, sum |f_i - f_i given|^2. ``reserve`` is the fraction of every
         friction coefficient kept back. A state that is balanced already is returned as it is.
-        Raises ``Infeasible`` when this grasp has no such state.
+
+        Args:
+            reserve: fraction of every friction coefficient that is kept back [-].
+
+        Raises:
+            Infeasible: When this grasp has no such state.
         """
         reserve_fraction(reserve)
         if self.is_balanced(reserve=reserve):
@@ -164,6 +212,6 @@ class GraspState(ArrayValue):
 def check_load(grasp: Grasp, load: Wrench) -> None:
     """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension."""
     if not isinstance(load, Wrench):
-        raise InvalidInput(f"load must be a Wrench, got {load!r}; write Wrench(force=[...])")
+        raise InvalidInput(f"load must be a Wrench, got {shown(load)}; write Wrench(force=[...])")
     if load.dimension != grasp.dimension:
         raise InvalidInput(f"load must have the grasp's dimension {grasp.dimension}, got {load.dimension}")

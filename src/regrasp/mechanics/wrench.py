@@ -1,16 +1,17 @@
 """Wrenches: a force and its torque about the centre of mass."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, sin
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics import checks
-from regrasp.mechanics.checks import Array, array, number, point
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, point
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 
@@ -27,11 +28,14 @@ def torque(position: ArrayLike, force: ArrayLike) -> Array:
 class Wrench(ArrayValue):
     """A force and a torque on the object, about the centre of mass.
 
-    force: (d,) [N], object frame.
-    torque: [N m], a number in the plane, (3,) in space; zero unless given.
-
     Wrenches add, subtract, negate and scale. As a load, equilibrium is G f + w_ext = 0.
-    Raises ``InvalidInput`` for wrong shapes and numbers that are not finite.
+
+    Args:
+        force: (d,) [N], object frame.
+        torque: [N m], a number in the plane, (3,) in space; zero unless given.
+
+    Raises:
+        InvalidInput: For wrong shapes and numbers that are not finite.
     """
 
     vector: Array
@@ -52,7 +56,11 @@ class Wrench(ArrayValue):
 
     @classmethod
     def from_vector(cls, vector: ArrayLike) -> "Wrench":
-        """The wrench (force, torque) given as one vector, (3,) in the plane or (6,) in space."""
+        """The wrench (force, torque) given as one vector, (3,) in the plane or (6,) in space.
+
+        Args:
+            vector: (3,) in the plane or (6,) in space: force [N], then torque [N m].
+        """
         w = array(vector, "wrench", (None,))
         if w.size not in (3, 6):
             raise InvalidInput(f"a wrench must have 3 (plane) or 6 (space) numbers, got {w.size}")
@@ -81,7 +89,8 @@ class Wrench(ArrayValue):
     def rotated(self, rotation: ArrayLike) -> "Wrench":
         """The wrench turned about the centre of mass.
 
-        rotation: an angle [rad], counter-clockwise, in the plane; a (3, 3) rotation matrix in space.
+        Args:
+            rotation: an angle [rad], counter-clockwise, in the plane; a (3, 3) rotation matrix in space.
         """
         if self.dimension == 2:
             angle = number(rotation, "rotation")
@@ -93,7 +102,7 @@ class Wrench(ArrayValue):
 
     def _with(self, other: object, combine: Callable[[Array, Array], Array]) -> "Wrench":
         if not isinstance(other, Wrench):
-            raise InvalidInput(f"a wrench combines with a wrench, got {other!r}")
+            raise InvalidInput(f"a wrench combines with a wrench, got {shown(other)}")
         if other.dimension != self.dimension:
             raise InvalidInput("a planar wrench and a wrench in space cannot be combined")
         return Wrench.from_vector(combine(self.vector, other.vector))
@@ -113,7 +122,27 @@ class Wrench(ArrayValue):
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: float) -> "Wrench":
-        return Wrench.from_vector(self.vector / number(divisor, "divisor"))
+        by = number(divisor, "divisor")
+        if by == 0:
+            raise InvalidInput("a wrench cannot be divided by 0")
+        return Wrench.from_vector(self.vector / by)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The wrench as plain data, which JSON can hold; ``from_dict`` gives back the equal wrench."""
+        torque = self.torque.tolist()
+        return {"force": self.force.tolist(), "torque": torque if self.dimension == 3 else torque[0]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Wrench":
+        """The wrench of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``Wrench`` does.
+        """
+        return cls(**entries(data, "a wrench", ("force",), ("torque",)))
 
     def __repr__(self) -> str:
         shown = numbers(self.torque) if self.dimension == 3 else f"{self.torque[0]:.6g}"

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from math import hypot
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.checks import Array, ArrayLike, array, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue

@@ -3,14 +3,15 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
 from regrasp.mechanics.value import numbers
 
 Indices = NDArray[np.int64]
 
+_FARTHEST = 1e150  # whose square is a number
 _MOST_DIFFERENT = 1_500_000
 _MOST_NEAR = 30  # vertices in the cell of one, of two tolerances a side, on average
 
@@ -100,11 +101,12 @@ def _near(vertices: Array, tolerance: float) -> Indices:
 
 
 def checked_points(points: ArrayLike) -> Array:
-    """(..., 3) finite floats."""
-    try:
-        result = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"points must be numbers of shape (..., 3), got {points!r}") from None
+    """(..., 3) finite floats whose squares are numbers too."""
+    result = numbers_in(points, "points must be numbers of shape (..., 3)")
     if result.ndim < 1 or result.shape[-1] != 3 or not np.isfinite(result).all():
-        raise InvalidInput(f"points must be finite, of shape (..., 3); got shape {result.shape}: {points!r}")
+        raise InvalidInput(
+            f"points must be finite, of shape (..., 3); got shape {result.shape}: {shown(points)}"
+        )
+    if result.size and abs(result).max() > _FARTHEST:
+        raise InvalidInput(f"points must be nearer than {_FARTHEST:g}, got {shown(points)}")
     return result

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mesh.arrays import Indices
 
 Triangles = tuple[Array, Indices]

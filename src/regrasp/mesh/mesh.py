@@ -3,13 +3,20 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, choice, number, read_only
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import (
+    Array,
+    ArrayLike,
+    array,
+    choice,
+    file_path,
+    number,
+    read_only,
+    whole,
+)
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
@@ -35,16 +42,23 @@ _OPPOSED = -0.5  # the cosine between walls that face apart
 class Mesh(ArrayValue):
     """The surface of a solid object of uniform density, by triangles without gaps.
 
-    vertices: (k, 3) [m]; equal ones become one. faces: (m, 3) vertex numbers from 0. A surface wound inside
-    out, or unevenly, is turned the right way: which way that is follows from its being closed.
-    smooth: whether the triangles stand for a curved surface. Normals are then interpolated between vertices
-    wherever neighbours turn by ``crease`` [rad] or less; otherwise each is that of its triangle.
-
     Coordinates are taken as given; contacts are placed relative to the centre of mass, as everywhere. Any
     unit of length will do, as long as forces and torques follow it.
 
-    Raises ``InvalidInput`` for a mesh that is empty, not watertight or without volume, for faces without
-    area and for several bodies. Whether the surface passes through itself is not checked.
+    Whether the surface passes through itself is not checked.
+
+    Args:
+        vertices: (k, 3) [m]; equal ones become one.
+        faces: (m, 3) vertex numbers from 0. A surface wound inside out, or unevenly, is turned the right way:
+            which way that is follows from its being closed.
+        smooth: whether the triangles stand for a curved surface. Normals are then interpolated between
+            vertices wherever neighbours turn by ``crease`` [rad] or less; otherwise each is that of its
+            triangle.
+        crease: largest turn between neighbouring triangles over which normals are interpolated [rad].
+
+    Raises:
+        InvalidInput: For a mesh that is empty, not watertight or without volume, for faces without area and
+            for several bodies.
     """
 
     vertices: Array
@@ -91,16 +105,26 @@ class Mesh(ArrayValue):
         a warning. Vertices within 1e-6 of the largest side are one, faces lower than that are taken out, and
         all groups or materials of a file together are the body.
 
-        bodies: "one" refuses several closed surfaces, "largest" takes the one of the largest volume, "fuse"
-        unites them; a cavity is filled by both. close_holes: holes up to this part of the largest side across
-        are closed by triangles between their rims. ``notes`` of the result say what was done.
-        Needs the extra ``regrasp[meshes]``. Raises ``InvalidInput`` for a file that cannot be read and for
-        what ``Mesh`` refuses; ``ImportError`` without the extra.
+        Args:
+            path: a file that ends in .stl, .obj or .ply.
+            scale: factor on its coordinates [-]; 1 if not given.
+            smooth: whether the triangles stand for a curved surface, as of ``Mesh``.
+            crease: as of ``Mesh`` [rad].
+            bodies: "one" refuses several closed surfaces, "largest" takes the one of the largest volume,
+                "fuse" unites them; a cavity is filled by both.
+            close_holes: holes up to this part of the largest side across are closed by triangles between
+                their rims. ``notes`` of the result say what was done. Needs the extra ``regrasp[meshes]``.
+
+        Raises:
+            InvalidInput: For a file that cannot be read and for what ``Mesh`` refuses.
+            ImportError: Without the extra.
         """
         from regrasp.mesh.files import advice, read
         from regrasp.mesh.mending import BODIES
         from regrasp.outline.opening import checked_path, naming
 
+        if not isinstance(smooth, bool):
+            raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
         factor = 1.0 if scale is None else number(scale, "scale", above=0)
         how, widest = choice(bodies, "bodies", BODIES), number(close_holes, "close_holes", least=0)
         file = checked_path(path)
@@ -117,7 +141,13 @@ class Mesh(ArrayValue):
 
     @classmethod
     def box(cls, a: float, b: float, c: float) -> "Mesh":
-        """The box of sides a, b and c along x, y and z [m], about the origin."""
+        """The box of sides a, b and c along x, y and z [m], about the origin.
+
+        Args:
+            a: along x [m].
+            b: along y [m].
+            c: along z [m].
+        """
         from regrasp.mesh.build import box
 
         return cls(*box(number(a, "a", above=0), number(b, "b", above=0), number(c, "c", above=0)))
@@ -128,6 +158,11 @@ class Mesh(ArrayValue):
 
         Its corners lie on the cylinder, so its volume is smaller: by 0.16 % with 64. Normals are the
         cylinder's own.
+
+        Args:
+            radius: [m], greater than 0.
+            height: [m], greater than 0.
+            segments: sides of the prism.
         """
         r, half = number(radius, "radius", above=0), number(height, "height", above=0) / 2
         return cls.revolved([(0, -half), (r, -half), (r, half), (0, half)], segments=segments)
@@ -138,16 +173,27 @@ class Mesh(ArrayValue):
 
         Its corners lie on the sphere; with 8 divisions, 1280 faces, its volume is 0.9 % smaller and its
         normals, interpolated, are the sphere's within 0.3 degrees.
+
+        Args:
+            radius: [m], greater than 0.
+            divisions: parts of each edge of the icosahedron.
         """
         from regrasp.mesh.build import ball
 
-        return cls(*ball(number(radius, "radius", above=0), whole(divisions, "divisions", 2)), smooth=True)
+        return cls(
+            *ball(number(radius, "radius", above=0), whole(divisions, "divisions", least=2, most=500)),
+            smooth=True,
+        )
 
     @classmethod
     def extruded(cls, outline: Outline, height: float) -> "Mesh":
         """The plate of an outline and its holes, from z = 0 to ``height`` [m].
 
         In the coordinates of the outline. A smooth one makes a smooth mesh, of chords as in its ``polygon``.
+
+        Args:
+            outline: the section, with its holes [m].
+            height: [m], greater than 0.
         """
         from regrasp.mesh.build import plate
         from regrasp.outline.polygon import PolygonBoundary
@@ -162,11 +208,13 @@ class Mesh(ArrayValue):
     def revolved(cls, profile: ArrayLike, *, segments: int = 64) -> "Mesh":
         """The body that a profile sweeps about z, in ``segments`` steps; smooth.
 
-        profile: (k, 2) radius and z [m], from a point on the axis to another, off it in between.
+        Args:
+            profile: (k, 2) radius and z [m], from a point on the axis to another, off it in between.
+            segments: steps of a full turn.
         """
         from regrasp.mesh.build import revolution
 
-        return cls(*revolution(profile, whole(segments, "segments", 3)), smooth=True)
+        return cls(*revolution(profile, whole(segments, "segments", least=3, most=100_000)), smooth=True)
 
     # -- the object -------------------------------------------------------------------------------------
 
@@ -200,10 +248,18 @@ class Mesh(ArrayValue):
         return self.vertices - self.centre_of_mass, self.faces
 
     def save_stl(self, path: str | PathLike[str]) -> None:
-        """Write a binary STL, in the coordinates given, rounded to single precision."""
+        """Write a binary STL, in the coordinates given, rounded to single precision.
+
+        Args:
+            path: the file to write.
+        """
         from regrasp.mesh.files import stl
 
-        Path(path).write_bytes(stl(self.vertices, self.faces))
+        path = file_path(path)
+        try:
+            path.write_bytes(stl(self.vertices, self.faces))
+        except OSError as error:
+            raise InvalidInput(f"{path}: cannot be written: {error.strerror or error}") from None
 
     # -- contacts ---------------------------------------------------------------------------------------
 
@@ -211,6 +267,9 @@ class Mesh(ArrayValue):
         """(..., 3) the points of the surface nearest to ``points`` (..., 3), in the coordinates given [m].
 
         For points relative to the centre of mass, such as a contact's, add ``centre_of_mass``.
+
+        Args:
+            points: (..., 3) in the coordinates given [m].
         """
         given = checked_points(points)
         faces, weights = self._nearest(given.reshape(-1, 3))
@@ -220,6 +279,9 @@ class Mesh(ArrayValue):
         """(..., 3) unit normals into the object where the surface is nearest to ``points`` (..., 3).
 
         At an edge that of one of the faces there.
+
+        Args:
+            points: (..., 3), in the coordinates given [m].
         """
         given = checked_points(points)
         return self._normals_at(*self._nearest(given.reshape(-1, 3))).reshape(given.shape)
@@ -237,14 +299,21 @@ class Mesh(ArrayValue):
     ) -> Contact:
         """The contact where the surface is nearest to ``point`` (3,), in the coordinates given [m].
 
-        friction, max_force, torsion, name: as of ``Contact``.
-        along: (3,) the way the finger comes; the contact is then where a line through the point along it
-        enters the object, nearest to the point. outside: only where nothing is in front of the surface, so
-        not on the inner side of a wall. Without either a warning says when the point is off the surface and
-        another wall, which faces the other way, is about as near, or when it is so far off that the unit may
-        be another.
-        Raises ``InvalidInput`` at an edge or corner where the normals of the faces that meet differ by more
-        than 5 degrees, and for a point farther from the surface than a tenth of the object's largest side.
+        Args:
+            point: (3,) in the coordinates given [m].
+            friction: Coulomb coefficient [-].
+            max_force: as of ``Contact`` [N].
+            torsion: as of ``Contact`` [m].
+            name: as of ``Contact``.
+            along: (3,) the way the finger comes; the contact is then where a line through the point along it
+                enters the object, nearest to the point.
+            outside: only where nothing is in front of the surface, so not on the inner side of a wall.
+                Without either a warning says when the point is off the surface and another wall, which faces
+                the other way, is about as near, or when it is so far off that the unit may be another.
+
+        Raises:
+            InvalidInput: At an edge or corner where the normals of the faces that meet differ by more than 5
+                degrees, and for a point farther from the surface than a tenth of the object's largest side.
         """
         given = array(point, "point", (3,))
         if along is not None and outside:
@@ -273,18 +342,23 @@ class Mesh(ArrayValue):
             )
         if along is None and not outside and away > _AT_EDGE * largest:
             warn_of_walls(given, away, self._corners[self._flat @ normals[0] < _OPPOSED])
-        warn_of_distance(given, away, self.size)
+            warn_of_distance(given, away, self.size)
         place = foot - self.centre_of_mass
         return Contact(place, normals[0], friction, max_force=max_force, torsion=torsion, name=name)
 
     def sample(self, count: int, *, seed: int = 0, clearance: float | None = None) -> Array:
         """(count, 3) points spread evenly over the surface, in the coordinates given [m].
 
-        clearance: least distance to sharp edges and corners [m]; if not given, a quarter of the spacing
-        sqrt(area / count), halved until half of the surface is that far from them. Faces turned by more
-        than 75 degrees do not crowd one another, so that both sides and the rim of a plate get their points.
-        The same seed gives the same points of the object, in any unit and frame. Raises ``InvalidInput``
-        where the clearance leaves no room.
+        Args:
+            count: how many points.
+            seed: of the random choice; the same seed, the same choice.
+            clearance: least distance to sharp edges and corners [m]; if not given, a quarter of the spacing
+                sqrt(area / count), halved until half of the surface is that far from them. Faces turned by
+                more than 75 degrees do not crowd one another, so that both sides and the rim of a plate get
+                their points. The same seed gives the same points of the object, in any unit and frame.
+
+        Raises:
+            InvalidInput: Where the clearance leaves no room.
         """
         return self._sample(count, seed, clearance)[0]
 
@@ -297,20 +371,28 @@ class Mesh(ArrayValue):
         seed: int = 0,
         clearance: float | None = None,
     ) -> tuple[Contact, ...]:
-        """Contacts at the points of ``sample``."""
+        """Contacts at the points of ``sample``.
+
+        Args:
+            count: how many points.
+            friction: Coulomb coefficient [-].
+            max_force: largest force magnitude of the finger [N]; no limit if not given.
+            seed: of the random choice; the same seed, the same choice.
+            clearance: as of ``sample`` [m].
+        """
         points, normals = self._sample(count, seed, clearance)
         places = zip(points - self.centre_of_mass, normals, strict=True)
         return tuple(Contact(r, n, friction, max_force=max_force) for r, n in places)
 
     def _sample(self, count: int, seed: int, clearance: float | None) -> tuple[Array, Array]:
-        n = whole(count, "count", 1)
+        n = whole(count, "count", least=1, most=1_000_000)
         keep = None if clearance is None else number(clearance, "clearance", least=0)
         shading = self._shading
         starts, ends = (np.concatenate([shading.edges[:, k], shading.points]) for k in (0, 1))
         sharp = self.vertices[starts], self.vertices[ends]
         surface = Surface(self._corners, doubled_areas(self._corners) / 2, self._flat, sharp)
         least = 2 * _AT_EDGE * float(self.size.max())
-        faces, weights = spread(surface, n, whole(seed, "seed", 0), keep, least)
+        faces, weights = spread(surface, n, whole(seed, "seed", least=0), keep, least)
         return at(self._corners[faces], weights), self._normals_at(faces, weights)
 
     # -- what they stand on -----------------------------------------------------------------------------
@@ -347,10 +429,3 @@ class Mesh(ArrayValue):
         kind = ", smooth" if self.smooth else ""
         size = numbers(self.size)
         return f"Mesh({len(self.faces)} faces{kind}, size {size}, volume {self.volume:.6g})"
-
-
-def whole(value: int, what: str, least: int) -> int:
-    """A whole number of at least ``least``."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidInput(f"{what} must be a whole number of at least {least}, got {value!r}")
-    return int(value)

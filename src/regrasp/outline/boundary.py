@@ -2,9 +2,7 @@
 
 from typing import Protocol
 
-from numpy.typing import ArrayLike
-
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 
 
 class Boundary(Protocol):

@@ -5,9 +5,8 @@ from collections.abc import Callable
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 from regrasp.mechanics.value import ArrayValue
 
 _PANELS = 4  # to begin with, in each smooth stretch

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from regrasp.errors import InvalidInput
 from regrasp.outline.flatten import Curve
 
-MOST_PIECES, _MOST_POINTS = 60_000, 1_000_000
+MOST_PIECES, _MOST_POINTS = 40_000, 1_000_000
 UNITS = {
     "um": 1e-6,
     "mm": 1e-3,

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from regrasp.mechanics.checks import ArrayLike
 from regrasp.outline.outline import Outline
 
 _ARCS = 64  # chords in a quarter of a circle

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, read_only
 from regrasp.mechanics.value import ArrayValue
 
 # Curves read from files turn by 2 degrees at most from chord to chord: their vertices are no corners.

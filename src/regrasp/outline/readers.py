@@ -9,7 +9,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.chains import chains, closed_ring
 from regrasp.outline.coordinates import coordinate_rings
-from regrasp.outline.drawing import UNITS, Budget, Drawing, Piece
+from regrasp.outline.drawing import UNITS, Budget, Drawing, Piece, counted
 from regrasp.outline.flatten import check_finite, flattened
 from regrasp.outline.nesting import check_nested, check_once
 from regrasp.outline.opening import read_bytes
@@ -50,11 +50,11 @@ def read_rings(
             raise InvalidInput("a file of coordinates does not say its unit: give scale in place of unit")
         return Found(nested(coordinate_rings(data)))
     if kind == ".svg":
-        from regrasp.outline.svg import svg_drawing
+        from regrasp.outline.svg.reader import svg_drawing
 
         drawing = svg_drawing(data, layers)
     else:
-        from regrasp.outline.dxf import dxf_drawing
+        from regrasp.outline.dxf.reader import dxf_drawing
 
         drawing = dxf_drawing(path, len(data), layers)
     rings, notes = _outline(drawing, tolerance)
@@ -137,8 +137,12 @@ def _closed(opened: list[tuple[Piece, Array]], within: float, size: float) -> tu
                 closed += 1
             else:
                 flat += 1
-    notes = [f"closed by a straight line, as their fill is: {closed} open paths"] if closed else []
-    return rings, notes + ([f"left out: {flat} open paths without area"] if flat else [])
+    notes = []
+    if closed:
+        notes.append(f"closed by a straight line, as fill does: {counted(['open path'] * closed)}")
+    if flat:
+        notes.append(f"left out: {counted(['open path without area'] * flat)}")
+    return rings, notes
 
 
 def nested(rings: list[Array]) -> list[Array]:

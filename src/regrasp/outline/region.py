@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
 from regrasp.mechanics.value import numbers
 
 # Neighbours nearer than this, as a fraction of the ring's size, are one vertex: a ring closed up to rounding.
@@ -62,15 +61,21 @@ def signed_area(ring: Array) -> float:
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
 
 
+def check_spread(ring: Array, what: str) -> None:
+    """Raise ``InvalidInput`` where the points of a ring (k, 2) lie on one line."""
+    unit = (ring - ring[0]) / float(np.ptp(ring, axis=0).max())
+    if np.linalg.svd(unit - unit.mean(axis=0), compute_uv=False)[1] <= _SAME:
+        raise InvalidInput(f"{what} encloses no area: its points lie on one line")
+
+
 def checked_region(ring: Array, what: str) -> Any:
     """The shapely polygon of a ring (k, 2). ``InvalidInput`` where it has no area or meets itself."""
     import shapely
 
+    check_spread(ring, what)
     size = float(np.ptp(ring, axis=0).max())
     origin = ring[0]
     unit = (ring - origin) / size
-    if np.linalg.svd(unit - unit.mean(axis=0), compute_uv=False)[1] <= _SAME:
-        raise InvalidInput(f"{what} encloses no area: its points lie on one line")
     region = shapely.Polygon(unit)
     if not region.is_valid:
         reason = shapely.is_valid_reason(region)

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.display import Pictured
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
 from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.document import Documented
 from regrasp.plans.transition import Transition
 
 
@@ -30,12 +31,14 @@ class FingerMove(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RegraspPlan(ArrayValue, Pictured):
+class RegraspPlan(ArrayValue, Documented, Pictured):
     """Transitions that carry an object from one three-finger grasp to another.
 
-    steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most three.
-    orientations: (len(steps) + 1,) the object's angle before the first step, and after each [rad].
-    margin: the least angle margin of the holds on the way [rad].
+    Args:
+        steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most
+            three.
+        orientations: (len(steps) + 1,) the object's angle before the first step, and after each [rad].
+        margin: the least angle margin of the holds on the way [rad].
     """
 
     steps: tuple[Transition, ...]
@@ -55,7 +58,11 @@ class RegraspPlan(ArrayValue, Pictured):
         return max(step.friction_needed for step in self.steps)
 
     def orientation(self, t: ArrayLike) -> Array:
-        """The object's angle [rad] at times in [0, duration] [s], of the shape of t."""
+        """The object's angle [rad] at times in [0, duration] [s], of the shape of t.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         k, local = self._place(t)
         result = np.empty(local.shape)
         for step in range(len(self.steps)):
@@ -65,9 +72,9 @@ class RegraspPlan(ArrayValue, Pictured):
 
     def _place(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
         """The step of each time and the time from its start [s]."""
-        times = np.asarray(t, dtype=float)
+        times = numbers_in(t, "t must be numbers")
         if not ((times >= 0) & (times <= self.duration * (1 + 1e-12))).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {shown(t)}")
         lengths = np.array([step.duration for step in self.steps])
         ends = np.cumsum(lengths)
         k = np.minimum(np.searchsorted(ends, times, side="right"), len(self.steps) - 1)

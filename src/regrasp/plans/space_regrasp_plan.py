@@ -3,10 +3,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, read_only
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
@@ -16,9 +15,14 @@ from regrasp.plans.transition import Transition
 class SpaceRegraspPlan(RegraspPlan):
     """Transitions that carry a solid object from one four-finger grasp to another.
 
-    As ``RegraspPlan``, with at most four contacts in play. orientations: (len(steps) + 1,) the sum of its
-    turns so far, each about its own axis [rad]. rotations: (len(steps) + 1, 3, 3) from the object's frame to
-    its frame at the start, before the first step and after each.
+    As ``RegraspPlan``, with at most four contacts in play.
+
+    Args:
+        steps: in order, each beginning where the one before ends.
+        orientations: (len(steps) + 1,) the sum of its turns so far, each about its own axis [rad].
+        margin: the least angle margin of the holds [rad].
+        rotations: (len(steps) + 1, 3, 3) from the object's frame to its frame at the start, before the first
+            step and after each.
     """
 
     rotations: Array = field(kw_only=True)
@@ -30,7 +34,11 @@ class SpaceRegraspPlan(RegraspPlan):
             )
 
     def rotation(self, t: ArrayLike) -> Array:
-        """(..., 3, 3) matrices from the object's frame to its frame at the start, at times (...) [s]."""
+        """(..., 3, 3) matrices from the object's frame to its frame at the start, at times (...) [s].
+
+        Args:
+            t: (...) times in [0, duration] [s].
+        """
         k, local = self._place(t)
         result = np.empty((*local.shape, 3, 3))
         for step in range(len(self.steps)):

@@ -1,17 +1,27 @@
 """The time function T(t) of a transition, falling smoothly from 1 to 0 (Fig. 8)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.straight_path import fastest_duration
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import (
+    Array,
+    ArrayLike,
+    array,
+    instance,
+    items,
+    limits,
+    number,
+    numbers_in,
+    whole,
+)
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
 if TYPE_CHECKING:
@@ -31,9 +41,13 @@ class TimeScaling(ArrayValue):
     The first control value is 1, the last 0 and none rises. A B-spline stays within its control values and
     falls where they fall, so 0 <= T <= 1 and T' <= 0 hold at every t, not only at samples.
 
-    duration: [s], greater than 0.
-    control: (k,) control values. degree: of the polynomial pieces, at most k - 1.
-    Raises ``InvalidInput`` otherwise.
+    Args:
+        duration: [s], greater than 0.
+        control: (k,) control values.
+        degree: of the polynomial pieces, at most k - 1.
+
+    Raises:
+        InvalidInput: For control values that rise or do not fall from 1 to 0, and another degree or duration.
     """
 
     duration: float
@@ -42,28 +56,43 @@ class TimeScaling(ArrayValue):
 
     def __post_init__(self) -> None:
         duration = number(self.duration, "duration", above=0)
-        values = tuple(number(c, "control value") for c in self.control)
+        values = tuple(number(c, "control value") for c in items(self.control, "control"))
         falls = all(a >= b for a, b in pairwise(values))
         if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
-        if not 1 <= self.degree < len(values):
+        if not 1 <= whole(self.degree, "degree", least=0) < len(values):
             raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {self.degree!r}")
+        object.__setattr__(self, "degree", int(self.degree))
         object.__setattr__(self, "duration", duration)
         object.__setattr__(self, "control", values)
 
     @classmethod
     def spline(cls, duration: float, control: Sequence[float] = PAPER_CONTROL) -> "TimeScaling":
-        """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default."""
-        return cls(duration, tuple(control), min(3, len(control) - 1))
+        """Cubic B-spline (of lower degree for fewer than four values); the paper's five by default.
+
+        Args:
+            duration: [s], greater than 0.
+            control: values of T, falling from 1 to 0 [-].
+        """
+        values = items(control, "control")
+        return cls(duration, values, min(3, len(values) - 1))
 
     @classmethod
     def minimum_jerk(cls, duration: float) -> "TimeScaling":
-        """1 - 10 s^3 + 15 s^4 - 6 s^5 with s = t / duration: zero velocity and acceleration at both ends."""
+        """1 - 10 s^3 + 15 s^4 - 6 s^5 with s = t / duration: zero velocity and acceleration at both ends.
+
+        Args:
+            duration: [s], greater than 0.
+        """
         return cls(duration, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), 5)
 
     @classmethod
     def linear(cls, duration: float) -> "TimeScaling":
-        """1 - t / duration: the fastest shape under rate limits, with a jump of rate at both ends."""
+        """1 - t / duration: the fastest shape under rate limits, with a jump of rate at both ends.
+
+        Args:
+            duration: [s], greater than 0.
+        """
         return cls(duration, (1.0, 0.0), 1)
 
     @classmethod
@@ -72,28 +101,45 @@ class TimeScaling(ArrayValue):
     ) -> "TimeScaling":
         """The shortest scaling of a shape under force-rate limits (docs/facts.md, 4).
 
-        change: (n, d) forces at one end less those at the other [N].
-        rate_limit: |f_i'(t)| allowed [N/s], one number or (n,), infinite for no limit.
-        shape: whose control values to use; the paper's spline by default.
-        Raises ``InvalidInput`` where nothing changes or nothing is limited: no duration follows.
+        Args:
+            change: (n, d) forces at one end less those at the other [N].
+            rate_limit: |f_i'(t)| allowed [N/s], one number or (n,), infinite for no limit.
+            shape: whose control values to use; the paper's spline by default.
+
+        Raises:
+            InvalidInput: Where nothing changes or nothing is limited: no duration follows.
         """
         shape = cls.spline(1.0) if shape is None else shape
+        instance(shape, "shape", TimeScaling)
         moved = np.linalg.norm(array(change, "change", (None, None)), axis=1)
-        try:
-            rates = np.broadcast_to(np.asarray(rate_limit, dtype=float), moved.shape)
-        except (TypeError, ValueError):
-            raise InvalidInput(
-                f"rate_limit must be a number or have shape {moved.shape}, got {rate_limit!r}"
-            ) from None
-        if not (rates > 0).all():
-            raise InvalidInput(f"rate_limit must be greater than 0, got {rate_limit!r}")
+        rates = limits(rate_limit, "rate_limit", moved.size)
         duration = fastest_duration(moved.tolist(), rates.tolist(), shape.steepest * shape.duration)
         if duration == 0:
             raise InvalidInput("no force that changes has a rate limit, so no shortest duration follows")
         return shape.lasting(duration)
 
+    def to_dict(self) -> dict[str, Any]:
+        """The scaling as plain data, which JSON can hold; ``from_dict`` gives back the equal scaling."""
+        return {"duration": self.duration, "control": list(self.control), "degree": self.degree}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "TimeScaling":
+        """The scaling of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and as ``TimeScaling`` does.
+        """
+        return cls(**entries(data, "a time scaling", ("duration", "control", "degree")))
+
     def lasting(self, duration: float) -> "TimeScaling":
-        """The same shape over another duration."""
+        """The same shape over another duration.
+
+        Args:
+            duration: [s], greater than 0.
+        """
         return TimeScaling(duration, self.control, self.degree)
 
     def reversed(self) -> "TimeScaling":
@@ -105,11 +151,19 @@ class TimeScaling(ArrayValue):
         return self._evaluate(0, t)
 
     def velocity(self, t: ArrayLike) -> Array:
-        """T'(t) [1/s]."""
+        """T'(t) [1/s].
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self._evaluate(1, t)
 
     def acceleration(self, t: ArrayLike) -> Array:
-        """T''(t) [1/s^2]; zero everywhere for a linear scaling, whose jumps at the ends it does not see."""
+        """T''(t) [1/s^2]; zero everywhere for a linear scaling, whose jumps at the ends it does not see.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self._evaluate(2, t)
 
     @property
@@ -151,12 +205,9 @@ class TimeScaling(ArrayValue):
         return spline, first, second
 
     def _evaluate(self, derivative: int, t: ArrayLike) -> Array:
-        try:
-            times = np.asarray(t, dtype=float)
-        except (TypeError, ValueError):
-            raise InvalidInput(f"t must be numbers, got {t!r}") from None
+        times = numbers_in(t, "t must be numbers")
         if not ((times >= 0) & (times <= self.duration * (1 + _ROUNDING))).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {shown(t)}")
         times = np.minimum(times, self.duration)
         values: Array = self._splines[derivative](times / self.duration)
         return values / self.duration**derivative if derivative else values

@@ -6,15 +6,15 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, ArrayLike, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
+from regrasp.plans.document import Documented
 from regrasp.plans.path import Path
 from regrasp.plans.record import Record
 from regrasp.plans.sampled import SampledPath
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Transition(ArrayValue, Pictured):
+class Transition(ArrayValue, Documented, Pictured):
     """Finger forces that carry a grasp from one equilibrium to another while fingers leave or arrive.
 
         f(t) = f_end + (f_start - f_end) T(t)
@@ -35,11 +35,16 @@ class Transition(ArrayValue, Pictured):
     With fixed contacts and load the equilibrium forces inside the cones are a convex set, so both ends
     being in it proves every instant (fact 1); ``regrasp.verify`` checks them in exact arithmetic.
 
-    start, end: states of one grasp, every contact in play.
-    leaving: names of the fingers that carry no force at the end. arriving: of those that carry none at the
-    start. Neither: the object turns in its hold, or only the forces change.
-    path: what lies between the ends: a ``StraightPath``, a ``SampledPath`` through instants, or a
-    ``TurningPath`` of the object.
+    Args:
+        start: the state at the start, of every contact in play.
+        end: the state at the end, of the same grasp.
+        scaling: the clock T(t).
+        record: what the ends were chosen for, and under which limits.
+        leaving: names of the fingers that carry no force at the end.
+        arriving: names of the fingers that carry no force at the start. With neither the object turns in its
+            hold, or only the forces change.
+        path: what lies between the ends: a ``StraightPath``, a ``SampledPath`` through instants, or a
+            ``TurningPath`` of the object.
     """
 
     start: GraspState
@@ -124,15 +129,27 @@ class Transition(ArrayValue, Pictured):
         return np.asarray(t, dtype=float) if self.path.timed else clock
 
     def forces(self, t: ArrayLike) -> Array:
-        """Finger forces (n, d) at a time, (m, n, d) at m times in [0, duration] [s]; object frame [N]."""
+        """Finger forces (n, d) at a time, (m, n, d) at m times in [0, duration] [s]; object frame [N].
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self.path.forces_at(self.start, self.end, self._place(t))
 
     def wrenches(self, t: ArrayLike) -> Array:
-        """Finger wrenches (n, 3) or (m, n, 3), object frame, Eq. 1-3 [N, N m]; (…, 6) in space."""
+        """Finger wrenches (n, 3) or (m, n, 3), object frame, Eq. 1-3 [N, N m]; (…, 6) in space.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self.path.wrenches_at(self.start, self.end, self._place(t))
 
     def rates(self, t: ArrayLike) -> Array:
-        """Force rates f'(t), (n, d) or (m, n, d) [N/s]; at an instant of a path that of the stretch after."""
+        """Force rates f'(t), (n, d) or (m, n, d) [N/s]; at an instant of a path that of the stretch after.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         rates = self.path.rates_at(self.start, self.end, self._place(t))
         return rates if self.path.timed else self.scaling.velocity(t)[..., None, None] * rates
 
@@ -169,26 +186,46 @@ class Transition(ArrayValue, Pictured):
         return float(self.path.friction_needed(self.start, self.end).max())
 
     def load(self, t: ArrayLike) -> Array:
-        """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space."""
+        """The load (3,) or (m, 3) in the object frame [N, N m]; (…, 6) in space.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self.path.load_at(self.start, self._place(t))
 
     def orientation(self, t: ArrayLike) -> Array:
-        """The object's angle from the start [rad], counter-clockwise or about the axis; of the shape of t."""
+        """The object's angle from the start [rad], counter-clockwise or about the axis; of the shape of t.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         return self.path.orientation_at(self._place(t))
 
     def rotations(self, t: ArrayLike) -> Array:
-        """(3, 3) or (m, 3, 3) matrices from the object's frame to its frame at the start; in space."""
+        """(3, 3) or (m, 3, 3) matrices from the object's frame to its frame at the start; in space.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         if self.grasp.dimension == 2:
             raise InvalidInput("an object in the plane turns by an angle; ask for orientation(t)")
         return self.path.rotations_at(self._place(t))
 
     def margins(self, t: ArrayLike) -> Margins:
-        """Margins of every contact, (n,) or (m, n); NaN where a contact carries no force."""
+        """Margins of every contact, (n,) or (m, n); NaN where a contact carries no force.
+
+        Args:
+            t: a time or (m,) times in [0, duration] [s].
+        """
         cones = self.grasp.cones
         return margins(cones.measured(self.forces(t)), cones.normals, self.grasp.frictions)
 
     def times(self, rate: float) -> Array:
-        """Sampling times [s] at ``rate`` per second, both ends included."""
+        """Sampling times [s] at ``rate`` per second, both ends included.
+
+        Args:
+            rate: samples per second [1/s].
+        """
         # Less a little, so that rounding of the product adds no second sample at the end.
         count = max(1, int(np.ceil(self.duration * number(rate, "rate", above=0) * (1 - 1e-12))))
         times = np.arange(count + 1) / rate
@@ -208,7 +245,12 @@ class Transition(ArrayValue, Pictured):
         )
 
     def retimed(self, scaling: TimeScaling) -> "Transition":
-        """The same path under another time function; refused where the load is tied to the clock."""
+        """The same path under another time function; refused where the load is tied to the clock.
+
+        Args:
+            scaling: the new clock, of any duration.
+        """
+        instance(scaling, "scaling", TimeScaling)
         if self.path.timed:
             raise InvalidInput(
                 "a path planned through instants keeps its times; plan it with another duration"
@@ -219,11 +261,18 @@ class Transition(ArrayValue, Pictured):
         """The same path and shape in the least time with |f_i'(t)| <= rate_limit, a number or (n,) [N/s].
 
         Of a turn to the bound that ``steepest`` is.
+
+        Args:
+            rate_limit: a number or (n,), greater than 0 [N/s].
         """
         return self.retimed(TimeScaling.fastest(self._steepest[:, None], rate_limit, self.scaling))
 
     def to_dataframe(self, rate: float = 1000.0) -> "pandas.DataFrame":
-        """Set-points as a table: index t [s], a column ``<name>_fx`` ... per contact and axis [N]."""
+        """Set-points as a table: index t [s], a column ``<name>_fx`` ... per contact and axis [N].
+
+        Args:
+            rate: samples per second [1/s].
+        """
         try:
             import pandas
         except ImportError:
@@ -242,11 +291,11 @@ class Transition(ArrayValue, Pictured):
         return f"{self.kind} of {who}{for_whom}" if who else self.kind
 
     def __str__(self) -> str:
-        record = self.record
+        record, width = self.record, max(8, *(len(name) + 1 for name in self.grasp.names))
         lines = [
             f"{self.in_words} in {self.duration:g} s under {self.path.load_in_words(self.start, self.end)}",
-            f"{'':8}{'start force':>24}{'end force':>24}{'least margin':>14}",
-            *self._rows(),
+            f"{'':{width}}{'start force':>24}{'end force':>24}{'least margin':>14}",
+            *self._rows(width),
         ]
         for c in record.choices:
             limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
@@ -265,7 +314,7 @@ class Transition(ArrayValue, Pictured):
 
     __repr__ = __str__
 
-    def _rows(self) -> list[str]:
+    def _rows(self, width: int) -> list[str]:
         """A line for each contact: its forces at both ends and its least margin on the way."""
         cones, forces = self.grasp.cones, self.path.deciding(self.start, self.end)
         angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
@@ -278,7 +327,7 @@ class Transition(ArrayValue, Pictured):
             )
             margin = np.fmin.reduce(angles[:, i])
             shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
-            lines.append(f"{name:8}{start:>24}{end:>24}{shown:>14}")
+            lines.append(f"{name:{width}}{start:>24}{end:>24}{shown:>14}")
         return lines
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.arc_friction import arc_friction_angles, arc_in_waves
 from regrasp.closed_form.turning_path import (
@@ -17,7 +16,7 @@ from regrasp.closed_form.turning_path import (
     turning_slope,
 )
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
 from regrasp.mechanics.rotated_loads import still_part
@@ -35,12 +34,13 @@ class TurningPath(ArrayValue, Path):
     load does not turn (docs/facts.md, 6), which keeps equilibrium and cones exactly. The object's angle is
     angle (1 - T(t)), about the centre of mass and in space about ``axis``.
 
-    angles: (K,) of the object [rad], from 0 to the whole turn, each step below pi; counter-clockwise in the
-    plane, right-handed about ``axis`` in space.
-    forces: (K, n, w) in equilibrium at these angles, in the object frame [N].
-    axis: (3,) unit, through the centre of mass, in space; None in the plane.
-    middles: (K - 1, n, w) [N] under the load where the tangents of its arc at two angles meet; None where all
-    of the load turns and the states at the angles are enough.
+    Args:
+        angles: (K,) of the object [rad], from 0 to the whole turn, each step below pi; counter-clockwise in
+            the plane, right-handed about ``axis`` in space.
+        forces: (K, n, w) in equilibrium at these angles, in the object frame [N].
+        axis: (3,) unit, through the centre of mass, in space; None in the plane.
+        middles: (K - 1, n, w) [N] under the load where the tangents of its arc at two angles meet; None where
+            all of the load turns and the states at the angles are enough.
     """
 
     angles: Array
@@ -77,7 +77,13 @@ class TurningPath(ArrayValue, Path):
         return float(self.angles[-1])
 
     def check(self, start: GraspState, end: GraspState, scaling: TimeScaling) -> None:
-        """Raise ``InvalidInput`` for forces of another shape, or middles that are missing."""
+        """Raise ``InvalidInput`` for forces of another shape, or middles that are missing.
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+            scaling: the clock of the transition.
+        """
         if self.forces.shape[1:] != start.forces.shape:
             n, d = start.forces.shape
             raise InvalidInput(f"forces of a turn must have shape (K, {n}, {d})")
@@ -88,11 +94,23 @@ class TurningPath(ArrayValue, Path):
             )
 
     def forces_at(self, start: GraspState, end: GraspState, u: Array) -> Array:
-        """Finger forces (..., n, w), object frame [N]."""
+        """Finger forces (..., n, w), object frame [N].
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+            u: (...) the clock T, from 1 at the start to 0 at the end [-].
+        """
         return self._along(turning_path, arc_path, u)
 
     def rates_at(self, start: GraspState, end: GraspState, u: Array) -> Array:
-        """(..., n, w) the change of the forces by u [N]."""
+        """(..., n, w) the change of the forces by u [N].
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+            u: (...) the clock T, from 1 at the start to 0 at the end [-].
+        """
         return -self.angle * self._along(turning_slope, arc_slope, u)
 
     @property
@@ -101,7 +119,12 @@ class TurningPath(ArrayValue, Path):
         return True
 
     def load_at(self, start: GraspState, u: Array) -> Array:
-        """The load (..., 3) or (..., 6), object frame [N, N m]."""
+        """The load (..., 3) or (..., 6), object frame [N, N m].
+
+        Args:
+            start: the state at the start, of every contact in play.
+            u: (...) the clock T, from 1 at the start to 0 at the end [-].
+        """
         load, axis, theta = start.load, self.axis, self.orientation_at(u)
         c, s = np.cos(theta)[..., None], np.sin(theta)[..., None]
         if axis is None:
@@ -115,12 +138,20 @@ class TurningPath(ArrayValue, Path):
         return np.concatenate(parts, axis=-1)
 
     def orientation_at(self, u: Array) -> Array:
-        """The object's angle from the start (...) [rad], counter-clockwise or about the axis."""
+        """The object's angle from the start (...) [rad], counter-clockwise or about the axis.
+
+        Args:
+            u: (...) the clock T, from 1 at the start to 0 at the end [-].
+        """
         result: Array = self.angle * (1 - u)
         return result
 
     def rotations_at(self, u: Array) -> Array:
-        """(..., 3, 3) from the turned object's frame to its frame at the start; in space."""
+        """(..., 3, 3) from the turned object's frame to its frame at the start; in space.
+
+        Args:
+            u: (...) the clock T, from 1 at the start to 0 at the end [-].
+        """
         if self.axis is None:
             raise InvalidInput("an object in the plane turns by an angle; ask for orientation(t)")
         theta = self.orientation_at(u)
@@ -128,24 +159,43 @@ class TurningPath(ArrayValue, Path):
         return np.reshape(matrices, (*theta.shape, 3, 3))
 
     def steepest(self, start: GraspState, end: GraspState) -> Array:
-        """(n,) at least the fastest change of each force by u [N]."""
+        """(n,) at least the fastest change of each force by u [N].
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+        """
         result: Array = self._extremes(start)[:, :, 1].max(axis=0) * abs(self.angle)
         return result
 
     def deciding(self, start: GraspState, end: GraspState) -> Array:
-        """(m, n, w) the states at the angles, and those between."""
+        """(m, n, w) the states at the angles, and those between.
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+        """
         return self.forces if self.middles is None else np.concatenate([self.forces, self.middles])
 
     def peaks(self, start: GraspState, end: GraspState) -> Array:
         """(n,) the largest |f_i| of each finger on the way, exact [N].
 
         At most 1 / cos(step / 2) times that of ``forces``; with middles at most the largest of all.
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
         """
         largest: Array = self._extremes(start)[:, :, 0].max(axis=0)
         return largest
 
     def friction_needed(self, start: GraspState, end: GraspState) -> Array:
-        """(n,) the least coefficient of each finger that keeps its forces on the path inside its cone [-]."""
+        """(n,) the least coefficient of each finger that keeps its forces on the path inside its cone [-].
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+        """
         if self.middles is None:  # the forces between are sums of those at the angles
             return super().friction_needed(start, end)
         states = [self.forces]
@@ -162,12 +212,24 @@ class TurningPath(ArrayValue, Path):
         return TurningPath(self.angles[::-1] - self.angles[-1], self.forces[::-1], self.axis, middles)
 
     def load_in_words(self, start: GraspState, end: GraspState) -> str:
-        """Under what load it leads."""
+        """Under what load it leads.
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+        """
         about = "" if self.axis is None else f" about {numbers(self.axis)}"
         return f"{start.load!r}, turning the object by {np.degrees(self.angle):.6g} deg{about}"
 
     def in_words(self, start: GraspState, end: GraspState, by: str, objective: str | None) -> list[str]:
-        """How many pieces, and the largest force."""
+        """How many pieces, and the largest force.
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+            by: who planned the path.
+            objective: what it was planned for, or None.
+        """
         peak = float(self.peaks(start, end).max())
         return [f"{self.angles.size - 1} pieces in closed form, largest force {peak:.4g}"]
 

@@ -1,15 +1,19 @@
 """A builder of programs: rows are demanded one cone at a time."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.blocks import ArrayLike
 from regrasp.programs.program import Block, Cone, Program
 
 
 class Rows:
-    """Collects demands ``M x + c in cone`` and hands them over as A x + s = b with A = -M, b = c."""
+    """Collects demands ``M x + c in cone`` and hands them over as A x + s = b with A = -M, b = c.
+
+    Args:
+        unknowns: n, how many x there are.
+    """
 
     def __init__(self, unknowns: int) -> None:
         self._unknowns = unknowns
@@ -18,27 +22,51 @@ class Rows:
         self._blocks: list[Block] = []
 
     def equal(self, matrix: ArrayLike | sparse.spmatrix, offset: ArrayLike = 0.0) -> None:
-        """Demand M x + c = 0, row by row; M (k, n), c (k,) or one number for all rows."""
+        """Demand M x + c = 0, row by row; M (k, n), c (k,) or one number for all rows.
+
+        Args:
+            matrix: (k, n) M, dense or sparse.
+            offset: c, (k,) or one number for all rows.
+        """
         m = self._checked(matrix)
         self._add(Cone.ZERO, m, offset, m.shape[0])
 
     def at_least_zero(self, matrix: ArrayLike | sparse.spmatrix, offset: ArrayLike = 0.0) -> None:
-        """Demand M x + c >= 0, row by row; M (k, n), c (k,) or one number for all rows."""
+        """Demand M x + c >= 0, row by row; M (k, n), c (k,) or one number for all rows.
+
+        Args:
+            matrix: (k, n) M, dense or sparse.
+            offset: c, (k,) or one number for all rows.
+        """
         m = self._checked(matrix)
         self._add(Cone.NONNEGATIVE, m, offset, m.shape[0])
 
     def second_order(
         self, matrix: ArrayLike | sparse.spmatrix, offset: ArrayLike = 0.0, *, size: int | None = None
     ) -> None:
-        """Demand (t, v) = M x + c with |v| <= t; ``size`` rows to a cone, all rows in one if not given."""
+        """Demand (t, v) = M x + c with |v| <= t; ``size`` rows to a cone, all rows in one if not given.
+
+        Args:
+            matrix: (k, n) M, dense or sparse.
+            offset: c, (k,) or one number for all rows.
+            size: rows of each cone; all rows in one if not given.
+        """
         m = self._checked(matrix)
         size = m.shape[0] if size is None else size
         if size < 1 or m.shape[0] % size:
             raise InvalidInput(f"{m.shape[0]} rows cannot be split into cones of {size}")
         self._add(Cone.SECOND_ORDER, m, offset, size)
 
-    def program(self, q: ArrayLike, P: ArrayLike | sparse.spmatrix | None = None) -> Program:
-        """The program with these rows and the objective 1/2 x'Px + q'x."""
+    def program(
+        self, q: ArrayLike, P: ArrayLike | sparse.spmatrix | None = None, *, size: float = 0.0
+    ) -> Program:
+        """The program with these rows and the objective 1/2 x'Px + q'x.
+
+        Args:
+            q: (n,).
+            P: (n, n), symmetric and positive semidefinite; zero if not given.
+            size: as in ``Program``.
+        """
         n = self._unknowns
         if not self._matrices:
             raise InvalidInput("a program needs at least one row")
@@ -48,6 +76,7 @@ class Rows:
             A=-sparse.vstack(self._matrices, format="csc"),
             b=np.concatenate(self._offsets),
             blocks=tuple(self._blocks),
+            size=size,
         )
         for matrix in (program.P, program.A):
             matrix.sum_duplicates()  # sorts, too: some solvers read unsorted columns wrongly and say nothing

@@ -1,51 +1,24 @@
-"""The table of back ends and the one verb that calls them."""
+"""The back ends that are installed and the one verb that calls them."""
 
 import logging
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, NamedTuple
+from math import inf
+from typing import Any
 
-from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
+from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable
+from regrasp.programs.facts import BACKENDS, Backend
+from regrasp.programs.judging.verdict import judged
 from regrasp.programs.program import Program
-from regrasp.programs.solution import Solution, Status
+from regrasp.programs.solution import Solution, Status, failed
 
 _log = logging.getLogger("regrasp.programs")
 
 
-class Backend(NamedTuple):
-    """A way to solve programs.
-
-    needs: the package that must be installed. module: ours, which imports it. second_order: takes such cones.
-    tolerance: largest residual of an answer that counts as sound.
-    """
-
-    needs: str
-    module: str
-    second_order: bool
-    tolerance: float
-
-
-_QP = "regrasp.programs.qpsolvers_backend"
-# Active-set and interior-point methods answer to 1e-7 or better; first-order methods (osqp, scs) do not.
-BACKENDS = {
-    "clarabel": Backend("clarabel", "regrasp.programs.clarabel_backend", True, 5e-7),
-    "daqp": Backend("daqp", _QP, False, 1e-7),
-    "quadprog": Backend("quadprog", _QP, False, 1e-7),
-    "highs": Backend("highspy", _QP, False, 1e-6),
-    "piqp": Backend("piqp", _QP, False, 1e-7),
-    "proxqp": Backend("proxsuite", _QP, False, 1e-6),
-    "qpalm": Backend("qpalm", _QP, False, 1e-5),
-    "osqp": Backend("osqp", _QP, False, 1e-5),
-    "scs": Backend("scs", _QP, False, 1e-5),
-    "cvxpy": Backend("cvxpy", "regrasp.programs.cvxpy_backend", True, 1e-6),
-}
 # Statuses that say something of the program; the others say something of the back end.
 _CLAIMS = (Status.SOLVED, Status.INFEASIBLE, Status.UNBOUNDED)
-CERTIFICATE_TOLERANCE = 1e-6
-"""Largest residual of a certificate: a feasible point would lie a million times the data's size away."""
 _AUTO = ("clarabel", "daqp", "osqp", "cvxpy")
 
 
@@ -66,23 +39,42 @@ def _has(package: str) -> bool:
 
 
 def _is_installed(backend: Backend) -> bool:
-    return _has(backend.needs) and (backend.module != _QP or _has("qpsolvers"))
+    return _has(backend.needs)
 
 
-def solve(program: Program, backend: str = "auto", *, throw: bool = True, **options: Any) -> Solution:
+def solve(
+    program: Program,
+    backend: str = "auto",
+    *,
+    throw: bool = True,
+    time_limit: float | None = None,
+    isolated: bool = False,
+    **options: Any,
+) -> Solution:
     """Solve a program and audit the answer.
 
-    backend: a name of ``available_backends()``, ``cvxpy:<SOLVER>``, or ``auto``: the first installed one
-    whose answer is sound (a warning is logged for each that was not).
-    throw: raise ``SolverFailed`` for an answer that is neither sound nor a proven impossibility; without it
-    such an answer is returned with its status.
-    options: passed to the back end as they are.
+    Args:
+        program: the program.
+        backend: a name of ``available_backends()``, ``cvxpy:<SOLVER>``, or ``auto``: the first installed one
+            whose answer is sound (a warning is logged for each that was not).
+        throw: raise ``SolverFailed`` for an answer that is neither sound nor a proven impossibility; without
+            it such an answer is returned with its status.
+        time_limit: [s] for the solver; one that has no such option is run in a process of its own and ended.
+        isolated: run the solver in a process of its own in any case, so that its crash is an error like
+            others; that takes a second to start.
+        **options: passed to the back end as they are.
 
-    Raises ``SolverUnavailable`` for a back end unknown or not installed, ``InvalidInput`` for a program
-    with second-order cones on a back end that takes none.
+    Raises:
+        SolverUnavailable: For a back end unknown or not installed.
+        InvalidInput: For a program with second-order cones on a back end that takes none and for an objective
+            that is not convex.
     """
+    if time_limit is not None and not 0 < time_limit < inf:
+        raise InvalidInput(f"time_limit must be a positive number of seconds or None, got {time_limit!r}")
+    if program.why_not_convex:
+        raise InvalidInput(f"{program.why_not_convex}; the objective must be convex")
     if backend == "auto":
-        return _first_sound(program, throw, options)
+        return _first_sound(program, throw, time_limit, isolated, options)
     entry = _entry(backend)
     if program.has_second_order and not entry.second_order:
         takers = ", ".join(name for name in available_backends() if BACKENDS[name].second_order)
@@ -90,18 +82,58 @@ def solve(program: Program, backend: str = "auto", *, throw: bool = True, **opti
             f"back end {backend!r} solves QPs only and the program has second-order cones; use linearised "
             f"cones (facets=...), or one of {takers}"
         )
-    call: Callable[..., Solution] = import_module(entry.module).solve
-    solution = call(program, backend, **options)
-    if solution.status is Status.STOPPED and solution.residual <= entry.tolerance:
-        # It stopped short of its own, tighter tolerances; value and duals prove each other good enough.
-        solution = replace(solution, status=Status.SOLVED)
-    allowed = entry.tolerance if solution.status is Status.SOLVED else CERTIFICATE_TOLERANCE
-    if solution.status in _CLAIMS and not solution.residual <= allowed:
-        said = f"{solution.said}, but residual {solution.residual:.1e} of {allowed:g} allowed"
-        solution = replace(solution, status=Status.UNSOUND, said=said)
+
+    def feasibility(given: Program) -> Solution:
+        return solve(given.without_objective(), backend, throw=False, time_limit=time_limit)
+
+    solution = judged(
+        _asked(program, backend, entry, time_limit, isolated, options), entry.tolerance, feasibility
+    )
     if throw and solution.status not in _CLAIMS:
-        raise SolverFailed(f"{solution}; {solution.status.advice}", program, solution)
+        raise SolverFailed(f"{program}: {solution}; {solution.status.advice}", program, solution)
     return solution
+
+
+def _asked(
+    program: Program,
+    backend: str,
+    entry: Backend,
+    time_limit: float | None,
+    isolated: bool,
+    options: dict[str, Any],
+) -> Solution:
+    """The back end's answer, not audited; an error of the solver's own is an answer, too."""
+    if time_limit is not None and entry.time_limit and not backend.startswith("cvxpy"):
+        options = {entry.time_limit: time_limit, **options}
+        time_limit = None
+    if isolated or time_limit is not None:
+        from regrasp.programs.child import solved_apart
+
+        return solved_apart(program, backend, time_limit, options)
+    return asked(program, backend, options)
+
+
+def asked(program: Program, backend: str, options: dict[str, Any]) -> Solution:
+    """What a back end answers in this process, not audited."""
+    call: Callable[..., Solution] = import_module(_module(_entry(backend))).solve
+    try:
+        return call(program, backend, **options)
+    except (RegraspError, KeyboardInterrupt, SystemExit, GeneratorExit):
+        raise
+    except BaseException as error:  # Rust's panics are no exceptions
+        return failed(program, backend, f"{type(error).__name__}: {error}")
+
+
+def warm(backend: str) -> None:
+    """Import what a back end needs, so that its time is its own."""
+    entry = _entry(backend)
+    import_module(_module(entry))
+    import_module(entry.module)
+
+
+def _module(entry: Backend) -> str:
+    """The module with ``solve(program, name, **options)``; solvers called by name share one."""
+    return "regrasp.programs.qp_backend" if ".calls." in entry.module else entry.module
 
 
 def _entry(backend: str) -> Backend:
@@ -118,19 +150,23 @@ def _entry(backend: str) -> Backend:
     return entry
 
 
-def _first_sound(program: Program, throw: bool, options: dict[str, Any]) -> Solution:
+def _first_sound(
+    program: Program, throw: bool, time_limit: float | None, isolated: bool, options: dict[str, Any]
+) -> Solution:
     if options:
         raise InvalidInput("options belong to one solver; name the back end they are for instead of 'auto'")
     solution = None
     for name in _AUTO:
         if name not in available_backends() or (program.has_second_order and not BACKENDS[name].second_order):
             continue
-        solution = solve(program, name, throw=False)
+        solution = solve(program, name, throw=False, time_limit=time_limit, isolated=isolated)
         if solution.status in _CLAIMS:
             return solution
         _log.warning("%s; trying the next back end", solution)
     if solution is None:
         raise SolverUnavailable(f"none of {', '.join(_AUTO)} is installed")
     if throw:
-        raise SolverFailed(f"no back end gave a sound answer; the last: {solution}", program, solution)
+        raise SolverFailed(
+            f"{program}: no back end gave a sound answer; the last: {solution}", program, solution
+        )
     return solution

@@ -8,6 +8,7 @@ import clarabel
 import numpy as np
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.facts import BACKENDS
 from regrasp.programs.program import Block, Cone, Program
 from regrasp.programs.solution import Solution, Status
 
@@ -16,14 +17,6 @@ _STATUS = {
     "Solved": Status.SOLVED,
     "PrimalInfeasible": Status.INFEASIBLE,
     "DualInfeasible": Status.UNBOUNDED,
-}
-# At 1e-12 Clarabel stops with insufficient progress.
-_DEFAULTS = {
-    "tol_gap_abs": 1e-10,
-    "tol_gap_rel": 1e-10,
-    "tol_feas": 1e-10,
-    "tol_infeas_abs": 1e-10,
-    "tol_infeas_rel": 1e-10,
 }
 
 
@@ -55,7 +48,7 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
 def _settings(**options: Any) -> Any:
     settings = clarabel.DefaultSettings()
     settings.verbose = False
-    for key, value in {**_DEFAULTS, **options}.items():
+    for key, value in {**BACKENDS["clarabel"].options, **options}.items():
         if not hasattr(settings, key):
             raise InvalidInput(f"Clarabel has no setting {key!r}")
         setattr(settings, key, value)

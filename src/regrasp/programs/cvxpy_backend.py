@@ -35,6 +35,8 @@ def timed_solve(program: Program, name: str, **options: Any) -> tuple[Solution, 
     x = cp.Variable(program.q.size)
     s = program.b - program.A @ x
     constraints: list[Any] = []
+    if not program.b.size:  # some solvers want a row
+        constraints.append(cp.Variable() == 0)
     for block, rows in program.slices:
         if block.cone is Cone.ZERO:
             constraints.append(s[rows] == 0)
@@ -58,7 +60,7 @@ def timed_solve(program: Program, name: str, **options: Any) -> tuple[Solution, 
     found = said in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE)
     duals = np.full(program.b.size, np.nan)
     if found:
-        for (block, rows), constraint in zip(program.slices, constraints, strict=True):
+        for (block, rows), constraint in zip(program.slices, constraints, strict=False):
             duals[rows] = _dual(block.cone, constraint)
     stats = problem.solver_stats
     solution = Solution(

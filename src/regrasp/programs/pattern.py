@@ -3,16 +3,19 @@
 from copy import copy
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.blocks import Array, ArrayLike
 
 
 class Pattern:
     """The places of the entries of a sparse matrix.
 
-    shape: (m, n). rows, columns: (k,) place of each entry, in any order, no place twice.
+    Args:
+        shape: (m, n).
+        rows: (k,) place of each entry, in any order, no place twice.
+        columns: (k,) place of each entry, in any order, no place twice.
     """
 
     def __init__(self, shape: tuple[int, int], rows: ArrayLike, columns: ArrayLike) -> None:
@@ -26,8 +29,12 @@ class Pattern:
             shared.setflags(write=False)
         _ = self._template.has_canonical_format  # looked at once, and known of every copy
 
-    def filled(self, values: NDArray[np.float64]) -> sparse.csc_matrix:
-        """The matrix with ``values`` (k,) at the places, in the order the pattern was given."""
+    def filled(self, values: Array) -> sparse.csc_matrix:
+        """The matrix with ``values`` (k,) at the places, in the order the pattern was given.
+
+        Args:
+            values: (k,) at the places, in the order the pattern was given.
+        """
         matrix = copy(self._template)  # shares the places
         matrix.data = values[self._order]
         return matrix

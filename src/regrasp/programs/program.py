@@ -8,48 +8,36 @@ nothing of contacts.
 """
 
 from dataclasses import dataclass
-from enum import Enum
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.archive import read_arrays, write_arrays
+from regrasp.programs.blocks import Array, Block, Cone
+from regrasp.programs.cones import Cones
+from regrasp.programs.judging.terms import Terms
 
-Array = NDArray[np.float64]
-
-
-class Cone(Enum):
-    """The kinds of cone a block of rows can lie in."""
-
-    ZERO = "zero"
-    NONNEGATIVE = "non-negative"
-    SECOND_ORDER = "second-order"
-
-
-@dataclass(frozen=True)
-class Block:
-    """``count`` cones of one kind and size, in consecutive rows."""
-
-    cone: Cone
-    size: int
-    count: int = 1
-
-    @property
-    def rows(self) -> int:
-        """Rows of A the block takes."""
-        return self.size * self.count
+__all__ = ["Array", "Block", "Cone", "Program"]
 
 
 @dataclass(frozen=True, eq=False)
 class Program:
     """The data of a conic program.
 
-    P: (n, n) sparse, symmetric positive semidefinite, both triangles. q: (n,).
-    A: (m, n) sparse. b: (m,). blocks: the cones, covering the m rows in order.
-    size: of an x that matters, by which an answer near x = 0 is judged; 0 to judge by the answer itself.
-    Raises ``InvalidInput`` for shapes that do not fit and data that are not finite.
+    Args:
+        P: (n, n) sparse, symmetric positive semidefinite, both triangles.
+        q: (n,).
+        A: (m, n) sparse.
+        b: (m,).
+        blocks: the cones, covering the m rows in order.
+        size: of an x that matters, by which an answer near x = 0 is judged; 0 to judge by the answer itself.
+
+    Raises:
+        InvalidInput: For shapes that do not fit and data that are not finite.
     """
 
     P: sparse.csc_matrix
@@ -76,15 +64,62 @@ class Program:
             _check_finite(name, values)
 
     def with_right_side(self, b: Array) -> "Program":
-        """The same program with another b (m,), at little cost: nothing but b is looked at again."""
+        """The same program with another b (m,), at little cost: nothing but b is looked at again.
+
+        Args:
+            b: (m,).
+        """
         if b.shape != self.b.shape:
             raise InvalidInput(f"b must have shape {self.b.shape}, got {b.shape}")
         _check_finite("b", b)
-        _ = self.has_second_order, self.codes  # known of every program with these rows
+        _ = self.has_second_order, self.codes, self.cones, self.why_not_convex  # the same for any b
         same = object.__new__(Program)
         same.__dict__.update(self.__dict__)
         object.__setattr__(same, "b", b)
         return same
+
+    def without_objective(self) -> "Program":
+        """The same rows and nothing to minimise: every feasible point is an answer."""
+        nothing = sparse.csc_matrix(self.P.shape)
+        return Program(nothing, np.zeros(self.q.size), self.A, self.b, self.blocks, self.size)
+
+    def __str__(self) -> str:
+        words = []
+        for cone in Cone:
+            sizes = [block.rows for block in self.blocks if block.cone is cone]
+            words += [f"{sum(sizes)} {cone.value}"] if sum(sizes) else []
+        rows = f"rows {', '.join(words)}" if words else "no rows"
+        return f"program of {self.q.size} unknowns, {rows}"
+
+    def save(self, path: str | Path) -> Path:
+        """Write the program to ``path``, a NumPy archive of plain arrays; returns the path.
+
+        Args:
+            path: the archive to write.
+        """
+        arrays = {"q": self.q, "b": self.b, "cones": self.codes, "size": np.array(self.size)}
+        return write_arrays(Path(path), arrays, {"P": self.P, "A": self.A})
+
+    @staticmethod
+    def load(path: str | Path) -> "Program":
+        """The program that ``save`` wrote.
+
+        Args:
+            path: an archive of ``save``.
+
+        Raises:
+            InvalidInput: For a file that holds none.
+        """
+        arrays, matrices = read_arrays(Path(path))
+        kinds = list(Cone)
+        try:
+            blocks = [
+                Block(kinds[kind], int(size), int(count)) for kind, size, count in arrays["cones"].tolist()
+            ]
+            size = float(arrays["size"])
+        except (ValueError, TypeError, IndexError) as error:
+            raise InvalidInput(f"{path}: not the cones or the size of a program: {error}") from None
+        return Program(matrices["P"], arrays["q"], matrices["A"], arrays["b"], tuple(blocks), size)
 
     @cached_property
     def has_second_order(self) -> bool:
@@ -92,10 +127,28 @@ class Program:
         return any(block.cone is Cone.SECOND_ORDER for block in self.blocks)
 
     @cached_property
+    def cones(self) -> Cones:
+        """The product K of the cones."""
+        return Cones(self.blocks)
+
+    @cached_property
     def codes(self) -> NDArray[np.int64]:
         """(k, 3) kind, size and count of each block, the kind by its place in ``Cone``."""
         kinds = list(Cone)
-        return np.array([(kinds.index(block.cone), block.size, block.count) for block in self.blocks])
+        rows = [(kinds.index(block.cone), block.size, block.count) for block in self.blocks]
+        return np.array(rows, dtype=np.int64).reshape(-1, 3)
+
+    @cached_property
+    def terms(self) -> Terms:
+        """The matrices, for products."""
+        return Terms(self.P, self.A, self.cones)
+
+    @cached_property
+    def why_not_convex(self) -> str:
+        """Why P is not symmetric and positive semidefinite, in words; empty where it is, to rounding."""
+        from regrasp.programs.judging.convexity import why_not_convex
+
+        return why_not_convex(self.P)
 
     @cached_property
     def slices(self) -> tuple[tuple[Block, slice], ...]:

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from math import inf, isnan
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from regrasp.programs.judging.audit import Audit, audited
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.program import Array, Program
-
-if TYPE_CHECKING:
-    from regrasp.programs.audit import Audit
 
 
 class Status(Enum):
@@ -18,8 +18,12 @@ class Status(Enum):
     SOLVED = "use value"
     INFEASIBLE = "no point satisfies the constraints: loosen them; duals hold the certificate"
     UNBOUNDED = "the objective falls without bound: add a limit; value holds the direction"
+    UNBOUNDED_OR_INFEASIBLE = (
+        "the objective falls along a direction, value, but no point to fall from is known: ask clarabel"
+    )
     NOT_FOUND = "the back end found no solution and gave no reason: ask one that gives certificates, clarabel"
     STOPPED = "the back end stopped before its tolerances were met: rescale the data or try another back end"
+    FAILED = "the solver raised an error of its own, crashed or was ended: rescale the data or try another"
     UNSOUND = "the answer fails our audit whatever the back end called it: try another back end"
 
     @property
@@ -32,10 +36,16 @@ class Status(Enum):
 class Solution:
     """The answer of a back end. Residuals are properties, computed here from the data and not believed.
 
-    value: (n,) x; for UNBOUNDED the direction of descent. NaN where the back end gave none.
-    duals: (m,) z, with P x + q + A'z = 0 and z in K*; for INFEASIBLE the certificate.
-    iterations: as the back end counts, or None. build_time, solve_time: [s], making its data and its call.
-    said: the back end's own word for its status.
+    Args:
+        program: what was asked.
+        backend: who answered.
+        status: how it ended.
+        value: (n,) x; for UNBOUNDED the direction of descent. NaN where the back end gave none.
+        duals: (m,) z, with P x + q + A'z = 0 and z in K*; for INFEASIBLE the certificate.
+        iterations: as the back end counts, or None.
+        build_time: making its data [s].
+        solve_time: its call [s].
+        said: the back end's own word for its status.
     """
 
     program: Program
@@ -49,82 +59,69 @@ class Solution:
     said: str
 
     @cached_property
-    def _audit(self) -> "Audit":
-        from regrasp.programs.audit import audited
-
+    def audit(self) -> Audit:
+        """All measures of (value, duals) as a solution."""
         return audited(self.program, self.value, self.duals)
 
     @property
     def objective(self) -> float:
         """1/2 x'Px + q'x."""
-        return 0.5 * self._audit.xpx + self._audit.qx
+        return self.audit.objective
 
     @property
     def primal_residual(self) -> float:
-        """Distance of b - A x to K, relative to the largest entry of b and A x."""
-        return _relative(self._audit.slack_violation, max(self._audit.b, self._audit.ax))
+        """Largest distance of a row or cone of b - A x to K, relative to its own terms."""
+        return self.audit.primal
 
     @property
     def dual_residual(self) -> float:
-        """Largest entry of P x + q + A'z, and distance of z to K*, relative to the terms.
+        """Largest entry of P x + q + A'z, z put inside K*, relative to its own terms."""
+        return self.audit.dual
 
-        The terms are those at x, and P x at an x of the program's ``size``.
-        """
-        a = self._audit
-        stationarity = _relative(a.stationarity, max(a.px, a.q, a.az, a.p * self.program.size))
-        return max(stationarity, _relative(a.dual_violation, a.z))
+    @property
+    def complementarity(self) -> float:
+        """Largest product of a row's slack and its dual, relative to both."""
+        return self.audit.complementarity
 
     @property
     def gap(self) -> float:
-        """|x'Px + q'x + b'z|, relative to |x||Px| + |q||x| + |b||z|, or to x'Px at the program's ``size``."""
-        a = self._audit
-        scale = a.x_length * a.px_length + a.q_length * a.x_length + a.b_length * a.z_length
-        return _relative(self.absolute_gap, max(scale, a.p * self.program.size**2))
+        """|x'Px + q'x + b'z|, relative to the sum with every term positive."""
+        return self.audit.gap
 
     @property
     def absolute_gap(self) -> float:
         """|x'Px + q'x + b'z|, the distance of the objective from the dual's."""
-        return abs(self._audit.xpx + self._audit.qx + self._audit.bz)
+        return self.audit.absolute_gap
 
-    @property
+    @cached_property
     def infeasibility_residual(self) -> float:
-        """How far the duals are from proving infeasibility, A'z = 0, z in K*, b'z < 0; infinite if b'z >= 0.
+        """How far the duals are from proving infeasibility, A'z = 0, z in K*, b'z < 0; see ``proofs``."""
+        return infeasibility_residual(self.program, self.duals)
 
-        Any feasible x would need |x| of at least 1 / residual times the size b / A of the data.
-        """
-        a = self._audit
-        return _per(max(a.az, a.dual_violation) * _ratio(a.b, a.a), -a.bz)
-
-    @property
+    @cached_property
     def unboundedness_residual(self) -> float:
-        """How far value is from a direction of descent, P x = 0, -A x in K, q'x < 0; infinite if q'x >= 0."""
-        a = self._audit
-        return _per(max(a.px, a.ray_violation) * _ratio(a.q, a.a), -a.qx)
+        """How far value is from a direction of descent, P x = 0, -A x in K, q'x < 0; see ``proofs``."""
+        return unboundedness_residual(self.program, self.value)
 
     @property
     def residual(self) -> float:
-        """The residual that decides: the worst of a solution's three, or that of the certificate."""
+        """The residual that decides: the worst of a solution's four, or that of the certificate."""
         if self.status is Status.INFEASIBLE:
             return self.infeasibility_residual
-        if self.status is Status.UNBOUNDED:
+        if self.status in (Status.UNBOUNDED, Status.UNBOUNDED_OR_INFEASIBLE):
             return self.unboundedness_residual
-        values = (self.primal_residual, self.dual_residual, self.gap)
+        values = self.audit[:4]
         return inf if any(map(isnan, values)) else max(values)
 
     def __str__(self) -> str:
         return (
             f"{self.backend}: {self.status.name} ({self.said}), objective {self.objective:.9g}, "
-            f"residuals primal {self.primal_residual:.1e}, dual {self.dual_residual:.1e}, gap {self.gap:.1e}"
+            f"residuals primal {self.primal_residual:.1e}, dual {self.dual_residual:.1e}, "
+            f"complementarity {self.complementarity:.1e}, gap {self.gap:.1e}"
         )
 
 
-def _ratio(size: float, by: float) -> float:
-    return size / (by or 1.0)
-
-
-def _per(amount: float, by: float) -> float:
-    return amount / by if by > 0 else inf
-
-
-def _relative(amount: float, scale: float) -> float:
-    return amount / scale if scale > 0 else (0.0 if amount == 0 else inf)
+def failed(program: Program, backend: str, said: str) -> Solution:
+    """No answer: what became of the solver is ``said``."""
+    x, z = np.full(program.q.size, np.nan), np.full(program.b.size, np.nan)
+    return Solution(program, backend, Status.FAILED, x, z, None, 0.0, 0.0, said)

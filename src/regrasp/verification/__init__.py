@@ -5,7 +5,7 @@ Shares no code with the planner: it imports mechanics only, and of these only th
 
 from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.plans import verify
-from regrasp.verification.setpoints import verify_setpoints
+from regrasp.verification.sampling import verify_setpoints
 from regrasp.verification.verdict import Verification
 
 __all__ = ["RESOLUTION", "Verification", "verify", "verify_setpoints"]

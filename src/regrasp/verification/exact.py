@@ -15,9 +15,16 @@ direction more finely.
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import inf, sqrt
+from math import inf, isnan, ldexp, sqrt
 
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.margins import margins
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import one_line
 
 RESOLUTION = Fraction(1, 2**40)
 """eps above: largest residual relative to the forces, and the least friction told from none."""
@@ -27,19 +34,33 @@ Vector = list[Fraction]
 
 def check_state(state: GraspState, label: str) -> tuple[float, float, list[str]]:
     """(residual, least cone slack, violations) of one state; ``label`` names it in the violations."""
-    residual, violations = _check_equilibrium(state, label)
+    return check_forces(state.grasp, state.forces, exact(state.load.vector.tolist()), label)
+
+
+def check_forces(grasp: Grasp, forces: Array, load: Vector, label: str) -> tuple[float, float, list[str]]:
+    """The same of finite forces (n, d), or (n, 4) where a finger is soft, under a load (3,) or (6,)."""
+    rows = [_Force(contact, force) for contact, force in zip(grasp.contacts, forces.tolist(), strict=True)]
+    residual, violations = _check_equilibrium(rows, load, label)
     slacks = [inf]
-    for i, name in enumerate(state.grasp.names):
-        slack, broken = _check_force(state, i, f"{label}: force of {name}")
+    for row in rows:
+        slack, broken = _check_force(row, f"{label}: force of {one_line(str(row.contact.name))}")
         slacks.append(slack)
         violations += broken
     return residual, min(slacks), violations
 
 
-def _check_force(state: GraspState, i: int, what: str) -> tuple[float, list[str]]:
-    contact = state.grasp.contacts[i]
-    d = contact.dimension
-    (*f, m), n = [*exact(state.forces[i, :d].tolist()), _torque(state, i)], exact(contact.normal.tolist())
+class _Force:
+    """A force f of a contact, and a soft finger's torque m about its normal; 0 where none is."""
+
+    def __init__(self, contact: Contact, numbers: list[float]) -> None:
+        d = contact.dimension
+        self.contact, self.f = contact, exact(numbers[:d])
+        self.m = sum(exact(numbers[d:]), start=Fraction(0))
+        self.r, self.n = exact(contact.position.tolist()), exact(contact.normal.tolist())
+
+
+def _check_force(row: _Force, what: str) -> tuple[float, list[str]]:
+    contact, f, m, n = row.contact, row.f, row.m, row.n
     normal, ff, nn = dot(f, n), dot(f, f), dot(n, n)
     mu = max(Fraction(contact.friction), RESOLUTION)
     limit = contact.max_force
@@ -49,35 +70,33 @@ def _check_force(state: GraspState, i: int, what: str) -> tuple[float, list[str]
         return -inf, [f"{what}: a point contact makes no torque about its normal, got {float(m):.3g}"]
     broken = []
     if normal < 0:
-        broken.append(f"{what} pulls: normal component {float(normal):.3g}")
+        broken.append(f"{what} pulls: normal component {rounded(normal):.3g}")
     elif ff * nn > (1 + mu * mu) * normal * normal:
-        use = sqrt(max(ff * nn - normal * normal, Fraction(0))) / float(mu * normal) if normal else inf
+        use = root((ff * nn - normal * normal) / (mu * normal) ** 2) if normal else inf
         broken.append(f"{what} is outside its friction cone: it uses {use:.12g} of the friction available")
     if limit is not None and ff > Fraction(limit) ** 2:
-        broken.append(f"{what} is {sqrt(ff):.12g}, above its limit {limit:.12g}")
-    slack = float((1 + mu * mu) - ff * nn / (normal * normal)) if normal > 0 else (inf if ff == 0 else -inf)
+        broken.append(f"{what} is {root(ff):.12g}, above its limit {limit:.12g}")
+    slack = rounded((1 + mu * mu) - ff * nn / (normal * normal)) if normal > 0 else (-inf if ff else inf)
     return slack, broken
 
 
-def _check_equilibrium(state: GraspState, label: str) -> tuple[float, list[str]]:
-    d = state.grasp.dimension
-    load = exact(state.load.vector.tolist())
+def _check_equilibrium(rows: list[_Force], load: Vector, label: str) -> tuple[float, list[str]]:
+    d = len(rows[0].f)
     force, torque = load[:d], load[d:]
-    positions = [exact(c.position.tolist()) for c in state.grasp.contacts]
-    forces = [exact(f[:d]) for f in state.forces.tolist()]
-    for i, contact in enumerate(state.grasp.contacts):
-        if _torque(state, i):
-            about = [_torque(state, i) * x for x in exact(contact.normal.tolist())]
-            torque = [a + b for a, b in zip(torque, about, strict=True)]
-    for r, f in zip(positions, forces, strict=True):
-        force = [a + b for a, b in zip(force, f, strict=True)]
-        torque = [a + b for a, b in zip(torque, cross(r, f), strict=True)]
-    arm2 = max(dot(r, r) for r in positions) or Fraction(1)
-    scale2 = max(dot(load[:d], load[:d]), dot(load[d:], load[d:]) / arm2, *(dot(f, f) for f in forces))
-    residual2 = max(dot(force, force), dot(torque, torque) / arm2)
-    if scale2 == 0:
+    for row in rows:
+        force = [a + b for a, b in zip(force, row.f, strict=True)]
+        torque = [a + b for a, b in zip(torque, cross(row.r, row.f), strict=True)]
+        if row.m:
+            torque = [a + row.m * b for a, b in zip(torque, row.n, strict=True)]
+    length2 = max(dot(row.r, row.r) for row in rows) or Fraction(1)
+    sizes2 = [dot(load[:d], load[:d]), dot(load[d:], load[d:]) / length2]
+    sizes2 += [dot(row.f, row.f) for row in rows]
+    scale2, residual2 = max(sizes2), max(dot(force, force), dot(torque, torque) / length2)
+    if residual2 == 0:
         return 0.0, []
-    relative = sqrt(residual2 / scale2)
+    if scale2 == 0:
+        return inf, [f"{label}: not in equilibrium, torques of soft fingers balance no load"]
+    relative = root(residual2 / scale2)
     if residual2 > RESOLUTION**2 * scale2:
         return relative, [
             f"{label}: not in equilibrium, G f + w_ext is {relative:.3g} of the largest force "
@@ -86,9 +105,37 @@ def _check_equilibrium(state: GraspState, label: str) -> tuple[float, list[str]]
     return relative, []
 
 
-def _torque(state: GraspState, i: int) -> Fraction:
-    """The torque of a soft finger about its normal; 0 where none is."""
-    return Fraction(float(state.forces[i, 3])) if state.forces.shape[1] == 4 else Fraction(0)
+@np.errstate(all="ignore")
+def least_angle(grasp: Grasp, forces: Array) -> float:
+    """The least angle margin of the contacts that carry force [rad], in doubles; infinite where none does."""
+    size = abs(forces).max()  # which angles do not depend on
+    cones = grasp.cones
+    found = margins(cones.measured(forces / size), cones.normals, grasp.frictions).least_angle
+    return inf if isnan(found) else found
+
+
+def arm2(grasp: Grasp) -> Fraction:
+    """The square of the largest distance of a contact from the centre of mass [m^2]; 1 where it is 0."""
+    return max(dot(r, r) for r in map(exact, grasp.positions.tolist())) or Fraction(1)
+
+
+def rounded(value: Fraction) -> float:
+    """The nearest double, infinite where there is none."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf if value > 0 else -inf
+
+
+def root(value: Fraction) -> float:
+    """The square root as a double at every scale: neither the value nor its root need be one."""
+    if value <= 0:
+        return 0.0
+    half = (value.numerator.bit_length() - value.denominator.bit_length()) // 2
+    try:
+        return ldexp(sqrt(value / Fraction(4) ** half), half)
+    except OverflowError:
+        return inf
 
 
 def exact(values: Sequence[float]) -> Vector:

@@ -20,6 +20,7 @@ from regrasp.verification.protocols import Plan
 _PARTS = (np.arange(1, 12) * 0.6180339887498949) % 1.0
 
 
+@np.errstate(all="ignore")
 def check_load(
     plan: Plan, load: Callable[[float], Wrench], curvature: float | None
 ) -> tuple[float, bool, list[str]]:
@@ -33,7 +34,7 @@ def check_load(
     grasp, moving = plan.start.grasp, (*plan.leaving, *plan.arriving)
     if grasp.is_soft:
         raise InvalidInput("a load function is checked for point contacts; a finger of these is soft")
-    length = grasp.size or 1.0
+    length = float(_lengths(grasp.positions).max()) or 1.0
     scale = max(_sizes(loads, length).max(), float(abs(forces).max()))
     off = _sizes(_at(load, times, loads.shape[1]) - loads, length)
     if (off > float(RESOLUTION) * scale).any():
@@ -60,7 +61,7 @@ def check_load(
     least = float(np.linalg.svd(matrix, compute_uv=False)[-1]) if columns >= rows else 0.0
     # Force and torque may both be off by the gap.
     change = np.sqrt(2) * gap / least if least > 1e-12 else np.inf
-    if gap > float(RESOLUTION) * scale and change > room:
+    if gap > float(RESOLUTION) * scale and not change <= room:
         broken = (
             f"between instants the load given differs from the plan's by up to {gap:.3g}: forces that "
             f"balance it may differ by {change:.3g}, more than the margins take ({room:.3g}); plan with "
@@ -81,10 +82,14 @@ def _at(load: Callable[[float], Wrench], times: Array, width: int) -> Array:
 def _sizes(wrenches: Array, length: float) -> Array:
     """The larger of |F| and |tau| / length, (m,)."""
     d = 2 if wrenches.shape[1] == 3 else 3
-    sizes: Array = np.maximum(
-        np.linalg.norm(wrenches[:, :d], axis=1), np.linalg.norm(wrenches[:, d:], axis=1) / length
-    )
+    sizes: Array = np.maximum(_lengths(wrenches[:, :d]), _lengths(wrenches[:, d:] / length))
     return sizes
+
+
+def _lengths(vectors: Array) -> Array:
+    """Along the last axis, of numbers whose squares vanish or overflow as well."""
+    result: Array = np.hypot.reduce(vectors, axis=-1)
+    return result
 
 
 def _room(plan: Plan, forces: Array, stays: list[int]) -> float:
@@ -92,9 +97,9 @@ def _room(plan: Plan, forces: Array, stays: list[int]) -> float:
     grasp = plan.start.grasp
     mu, normals = grasp.frictions[stays], grasp.normals[stays]
     normal = (forces * normals).sum(axis=-1)
-    tangential = np.linalg.norm(forces - normal[..., None] * normals, axis=-1)
-    edge = (mu * normal - tangential) / np.sqrt(1 + mu**2)
-    spare = grasp.max_forces[stays] - np.linalg.norm(forces, axis=-1)
+    tangential = _lengths(forces - normal[..., None] * normals)
+    edge = (mu * normal - tangential) / np.hypot(1.0, mu)
+    spare = grasp.max_forces[stays] - _lengths(forces)
     least = plan.record.least_normals
     above = normal - np.array(least)[stays] if least else normal
     return float(min(edge.min(), spare.min(), above.min()))

@@ -54,8 +54,32 @@ class Turn(Protocol):
         """(K - 1, n, d) [N] between the angles, where a part of the load does not turn; None elsewhere."""
 
 
+class Choice(Protocol):
+    """How an end was chosen."""
+
+    @property
+    def end(self) -> str:
+        """``start`` or ``end``."""
+
+    @property
+    def force_limits(self) -> tuple[float, ...]:
+        """[N], infinite for none."""
+
+
 class Record(Protocol):
     """What a plan says it keeps to."""
+
+    @property
+    def reserve(self) -> float:
+        """The fraction of every friction coefficient kept back."""
+
+    @property
+    def balancing(self) -> float:
+        """The largest change of a given force [N]."""
+
+    @property
+    def choices(self) -> tuple[Choice, ...]:
+        """The ends that were not given."""
 
     @property
     def rate_limits(self) -> tuple[float, ...]:
@@ -100,3 +124,6 @@ class Plan(Protocol):
     @property
     def record(self) -> Record:
         """What the plan says of itself."""
+
+    def forces(self, t: Array) -> Array:
+        """(m, n, d) forces at m times [N]; set-points are compared with them."""

@@ -1,11 +1,14 @@
 """The verdict on a whole regrasp: every step, and every joint between two steps."""
 
 from fractions import Fraction
+from math import isfinite
 from typing import Protocol
+
+import numpy as np
 
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
-from regrasp.verification.exact import RESOLUTION, Vector, dot, exact
+from regrasp.verification.exact import RESOLUTION, Vector, cross, dot, exact, least_angle
 from regrasp.verification.protocols import Plan
 from regrasp.verification.rotated_loads import cosine_sine
 
@@ -38,6 +41,10 @@ def check_joints(plan: Regrasp) -> list[str]:
     if not plan.steps:
         return ["a regrasp has one step or more, this one has none"]
     broken = []
+    if len({step.start.grasp.dimension for step in plan.steps}) > 1:
+        return ["some steps are in the plane and some in space"]
+    if not all(map(isfinite, (*plan.orientations, plan.margin))):
+        return ["orientations and margin must be finite numbers"]
     if len(plan.orientations) != len(plan.steps) + 1:
         return [
             f"{len(plan.steps)} steps need {len(plan.steps) + 1} orientations, got {len(plan.orientations)}"
@@ -102,9 +109,12 @@ def _check_claims(plan: Regrasp) -> list[str]:
             )
     most = FINGERS[plan.steps[0].start.grasp.dimension] - 1  # fingers that hold while one moves
     states = [step.end for step in plan.steps[:-1]]
-    between = [state.margins.least_angle for state in states if len(state.in_use) <= most]
-    if between and not plan.margin <= min(between) + float(RESOLUTION):
-        broken.append(f"it claims a margin of {plan.margin:.6g} rad, its holds have {min(between):.6g}")
+    between = [least_angle(state.grasp, state.forces) for state in states if len(state.in_use) <= most]
+    # No force is farther inside its cone than along the normal.
+    widest = max(contact.half_angle for step in plan.steps for contact in step.start.grasp.contacts)
+    least = min([*between, widest])
+    if not plan.margin <= least + float(RESOLUTION):
+        broken.append(f"it claims a margin of {plan.margin:.6g} rad, its holds have {least:.6g}")
     return broken
 
 
@@ -124,14 +134,17 @@ def _rotated(plan: Regrasp) -> list[Vector] | str:
     Each must be a rotation, and lead to the next by the turn of the step between.
     """
     rotations = getattr(plan, "rotations", None)
-    if rotations is None or rotations.shape != (len(plan.steps) + 1, 3, 3):
-        return f"{len(plan.steps)} steps in space need {len(plan.steps) + 1} rotations"
+    count = len(plan.steps) + 1
+    if rotations is None or rotations.shape != (count, 3, 3) or not np.isfinite(rotations).all():
+        return f"{len(plan.steps)} steps in space need {count} rotations"
     matrices = [[exact(row) for row in matrix.tolist()] for matrix in rotations]
     first = _product(matrices[0], [[Fraction(x)] for x in plan.steps[0].start.load.force.tolist()])
     for k, matrix in enumerate(matrices):
         square = _product(_transposed(matrix), matrix)
         if _differ(square, [[Fraction(a == b) for b in range(3)] for a in range(3)]):
             return f"rotation {k + 1} is not orthonormal"
+        if dot(cross(matrix[0], matrix[1]), matrix[2]) < 0:
+            return f"rotation {k + 1} is a reflection"
     for k, step in enumerate(plan.steps):
         turn = step.turn
         turned = matrices[k]

@@ -26,36 +26,40 @@ def _turn() -> Fraction:
 class TurningLoad:
     """The load at angles of the object: it turns the other way about ``axis``, (3,) or None in the plane.
 
-    Written w = s + cos(angle) p + sin(angle) q: a still part s, and a part that turns.
+    Written w = s + cos(angle) p + sin(angle) q: a still part s, and a part that turns. ``arm2`` is the square
+    of the length that makes torques forces [m^2].
     """
 
-    def __init__(self, load: Wrench, axis: Array | None) -> None:
-        self.load = load
+    def __init__(self, load: Wrench, axis: Array | None, arm2: Fraction) -> None:
+        self.load, self._arm2 = load, arm2
         force, torque = exact(load.force.tolist()), exact(load.torque.tolist())
         zero = Fraction(0)
         if axis is None:
             fx, fy = force
-            self._parts = [([zero, zero, *torque], [fx, fy, zero], [fy, -fx, zero])]
+            turned = ([zero, zero], [fx, fy], [fy, -fx])
+            self._parts = [turned, (torque, [zero], [zero])]  # a torque of the plane stays
         else:
             k = exact(axis.tolist())
             self._parts = [_spun(force, k), _spun(torque, k)]
 
     @property
     def turns_whole(self) -> bool:
-        """Whether nothing of force and torque stays still, but for rounding of the axis."""
-        for still, along, _ in self._parts:
-            if dot(still, still) > RESOLUTION**2 * dot(along, along):
-                return False
-        return True
+        """Whether nothing of force and torque stays still, but for rounding of the axis.
 
-    def at(self, angle: Fraction) -> Wrench:
-        """The load seen from the object turned by ``angle`` [rad], to the nearest doubles."""
-        return Wrench.from_vector([float(x) for x in self._exact(angle, Fraction(1))])
+        Each in its own unit: a torque over the largest distance of a contact from the centre of mass.
+        """
+        (force, along, _), (torque, about, _) = self._parts
+        scale2 = max(dot(along, along), dot(about, about) / self._arm2)
+        return max(dot(force, force), dot(torque, torque) / self._arm2) <= RESOLUTION**2 * scale2
 
-    def between(self, first: Fraction, second: Fraction) -> Wrench:
-        """The load where the tangents at two angles meet, to the nearest doubles."""
+    def at(self, angle: Fraction) -> Vector:
+        """The load seen from the object turned by ``angle`` [rad], (3,) or (6,)."""
+        return self._exact(angle, Fraction(1))
+
+    def between(self, first: Fraction, second: Fraction) -> Vector:
+        """The load where the tangents at two angles meet, (3,) or (6,)."""
         stretch, _ = cosine_sine((second - first) / 2)
-        return Wrench.from_vector([float(x) for x in self._exact((first + second) / 2, 1 / stretch)])
+        return self._exact((first + second) / 2, 1 / stretch)
 
     def differs(self, load: Wrench, angle: Fraction) -> bool:
         """Whether a load is not this one seen from ``angle``, beyond the resolution."""

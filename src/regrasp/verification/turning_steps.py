@@ -18,14 +18,25 @@ least 0 for |Delta| < pi and of sum 1, so that f, m and g decide everything betw
 
 from fractions import Fraction
 from itertools import pairwise
-from math import inf, sqrt
+from math import inf, isqrt
+
+import numpy as np
 
 from regrasp.mechanics.contact import Contact
-from regrasp.mechanics.state import GraspState
-from regrasp.verification.exact import RESOLUTION, Vector, check_state, dot, exact
+from regrasp.mechanics.value import one_line
+from regrasp.verification.exact import (
+    RESOLUTION,
+    Vector,
+    arm2,
+    check_forces,
+    dot,
+    exact,
+    least_angle,
+    root,
+)
+from regrasp.verification.float_filter import Checked
 from regrasp.verification.protocols import Plan, Turn
 from regrasp.verification.rotated_loads import TurningLoad, cosine_sine
-from regrasp.verification.setpoints import Checked
 
 # 314159 / 100000 is a little less than pi.
 _BELOW_PI = Fraction(314159, 100000)
@@ -33,11 +44,12 @@ _BELOW_PI = Fraction(314159, 100000)
 
 def check_turn(plan: Plan, turn: Turn) -> Checked:
     """Check the states at all angles, the load there, the steps between them and the force limits."""
-    start, angles = plan.start, exact(turn.angles.tolist())
-    broken = _check_axis(turn, start.grasp.dimension)
+    start, grasp = plan.start, plan.start.grasp
+    broken = _check_form(turn, start.forces.shape) or _check_axis(turn, grasp.dimension)
     if broken:
         return Checked(broken, inf, 0.0, -inf)
-    turning = TurningLoad(start.load, turn.axis)
+    angles = exact(turn.angles.tolist())
+    turning = TurningLoad(start.load, turn.axis, arm2(grasp))
     steps = [b - a for a, b in pairwise(angles)]
     if angles[0] != 0 or not (all(s > 0 for s in steps) or all(s < 0 for s in steps)):
         return Checked(["the angles of a turn must go one way from 0"], inf, 0.0, -inf)
@@ -57,18 +69,15 @@ def check_turn(plan: Plan, turn: Turn) -> Checked:
         (f"angle {float(angle):.6g} rad", turning.at(angle), turn.forces[k]) for k, angle in enumerate(angles)
     ]
     if turn.middles is not None:
-        if len(turn.middles) != len(steps):
-            return Checked([f"{len(steps)} steps of a turn need as many middles"], inf, 0.0, -inf)
         states += [
             (f"between {float(a):.6g} and {float(b):.6g} rad", turning.between(a, b), turn.middles[k])
             for k, (a, b) in enumerate(pairwise(angles))
         ]
     for label, load, forces in states:
-        state = GraspState(start.grasp, load, forces)
-        residual, slack, violations = check_state(state, label)
+        residual, slack, violations = check_forces(grasp, forces, load, label)
         residuals.append(residual)
         slacks.append(slack)
-        angle_margins.append(state.margins.least_angle)
+        angle_margins.append(least_angle(grasp, forces))
         broken += violations
     if turn.middles is None:  # convex combinations never exceed the limits of their ends
         for k, step in enumerate(steps):
@@ -76,11 +85,26 @@ def check_turn(plan: Plan, turn: Turn) -> Checked:
     return Checked(broken, max(residuals), min(angle_margins), min(slacks))
 
 
+def _check_form(turn: Turn, shape: tuple[int, ...]) -> list[str]:
+    """Whether there are forces for every angle, and middles for every step, all of them numbers."""
+    count, middles = turn.angles.size, turn.middles
+    if turn.angles.ndim != 1 or count < 2 or turn.forces.shape != (count, *shape):
+        return [f"a turn has two angles or more, and forces (K, {shape[0]}, {shape[1]})"]
+    if middles is not None and middles.shape != (count - 1, *shape):
+        return [f"{count - 1} steps of a turn need as many middles"]
+    numbers = (turn.angles, turn.forces, *(() if middles is None else (middles,)))
+    if not all(np.isfinite(values).all() for values in numbers):
+        return ["angles and forces of a turn must be finite numbers"]
+    return []
+
+
 def _check_axis(turn: Turn, dimension: int) -> list[str]:
     """A turn in space has a unit axis, one in the plane none."""
     if (turn.axis is None) != (dimension == 2):
         return ["a turn in space needs its axis, and one in the plane has none"]
     if turn.axis is not None:
+        if turn.axis.shape != (3,) or not np.isfinite(turn.axis).all():
+            return ["the axis of a turn must have three numbers"]
         axis = exact(turn.axis.tolist())
         if abs(dot(axis, axis) - 1) > RESOLUTION:
             return ["the axis of a turn must have length 1"]
@@ -97,10 +121,10 @@ def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
         limit = Fraction(contact.max_force)
         f, g = (_measured(contact, turn.forces[at, i].tolist()) for at in (k, k + 1))
         peak2 = _peak(f, g, c, s)
-        if peak2 > (limit * (1 + RESOLUTION)) ** 2:
+        if peak2 > limit**2:
             broken.append(
-                f"force of {contact.name} reaches {sqrt(peak2):.12g} between two angles, above its limit "
-                f"{contact.max_force:.12g}"
+                f"force of {one_line(str(contact.name))} reaches {root(peak2):.12g} between two angles, "
+                f"above its limit {contact.max_force:.12g}"
             )
     return broken
 
@@ -109,13 +133,15 @@ def _measured(contact: Contact, force: list[float]) -> Vector:
     """A force as its limit measures it: a soft finger's torque as the tangential force mu m / e."""
     measured = exact(force)
     if contact.torsion is not None:
-        measured[3] *= Fraction(contact.friction) / Fraction(contact.torsion)
+        measured[3] *= max(Fraction(contact.friction), RESOLUTION) / Fraction(contact.torsion)
     return measured
 
 
 def _peak(f: Vector, g: Vector, c: Fraction, s: Fraction) -> Fraction:
-    """An upper bound of |a f + b g|^2 over a step with cosine c and sine s, tight to rounding."""
+    """An upper bound of |a f + b g|^2 over a step with cosine c and sine s, tight to 2^-60."""
     aa, ab, bb = dot(f, f), dot(f, g), dot(g, g)
+    # The weights a + b never exceed 1 / cos(Delta / 2): for small steps the finer bound, where s^2 vanishes.
+    highest = max(aa, bb) * 2 / (1 + c)
     # The slope of |.|^2 at both ends, times sin^2: it rises from the first and falls to the second end if the
     # crest lies between them; else an end is the highest.
     first, second = 2 * s * (ab - aa * c), 2 * s * (bb * c - ab)
@@ -124,5 +150,11 @@ def _peak(f: Vector, g: Vector, c: Fraction, s: Fraction) -> Fraction:
         return max(aa, bb)
     middle = (aa - 2 * ab * c + bb) / 2
     p, q = (aa * (c * c - s * s) - 2 * ab * c + bb) / -2, s * (ab - aa * c)
-    swing = Fraction(sqrt(p * p + q * q)) * (1 + RESOLUTION)
-    return max(aa, bb, (middle + swing) / (s * s))
+    return min(highest, max(aa, bb, (middle + _root_above(p * p + q * q)) / (s * s)))
+
+
+def _root_above(value: Fraction) -> Fraction:
+    """The square root, rounded up by less than 2^-60 of it."""
+    shift = 64 + (value.denominator.bit_length() - value.numerator.bit_length()) // 2
+    scaled = value * Fraction(4) ** shift
+    return (isqrt(scaled.numerator // scaled.denominator) + 1) / Fraction(2) ** shift

@@ -1,21 +1,26 @@
 """The verdict on a plan."""
 
 from dataclasses import dataclass
+from math import isfinite
 
+from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.exact import RESOLUTION
 
 
-@dataclass(frozen=True)
-class Verification:
+@dataclass(frozen=True, eq=False)
+class Verification(ArrayValue):
     """The verdict on a plan.
 
-    violations: each broken condition in words; none for a valid plan.
-    worst_residual: largest equilibrium residual checked, relative to the forces [-].
-    least_angle: smallest angle margin of the contacts in use [rad], for information.
-    least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0 inside.
-    load_gap: largest difference of the plan's load from the load function given [N], torque divided by the
-    grasp's size; None where none was given. load_gap_is_proven: from a bound on the load's curvature, and not
-    measured between the instants.
+    Args:
+        violations: each broken condition in words; none for a valid plan.
+        worst_residual: largest equilibrium residual checked, relative to the forces [-].
+        least_angle: smallest angle margin of the contacts in use [rad], for information; infinite where none
+            is.
+        least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0
+            inside.
+        load_gap: largest difference of the plan's load from the load function given [N], torque divided by
+            the grasp's size; None where none was given.
+        load_gap_is_proven: from a bound on the load's curvature, and not measured between the instants.
     """
 
     violations: tuple[str, ...]
@@ -33,9 +38,10 @@ class Verification:
     def __str__(self) -> str:
         if not self.ok:
             return "\n".join(["not verified:", *(f"  {violation}" for violation in self.violations)])
+        by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
         lines = [
             f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
-            f"every force inside its cone, by {self.least_angle:.6g} rad or more"
+            f"every force inside its cone{by}"
         ]
         if self.load_gap is not None:
             how = "proven" if self.load_gap_is_proven else "measured between instants, not proven"

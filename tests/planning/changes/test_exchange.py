@@ -6,6 +6,8 @@ import pytest
 import regrasp as rg
 from paper import GRASP, LOAD, STATE
 
+pytestmark = pytest.mark.laws
+
 P4 = rg.Contact([2, 6], normal=[-0.5, -1], friction=0.4, name="P4")
 P5 = rg.Contact([0.3, 8], normal=[0, -1], friction=0.4, name="P5")
 TWO = GRASP.without("P3")

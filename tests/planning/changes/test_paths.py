@@ -13,6 +13,8 @@ from paper import GRASP, STATE
 from regrasp.programs import available_backends
 from strategies import comfortable_triple
 
+pytestmark = pytest.mark.oracle
+
 # Largest difference from Eq. 1-3, relative to the largest force, at 21 instants.
 EXACTNESS = {
     "clarabel": 1e-6,

@@ -6,6 +6,8 @@ import pytest
 import regrasp as rg
 from space import nose_cone
 
+pytestmark = pytest.mark.laws
+
 GRIPPY, DOWN = nose_cone(5, 0.5), rg.Wrench([0, 0, -1.0])
 
 

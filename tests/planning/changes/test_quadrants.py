@@ -10,6 +10,8 @@ from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.planning.changes.path_program import PathTask, path_program
 from regrasp.programs import solve
 
+pytestmark = pytest.mark.oracle
+
 # Opposite fingers with wide cones hold a weight from every side.
 PAIR = rg.Grasp(
     [rg.Contact([-1, 0.05], [1, 0], 0.9, name="A"), rg.Contact([1, -0.05], [-1, 0], 0.9, name="B")]

@@ -14,6 +14,8 @@ from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.plans.turning import TurningPath
 from regrasp.verification.turning_steps import cosine_sine
 
+pytestmark = pytest.mark.laws
+
 GRASP = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.8, name="A"), rg.Contact([1, 0.1], [-1, 0], 0.8, name="B")])
 WEIGHT = rg.Wrench([0, -2])
 FORCES = st.lists(st.floats(-1, 1).map(lambda x: x if abs(x) > 1e-100 else 0.0), min_size=2, max_size=2).map(

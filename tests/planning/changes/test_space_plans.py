@@ -15,6 +15,8 @@ from regrasp.mechanics.rotated_loads import load_between, turned_load
 from regrasp.plans.turning import TurningPath
 from space import nose_cone, random_grasp, random_load, random_rotation, rotated
 
+pytestmark = pytest.mark.laws
+
 NOSE, DOWN = nose_cone(5, 0.3), rg.Wrench([0, 0, -1.0])
 GRIPPY = nose_cone(5, 0.5)
 BALL = rg.Grasp(

@@ -16,6 +16,8 @@ from regrasp.closed_form.compiled.holds import STRETCH, hold_margins, pairs_of, 
 from regrasp.closed_form.locus import squeeze_interval
 from regrasp.closed_form.turning_margin import NO_HOLD, arc_tangent, turning_margin
 
+pytestmark = pytest.mark.oracle
+
 Candidates = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]
 """Points, unit normals, frictions, force limits and the peak ratio."""
 

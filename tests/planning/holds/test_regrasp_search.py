@@ -12,6 +12,8 @@ from regrasp.planning.holds.planar_stances import Fingering
 from regrasp.planning.holds.sequences import MAX_TURN, as_sequence, sequences
 from regrasp.planning.holds.weights import RegraspWeights, efforts
 
+pytestmark = pytest.mark.oracle
+
 
 def arcs_of(rng, points, start):
     """Which finger may touch which point: a run of neighbours, and where it starts."""

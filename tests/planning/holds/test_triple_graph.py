@@ -13,6 +13,8 @@ from regrasp.closed_form.three_fingers import HOLDS, LINE, three_finger_hold
 from regrasp.planning.holds.triples import TripleGraph, directions
 from solids import Motion, motions
 
+pytestmark = pytest.mark.oracle
+
 
 def candidates(seed: int, count: int, *, limited: bool = False, friction: float | None = None):
     """Contacts on an ellipsoid that look along its normals."""

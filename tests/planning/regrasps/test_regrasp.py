@@ -11,6 +11,8 @@ from regrasp.closed_form.choice import ANGLE, best_squeeze
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 
+pytestmark = pytest.mark.laws
+
 WEIGHT = rg.Wrench([0, -3.0])
 ELLIPSE = rg.Outline.ellipse(2, 1)
 
@@ -186,7 +188,7 @@ def test_the_verifier_finds_bad_joints():
         ({"load": [0, -1]}, rg.InvalidInput, "load must be a Wrench"),
         ({"max_turn": 4.0}, rg.InvalidInput, "max_turn must be above 0 and below pi"),
         ({"objective": "speed"}, rg.InvalidInput, "objective must be one of"),
-        ({"candidates": 0.5}, rg.InvalidInput, "count must be a whole number"),
+        ({"candidates": 0.5}, rg.InvalidInput, "candidates must be a whole number"),
         (
             {"start": grasp_on(ELLIPSE, (0.4, 0.45, 0.5), 0.05)}, rg.Infeasible,
             r"fingers of the start cannot hold the load at 0 deg: .*; they would with friction 2\.27",

@@ -15,6 +15,8 @@ from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.options import RegraspOptions
 from regrasp.planning.regrasps.planar import RegraspProblem
 
+pytestmark = pytest.mark.laws
+
 WEIGHT = rg.Wrench([0, -3.0])
 ELLIPSE = rg.Outline.ellipse(2, 1)
 

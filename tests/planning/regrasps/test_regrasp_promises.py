@@ -8,6 +8,8 @@ from box import BOX, GOAL, MU, START
 from box import WEIGHT as DOWN
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 
+pytestmark = pytest.mark.contract
+
 OUTLINE, WEIGHT = rg.Outline.ellipse(2, 1), rg.Wrench([0, -3.0])
 
 

@@ -16,6 +16,8 @@ from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.triples import TripleGraph, directions
 from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
 
+pytestmark = pytest.mark.oracle
+
 
 def fewest_moves(graph, near, start, goal, o, margin):
     """Fewest finger moves with holds of at least ``margin``, by breadth-first search over every stance."""
@@ -225,7 +227,7 @@ def test_units_change_nothing(length, force):
         ({"max_turn": pi}, "max_turn must be above 0 and below pi"),
         ({"load": rg.Wrench([0, 0, -1], [0, 0.1, 0])}, "a force in space through the centre of mass"),
         ({"facets": 5}, "facets must be an even whole number"),
-        ({"candidates": 0}, "count must be a whole number"),
+        ({"candidates": 0}, "candidates must be a whole number"),
         ({"least_margin": -1}, "least_margin must be at least 0"),
         ({"mesh": 3}, "a regrasp needs an Outline or a Mesh, got 3"),
     ],

@@ -10,6 +10,8 @@ import regrasp as rg
 from agreement import AGREEMENT, LEVELS, chosen, difference, installed, random_cases, value
 from models import LIMITED, OBJECTIVES, ConvexChoice
 
+pytestmark = pytest.mark.oracle
+
 # The independent model is compiled anew for each grasp, and bisects for levels.
 MODELLED = {objective: 20 if objective in LEVELS else 100 for objective in OBJECTIVES}
 

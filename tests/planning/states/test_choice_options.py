@@ -6,6 +6,8 @@ import pytest
 import regrasp as rg
 from agreement import chosen, random_cases
 
+pytestmark = pytest.mark.contract
+
 
 def test_polygons_are_inside_the_circle_and_close_in_on_it():
     case = next(c for c in random_cases(50, seed=3) if not c.options and chosen(c, "peak", "clarabel"))

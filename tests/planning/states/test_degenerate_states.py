@@ -16,6 +16,8 @@ from regrasp.programs.backends import BACKENDS
 sys.path.append(str(ROOT / "benchmarks"))
 from degenerate import Degenerate, degenerate_cases
 
+pytestmark = pytest.mark.contract
+
 OBJECTIVES = ("angle", "force", "effort", "peak", "friction_use")
 # The share of known verdicts that a back end may refuse: zero loads and wide scales are not for all of them.
 REFUSED = {"auto": 0.1, "clarabel": 0.15, "closed-form": 0.1, "daqp": 0.25, "quadprog": 0.2, "highs": 0.15}

@@ -13,6 +13,8 @@ from oracle import opposition, power
 from regrasp.planning.states.escape import escape_twist
 from strategies import Pair, held_pairs, held_triples, lattice_pair, random_pair
 
+pytestmark = pytest.mark.laws
+
 
 def proves(twist: rg.EscapeTwist) -> bool:
     """Forces in the cones, with limits, oppose less than the load drives; without, only beyond 1e9 loads."""

@@ -12,6 +12,8 @@ from regrasp.planning.surveys.locus_program import locus_program, solved_interva
 from regrasp.programs import Cone, available_backends
 from strategies import comfortable_pair, random_pair
 
+pytestmark = pytest.mark.oracle
+
 TAKES_LINEAR = sorted({"clarabel", "highs", "piqp", "cvxpy"} & set(available_backends()))
 TOLERANCE = {"clarabel": 1e-7, "highs": 1e-6, "piqp": 1e-6, "cvxpy": 1e-6}
 

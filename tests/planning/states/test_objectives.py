@@ -1,6 +1,7 @@
 """Objectives are values: what each says of itself is true, and one of a user's own is as good as the rest."""
 
 import pickle
+from pathlib import Path
 from typing import get_args
 
 import cvxpy as cp
@@ -10,6 +11,7 @@ import pytest
 import regrasp as rg
 from paper import GRASP, LOAD
 from regrasp.closed_form import choice as closed
+from regrasp.files import read_plan, write_plan
 from regrasp.planning.states.objectives import (
     OBJECTIVES,
     ConvexObjective,
@@ -21,6 +23,8 @@ from regrasp.planning.states.objectives import (
 from regrasp.planning.states.program import state_program
 from space import random_grasp, random_load, soft_random
 from strategies import comfortable_pair, comfortable_triple
+
+pytestmark = pytest.mark.contract
 
 
 def test_the_words_are_known_everywhere() -> None:
@@ -169,11 +173,13 @@ def test_prices_of_forces() -> None:
     assert state.value < float((0.1 * without.forces**2 + prices * without.forces).sum())
 
 
-def test_a_cost_of_ones_own_plans_and_has_rates() -> None:
+def test_a_cost_of_ones_own_plans_and_has_rates(tmp_path: Path) -> None:
     cost = rg.ForceCost("careful", weights=[1.0, 9.0])
     plan = rg.plan_removal(GRASP, "P3", load=LOAD, objective=cost)
     assert rg.verify(plan).ok
-    assert plan.record.choices[0].objective == "careful"
+    assert plan.record.choices[0].objective == "own:careful"
+    write_plan(plan, tmp_path / "plan.json")
+    assert read_plan(tmp_path / "plan.json") == plan
     two = GRASP.without("P3")
     rates = rg.sensitivity(two, LOAD, cost, reserve=0.0)
     ahead = rg.choose_state(two, rg.Wrench([-1.5 + 1e-6, -3.5]), cost, reserve=0.0).value

@@ -15,6 +15,8 @@ from regrasp.planning.states.options import (
     described,
 )
 
+pytestmark = pytest.mark.contract
+
 VERBS = [
     (rg.choose_state, StateOptions),
     (rg.EquilibriumLocus.best, LimitOptions),
@@ -34,7 +36,7 @@ def test_signatures_and_docstrings_name_every_option(verb: object, options: type
     for name, (_, option) in described(options).items():
         assert parameters[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert parameters[name].default == option.default
-        assert f"{name}: {option.words}" in str(verb.__doc__)
+        assert f"{name}: {option.words}" in " ".join(str(verb.__doc__).split())
     assert not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters.values())
 
 

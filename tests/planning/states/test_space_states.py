@@ -16,6 +16,8 @@ from regrasp.planning.states.program import state_program
 from regrasp.programs import solve
 from space import best_by_cvxpy, nose_cone, random_grasp, random_load, random_rotation, rotated
 
+pytestmark = pytest.mark.oracle
+
 GOLDEN = json.loads((TESTS / "golden_space.json").read_text())["nose_cone_grasp"]
 NOSE, DOWN = nose_cone(GOLDEN["n"], GOLDEN["friction"]), rg.Wrench([0, 0, -1.0])
 OBJECTIVES = ("angle", "force", "effort", "peak", "peak_normal", "friction_use")

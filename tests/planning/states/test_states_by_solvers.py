@@ -10,6 +10,8 @@ import regrasp as rg
 from models import LIMITED, OBJECTIVES, ConvexChoice
 from strategies import comfortable_pair, comfortable_triple
 
+pytestmark = pytest.mark.oracle
+
 
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_closed_form_and_clarabel_agree(objective: str) -> None:

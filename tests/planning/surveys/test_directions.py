@@ -9,6 +9,8 @@ import pytest
 import regrasp as rg
 from paper import GRASP
 
+pytestmark = pytest.mark.oracle
+
 DOWN, UP, RIGHT, LEFT = (0, -1), (0, 1), (1, 0), (-1, 0)
 
 

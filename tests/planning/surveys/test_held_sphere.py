@@ -13,6 +13,8 @@ from regrasp.mechanics.orientation.spiral import even_directions
 from regrasp.plots import plot_load_sphere
 from space import best_by_cvxpy, nose_cone, random_grasp, random_rotation, rotated
 
+pytestmark = pytest.mark.oracle
+
 mpl.use("Agg")
 NOSE = nose_cone(3, 0.5)
 RING = rg.Grasp(

@@ -11,6 +11,8 @@ import regrasp as rg
 from places import TESTS
 from space import best_by_cvxpy, nose_cone, random_grasp, random_load, random_rotation, rotated
 
+pytestmark = pytest.mark.oracle
+
 GOLDEN = json.loads((TESTS / "golden_space.json").read_text())["nose_cone_grasp"]
 NOSE, DOWN = nose_cone(GOLDEN["n"], GOLDEN["friction"]), rg.Wrench([0, 0, -1.0])
 PLANAR = rg.Grasp(

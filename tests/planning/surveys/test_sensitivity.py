@@ -17,6 +17,8 @@ from regrasp.plots.surveys.sensitivity import sensitivity_png
 from regrasp.programs import Program, Solution, Status, solve
 from strategies import comfortable_pair, comfortable_triple
 
+pytestmark = pytest.mark.oracle
+
 PARAMETERS = ("friction", "position", "normal", "limit", "load")
 BETTER_LARGE = ("angle", "force")
 

@@ -14,6 +14,8 @@ from regrasp.closed_form.triple import centroid_moment, particular_forces, squee
 from regrasp.planning.surveys.squeeze_basis import pair_squeezes
 from space import nose_cone, random_grasp, random_load, random_rotation, rotated
 
+pytestmark = pytest.mark.laws
+
 DOWN = rg.Wrench([0, 0, -1.0])
 NOSE = nose_cone(3, 0.5)
 PLANAR = rg.Grasp(

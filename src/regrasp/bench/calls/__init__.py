@@ -1,5 +1,4 @@
-"""How each solver is called with its own defaults: once cold, or again with another right side.
+"""Solvers that the benchmark calls through other packages, with their own defaults.
 
-A module per package, imported when used. Each gives ``solve(program, **options) -> Answer`` or a class whose
-instances hold a solver that is set up: ``Session(program, **options)`` with ``solve()`` and ``update(b)``.
+Those called by their own name are in ``regrasp.programs.calls``.
 """

@@ -5,8 +5,8 @@ from typing import Any
 
 import qpsolvers
 
-from regrasp.bench.calls.form import Split, split
 from regrasp.bench.running.answer import Answer
+from regrasp.programs.calls.form import Split, split
 from regrasp.programs.program import Program
 
 _DENSE = set(qpsolvers.dense_solvers) - set(qpsolvers.sparse_solvers)

@@ -18,5 +18,6 @@ def certified(program: Program, scale: float = 1.0) -> Known:
         size = max(scale, abs(answer.objective))
         gap = answer.absolute_gap / size + answer.primal_residual + answer.dual_residual
         if gap <= _SOUND:
-            return Known(Verdict.SOLVABLE, Truth.REFERENCE, answer.objective, max(10 * gap, _ROUNDING), scale)
+            accuracy = float(f"{max(10 * gap, _ROUNDING):.0e}")  # a digit is known of it
+            return Known(Verdict.SOLVABLE, Truth.REFERENCE, answer.objective, accuracy, scale)
     return Known(Verdict.UNKNOWN, Truth.NONE)

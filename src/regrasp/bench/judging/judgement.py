@@ -1,7 +1,8 @@
 """Whether an answer is right, by our own arithmetic and by what is known of the problem.
 
-A solver's word counts only as what it claims. Whether an answer is right depends on x alone; duals are
-measured where they are given, and a wrong certificate does not make a right verdict wrong.
+A solver's word counts only as what it claims, and scores only what is shown: a solution by its point, a
+program without one by a certificate that proves it. Whether a solution is right depends on x alone where the
+optimum is known; duals are measured where they are given.
 """
 
 from dataclasses import dataclass
@@ -11,11 +12,13 @@ import numpy as np
 
 from regrasp.bench.judging.residual import row_residual
 from regrasp.bench.running.answer import Answer, Claim
-from regrasp.bench.running.problem import BenchProblem, Verdict
+from regrasp.bench.running.problem import BenchProblem, Known, Verdict
+from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.solution import Solution, Status
 
 CERTIFICATE = 1e-3
-"""Largest residual of a certificate: a feasible point would lie a thousand times the data's size away."""
+"""Largest residual of a certificate: the terms of a feasible point would be a thousand times those of b."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ def _found(problem: BenchProblem, answer: Answer, within: float) -> Judgement:
     program, known = problem.program, problem.known
     has_duals = answer.duals is not None
     solution = _solution(problem, answer, Status.SOLVED)
-    audit = solution._audit
+    audit = solution.audit
     distance, off = known.distance(solution.objective), row_residual(program, answer.x)
     measures = {
         "objective": solution.objective,
@@ -78,25 +81,45 @@ def _found(problem: BenchProblem, answer: Answer, within: float) -> Judgement:
         return Judgement(False, "claims a solution of an infeasible program", **measures)
     if not off <= within:
         return Judgement(False, f"breaks the constraints by more than {within:g}", **measures)
-    if distance is not None:
-        right = distance <= within + known.accuracy
-        why = f"{'within' if right else 'farther than'} {within:g} from the known optimum"
-        return Judgement(right, why, **measures)
-    if not has_duals or not program.b.size:
+    near = None if distance is None else is_near(distance, known, within)
+    if near is not None:
+        return Judgement(near, f"{_PLACE[near]} {within:g} from the known optimum", **measures)
+    if not has_duals:
         return Judgement(None, "the optimum is not known and no duals prove the answer", **measures)
-    right = max(solution.dual_residual, solution.gap) <= within
+    right = max(audit[:4]) <= within
+    if distance is not None and not right:
+        return Judgement(None, "the optimum is not known well enough to tell", **measures)
     return Judgement(right, f"duals {'prove' if right else 'do not prove'} it to {within:g}", **measures)
+
+
+_PLACE = {True: "within", False: "farther than"}
+
+
+def is_near(distance: float, known: Known, within: float) -> bool | None:
+    """Whether an objective is ``within`` its relative distance of the optimum; None where that is not known.
+
+    The optimum may be off by ``known.accuracy``, so that what lies beyond by no more cannot be told.
+    """
+    if distance <= within:
+        return True
+    return None if distance <= within + known.accuracy else False
+
+
+def is_proof(residual: float | None) -> bool:
+    """Whether a certificate of this residual, or none, shows what it claims."""
+    return residual is not None and residual <= CERTIFICATE
 
 
 def _infeasible(problem: BenchProblem, answer: Answer) -> Judgement:
     if problem.known.verdict is Verdict.SOLVABLE:
         return Judgement(False, "claims that a solvable program is infeasible")
-    # A certificate that is a little off proves little where nothing else is known.
-    right = True if problem.known.verdict is Verdict.INFEASIBLE else None
     if answer.duals is None:
-        return Judgement(right, "claims infeasibility without a certificate")
-    residual = _solution(problem, answer, Status.INFEASIBLE).infeasibility_residual
-    proves = "proves" if residual <= CERTIFICATE else "does not prove"
+        return Judgement(None, "claims infeasibility without a certificate")
+    program = problem.program
+    residual = infeasibility_residual(program, cleaned_duals(program, answer.duals, 0.0, steps=0))
+    # A certificate that is a little off proves little where nothing else is known.
+    right = True if is_proof(residual) and problem.known.verdict is Verdict.INFEASIBLE else None
+    proves = "proves" if is_proof(residual) else "does not prove"
     return Judgement(right, f"its certificate {proves} infeasibility", certificate_residual=_finite(residual))
 
 
@@ -107,9 +130,10 @@ def _unbounded(problem: BenchProblem, answer: Answer) -> Judgement:
         )
     if answer.x is None:
         return Judgement(None, "claims unboundedness without a direction")
-    residual = _solution(problem, answer, Status.UNBOUNDED).unboundedness_residual
+    program = problem.program
+    residual = unboundedness_residual(program, cleaned_direction(program, answer.x, 0.0, steps=0))
     # A direction proves unboundedness only of a program that some point satisfies.
-    correct = None if residual <= CERTIFICATE else False
+    correct = None if is_proof(residual) else False
     return Judgement(correct, "claims unboundedness", certificate_residual=_finite(residual))
 
 

@@ -4,20 +4,24 @@ from math import nan
 
 import numpy as np
 
+from regrasp.programs.judging.units import units_of_unknowns
 from regrasp.programs.program import Array, Cone, Program
 
 
 def row_residual(program: Program, x: Array) -> float:
-    """The largest violation of a row or second-order cone, relative to |a_i| |x| + |b_i|; x: (n,).
+    """The largest violation of a row or second-order cone, relative to its |b_i| + max_j |a_ij x_j|; x: (n,).
 
-    |.| is the largest entry; of a cone the largest of its rows. Rows in other units, forces and torques for
-    one, count alike. NaN if x is not finite or so large that the rows are not.
+    An unknown near zero counts as large as its unit (``regrasp.programs.judging.units``), but no larger than
+    the largest; of a cone the largest row counts. Rows in other units, forces and torques for one, count
+    alike, and what is large elsewhere hides nothing. NaN if x or the rows are not finite.
     """
     if not np.isfinite(x).all():
         return nan
     with np.errstate(over="ignore", invalid="ignore"):
         slack = program.b - program.A @ x
-        scale = abs(program.A).max(axis=1).toarray().ravel() * abs(x).max(initial=0.0) + abs(program.b)
+        units = np.minimum(units_of_unknowns(program)[0], abs(x).max(initial=0.0))
+        sizes = np.maximum(abs(x), units)
+        scale = program.terms.in_rows(sizes) + abs(program.b)
     if not (np.isfinite(slack).all() and np.isfinite(scale).all()):
         return nan
     worst = 0.0

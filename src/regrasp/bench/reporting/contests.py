@@ -38,6 +38,11 @@ class Contest:
         """Names of the problems."""
         return list(next(iter(self.outcomes.values()), {}))
 
+    @property
+    def is_alone(self) -> bool:
+        """Whether there is one solver only, so that ranks and comparisons say nothing."""
+        return len(self.outcomes) < 2
+
     def count(self, solver: str, kind: Kind) -> int:
         """How many outcomes of a solver are of a kind."""
         return sum(outcome.kind is kind for outcome in self.outcomes[solver].values())

@@ -23,9 +23,10 @@ LIMITATIONS = (
     "algebra are not seen at their best.",
     "Times of answers that are not right count at the time limit; mean times depend on that limit and on the "
     "shift. Shares of problems do not.",
-    "A solver that finds a program infeasible is right if it is; whether its certificate proves it has a "
-    "table of its own. Clarabel, OSQP, QPALM and SCS hand certificates out; the others, and all that are "
-    "called through qpsolvers or cvxpy, are believed for the verdict.",
+    "That a program is infeasible counts where a certificate proves it. Clarabel, OSQP, QPALM and SCS hand "
+    "certificates out, HiGHS a ray where its presolve does not find out first, PIQP and ProxQP an iterate "
+    "that is near one; the others, and all that are called through qpsolvers or cvxpy, have none to show, "
+    "however right they are.",
     "An updated solve starts from what the solver keeps, which can mislead it: after an infeasible problem, "
     "or where the old answer still passes its checks, ProxQP has answered wrongly in our trials. The loads "
     "of the family turn slowly and are all held.",

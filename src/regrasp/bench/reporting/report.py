@@ -116,7 +116,7 @@ def _counted(count: int, what: str) -> str:
 
 
 def _summary_blocks(all_contests: list[Contest]) -> Iterator[Block]:
-    if all_contests:
+    if any(not contest.is_alone for contest in all_contests):
         yield Heading("In short")
         yield Paragraph(
             "The solvers with the most right answers, and the one that is most often the fastest with a "
@@ -141,9 +141,10 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
             "where none is asked for, within 1e-2, which is ten times the loosest that a solver asks of "
             "itself. by family: the mean of the shares of right answers in each family, which does not "
             "weigh families by their size. verdict only: the solver says rightly that there is a solution, "
-            "or that there is none, whatever its numbers are. wrong: an answer that is not right. no answer: "
-            "it said so, raised an error, crashed or ran out of time or memory. not taken: a kind of problem "
-            "that the solver does not claim to solve.",
+            "or that there is none, whatever its numbers are. wrong: an answer that is not right. not shown: "
+            "a claim that nothing proves, such as that there is no solution, without a certificate. "
+            "no answer: it said so, raised an error, crashed or ran out of time or memory. not taken: a kind "
+            "of problem that the solver does not claim to solve.",
             f"mean time: shifted geometric mean over all problems with a shift of {seconds(SHIFT)}; answers "
             f"that are not right count at the time limit, {seconds(limit)}. mean, shared: over the problems "
             "that every solver of the table answers rightly.",
@@ -158,10 +159,13 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
         left = f" Left out: {contest.left_out}, not given to all." if contest.left_out else ""
         yield Paragraph(f"{len(contest.problems)} problems; right means to {within:g}.{left}")
         yield contest_table(contest)
-        rising = ratios(contest)
-        ax = plot_profiles({solver: rising[solver] for solver in contest.ranking}, looks)
-        words = f"Performance profiles: {contest.title}"
-        yield Picture(f"profile-{contest.slug}.svg", words, svg(ax))
+        if contest.is_alone:
+            yield Paragraph("One solver alone: nothing to compare it with.")
+        else:
+            rising = ratios(contest)
+            ax = plot_profiles({solver: rising[solver] for solver in contest.ranking}, looks)
+            words = f"Performance profiles: {contest.title}"
+            yield Picture(f"profile-{contest.slug}.svg", words, svg(ax))
         yield Paragraph("Right answers by family, of the number in brackets:")
         yield family_table(contest)
         yield Paragraph(
@@ -226,8 +230,8 @@ def _certificate_blocks(found: list[Outcome]) -> Iterator[Block]:
         yield Heading("Certificates")
         yield Paragraph(
             "Problems without solution: how often a solver says so, how often it hands out a certificate, "
-            f"and how often that proves it by our arithmetic, to {CERTIFICATE:g}. A right verdict counts as "
-            "right above, with a certificate or without."
+            f"and how often that proves it by our arithmetic, to {CERTIFICATE:g}. Above, a verdict counts as "
+            "right only where it is proven: anybody can say that there is no solution."
         )
         yield certificate_table(claims)
 

@@ -6,7 +6,7 @@ from math import inf
 from statistics import median
 
 from regrasp.bench.judging.closeness import Closeness
-from regrasp.bench.judging.judgement import CERTIFICATE
+from regrasp.bench.judging.judgement import is_proof
 from regrasp.bench.judging.outcomes import PARTS, Kind, Outcome
 from regrasp.bench.reporting.contests import Contest
 from regrasp.bench.reporting.document import Table
@@ -20,7 +20,7 @@ NOTHING = "–"
 
 
 def contest_table(contest: Contest) -> Table:
-    """Each solver's right answers, verdicts and times, the first in rank on top."""
+    """Each solver's right answers, verdicts and times, the first in rank on top; one alone has no rank."""
     rising = ratios(contest)
     shared = contest.shared
     rows = []
@@ -28,38 +28,50 @@ def contest_table(contest: Contest) -> Table:
         there = contest.outcomes[solver]
         verdicts = [outcome.has_right_verdict for outcome in there.values()]
         times = [there[problem].charged for problem in shared]
-        rows.append(
-            [
-                solver,
-                percent(contest.count(solver, Kind.RIGHT), len(there)),
-                percent(contest.by_family(solver), 1.0),
-                percent(sum(verdicts), len(verdicts)),
-                *(str(contest.count(solver, kind)) for kind in (Kind.WRONG, Kind.NONE, Kind.REFUSED)),
-                seconds(contest.mean(solver)),
+        cells = [
+            solver,
+            percent(contest.count(solver, Kind.RIGHT), len(there)),
+            percent(contest.by_family(solver), 1.0),
+            percent(sum(verdicts), len(verdicts)),
+            *(str(contest.count(solver, kind)) for kind in _NOT_RIGHT),
+            seconds(contest.mean(solver)),
+        ]
+        if not contest.is_alone:
+            cells += [
                 seconds(shifted_geometric_mean(times)) if times else NOTHING,
                 *(f"{100 * share_within(rising[solver], factor):.0f} %" for factor in (1, 2, 10)),
             ]
-        )
-    header = ["solver", "right", "by family", "verdict only", "wrong", "no answer", "not taken", "mean time"]
-    return Table([*header, "mean, shared", "fastest", "within 2x", "within 10x"], rows)
+        rows.append(cells)
+    header = ["solver", "right", "by family", "verdict only", *_NOT_RIGHT.values(), "mean time"]
+    compared = [] if contest.is_alone else ["mean, shared", "fastest", "within 2x", "within 10x"]
+    return Table([*header, *compared], rows)
+
+
+_NOT_RIGHT = {
+    Kind.WRONG: "wrong",
+    Kind.UNJUDGED: "not shown",
+    Kind.NONE: "no answer",
+    Kind.REFUSED: "not taken",
+}
 
 
 def summary_table(all_contests: Iterable[Contest]) -> Table:
-    """Who is first in each contest."""
+    """Who is first in each contest of two solvers or more."""
     rows = []
     for contest in all_contests:
+        if contest.is_alone:
+            continue
         size, most = len(contest.problems), contest.count(contest.ranking[0], Kind.RIGHT)
-        first = [solver for solver in contest.ranking if contest.count(solver, Kind.RIGHT) == most]
+        first = [solver for solver in contest.ranking if contest.count(solver, Kind.RIGHT) == most > 0]
         shares = {solver: share_within(rising, 1) for solver, rising in ratios(contest).items()}
         fastest = max(contest.ranking, key=shares.__getitem__)
+        best = [fastest, f"{100 * shares[fastest]:.0f} %", f"{contest.count(fastest, Kind.RIGHT)} of {size}"]
         rows.append(
             [
                 contest.title,
-                ", ".join(first),
+                ", ".join(first) or NOTHING,
                 f"{most} of {size}",
-                fastest,
-                f"{100 * shares[fastest]:.0f} %",
-                f"{contest.count(fastest, Kind.RIGHT)} of {size}",
+                *(best if shares[fastest] > 0 else [NOTHING] * 3),
             ]
         )
     header = ["", "most right", "right answers", "most often fastest", "how often", "its right answers"]
@@ -174,7 +186,7 @@ def certificate_table(claims: Iterable[Outcome]) -> Table:
     for (settings, solver), there in sorted(groups.items(), key=lambda g: (SETTINGS.index(g[0][0]), g[0][1])):
         residuals = [o.row.certificate_residual for o in there if o.has_right_verdict]
         given = [residual for residual in residuals if residual is not None]
-        proven = sum(residual <= CERTIFICATE for residual in given)
+        proven = sum(map(is_proof, given))
         counts = (len(there), len(residuals), len(given), proven)
         rows.append([solver, settings, *map(str, counts), f"{max(given):.1e}" if given else NOTHING])
     header = ["solver", "settings", "infeasible", "says so", "with a certificate", "proven", "worst residual"]

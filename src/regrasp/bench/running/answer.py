@@ -1,46 +1,15 @@
-"""What a solver answers to one program, in the words every solver shares."""
+"""What a solver answers to one program, taken from whatever it returned."""
 
-from dataclasses import dataclass
-from enum import Enum
 from math import inf
 from typing import Any
 
 import numpy as np
 
 from regrasp.errors import InvalidInput
+from regrasp.programs.answer import Answer, Claim
 from regrasp.programs.program import Array, Program
 
-
-class Claim(Enum):
-    """What a solver says of a program; the value is the word for it in rows and for outside solvers."""
-
-    FOUND = "found"
-    INFEASIBLE = "infeasible"
-    UNBOUNDED = "unbounded"
-    FAILED = "failed"
-    REFUSED = "refused"
-
-
-@dataclass(frozen=True, eq=False)
-class Answer:
-    """A solver's answer, not yet believed.
-
-    status: a word of ``Claim``; ``refused`` for a program of a kind that the solver does not take. x: (n,),
-    or None. duals: (m,) z with P x + q + A'z = 0 and z in K*; for ``infeasible`` the certificate, A'z = 0 and
-    b'z < 0; None where the solver gives none. iterations: as it counts. said: its own words.
-    build_time, setup_time, solve_time: [s] what the call spends on bringing the data into another form, on
-    set-up (scaling, factorisation) and on iterations; None where there is no such part or it cannot be told
-    apart.
-    """
-
-    status: str
-    x: Array | None = None
-    duals: Array | None = None
-    iterations: int | None = None
-    said: str = ""
-    build_time: float | None = None
-    setup_time: float | None = None
-    solve_time: float | None = None
+__all__ = ["Answer", "Claim", "printable", "understood"]
 
 
 def understood(given: Any, program: Program) -> Answer:

@@ -34,6 +34,15 @@ def memory() -> int | None:
         return None
 
 
+def can_limit_memory() -> bool:
+    """Whether the system limits the memory of a process."""
+    try:
+        import resource
+    except ImportError:  # not a POSIX system
+        return False
+    return hasattr(resource, "RLIMIT_AS")
+
+
 def _processor() -> str:
     try:
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():

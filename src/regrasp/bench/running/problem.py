@@ -30,13 +30,18 @@ class Truth(Enum):
     NONE = "nothing"
 
 
+NEAR_ZERO = 1e-3
+"""Part of ``Known.scale`` that an optimum counts as at least: errors relative to nothing say nothing."""
+
+
 @dataclass(frozen=True)
 class Known:
     """What is known of a problem's answer.
 
     optimum: the least objective, or None. accuracy: to which ``distance`` from it is known: rounding for a
     closed form, the last printed digit of a published number. scale: of an objective that matters where the
-    optimum may be near zero: one where the program's data are of order one; zero where it cannot be.
+    optimum may be near zero: one where the program's data are of order one; zero where it cannot be. Nearer
+    to zero than ``NEAR_ZERO`` of it, an optimum counts as that large.
     """
 
     verdict: Verdict
@@ -46,10 +51,10 @@ class Known:
     scale: float = 1.0
 
     def distance(self, objective: float) -> float | None:
-        """How far an objective is from the optimum, relative to max(scale, |optimum|); None if unknown."""
+        """How far an objective is from the optimum, relative to the latter; None if unknown."""
         if self.optimum is None:
             return None
-        return abs(objective - self.optimum) / max(self.scale, abs(self.optimum))
+        return abs(objective - self.optimum) / max(NEAR_ZERO * self.scale, abs(self.optimum))
 
 
 @dataclass(frozen=True, eq=False)

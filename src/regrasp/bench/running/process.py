@@ -10,6 +10,7 @@ from multiprocessing import Pipe
 from typing import Any
 
 from regrasp.bench.running.result import CRASHED, TIMEOUT
+from regrasp.errors import InvalidInput
 
 # Libraries that would use every core are held to one.
 _PINNED = (
@@ -83,6 +84,10 @@ class Worker:
             os.killpg(self._process.pid, signal.SIGKILL)
 
     def _start(self) -> None:
+        if os.name != "posix":
+            raise InvalidInput(
+                "the benchmark hands workers a pipe as POSIX systems do; run it on one of them"
+            )
         self._connection, theirs = Pipe()
         given = json.dumps([sys.path, theirs.fileno(), os.getpid(), self._memory_limit])
         self._process = subprocess.Popen(

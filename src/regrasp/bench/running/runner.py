@@ -54,6 +54,10 @@ class Limits:
     @property
     def worker_memory(self) -> int:
         """Addresses each worker may have [bytes], 0 for no limit."""
+        if not machine.can_limit_memory():
+            if self.memory_limit:
+                raise InvalidInput("this system limits no process's memory; leave memory_limit out")
+            return 0
         if self.memory_limit is not None:
             return self.memory_limit
         return (machine.memory() or 0) // (2 * self.jobs)

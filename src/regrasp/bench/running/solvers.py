@@ -22,14 +22,14 @@ from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, v
 from importlib.util import find_spec
 from typing import Any
 
-from regrasp.bench.calls.form import Call
 from regrasp.bench.running.answer import Answer
 from regrasp.bench.running.settings import is_known
 from regrasp.errors import InvalidInput
+from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
 GROUPS = {"regrasp.solvers": False, "regrasp.solvers.conic": True}
-_CALLS = "regrasp.bench.calls"
+_THROUGH = ("qpsolvers", "cvxpy")
 # Packages called directly, by the name of the solver; the others are called through qpsolvers.
 _DIRECT = {
     "clarabel": "clarabel",
@@ -100,7 +100,8 @@ def _once(session: Callable[..., Any], data: Any, **options: Any) -> Answer:
 
 
 def _module(package: str) -> Any:
-    return import_module(f"{_CALLS}.{package}_call")
+    floor = "bench" if package in _THROUGH else "programs"
+    return import_module(f"regrasp.{floor}.calls.{package}_call")
 
 
 def _as_it_is(program: Program) -> Program:

@@ -1,6 +1,5 @@
 """The folder of a run: rows appended durably, so that a run killed at any moment resumes where it was."""
 
-import fcntl
 import json
 import os
 from collections.abc import Iterator
@@ -11,6 +10,7 @@ from typing import Any
 
 from regrasp.bench.running.result import Key, Row, row_of
 from regrasp.errors import InvalidInput
+from regrasp.files.locks import HAS_LOCKS, is_locked
 
 ROWS, RUN = "rows.jsonl", "run.json"
 # Of a run that goes on: more solvers change nothing for the rows of the others.
@@ -62,10 +62,8 @@ class Store:
         except OSError as error:
             raise InvalidInput(f"{self._folder} must be a folder to write in: {error}") from error
         try:
-            try:
-                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError as error:
-                raise InvalidInput(f"another run is filling {self._folder}; give another folder") from error
+            if HAS_LOCKS and not is_locked(self._file):
+                raise InvalidInput(f"another run is filling {self._folder}; give another folder")
             content = path.read_bytes()
             self.rows = {row.key: row for row in _parsed(content, path)}
             self._agree()

@@ -17,7 +17,6 @@ import ctypes
 import gc
 import os
 import pickle
-import resource
 import signal
 import sys
 from collections.abc import Callable
@@ -26,9 +25,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from regrasp.bench.calls.form import Call
 from regrasp.bench.running.answer import Answer, printable, understood
+from regrasp.bench.running.machine import can_limit_memory
 from regrasp.bench.running.solvers import Solver
+from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
 Once = Callable[[], tuple[Answer, float]]
@@ -43,11 +43,8 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
     memory_limit: of addresses [bytes], 0 for none; a solver that wants more is refused it.
     """
     _die_with(parent)
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if memory_limit:
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        soft = memory_limit if hard == resource.RLIM_INFINITY else min(memory_limit, hard)
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+    if can_limit_memory():
+        _limit(memory_limit)
     _serve(Connection(channel))
 
 
@@ -153,6 +150,17 @@ def _status(name: str) -> int | None:
             if line.startswith(name + ":"):
                 return int(line.split()[1]) * 1024
     return None
+
+
+def _limit(memory: int) -> None:
+    """Take no more addresses than ``memory`` [bytes], 0 for any number, and leave no image of a crash."""
+    import resource
+
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if memory:
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        soft = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def _die_with(parent: int) -> None:

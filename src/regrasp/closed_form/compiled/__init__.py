@@ -1,1 +1,1 @@
-"""Formulas compiled for millions of grasps. The only users of Numba beside the audit."""
+"""Formulas compiled by Numba for millions of grasps, and loops shared out to threads."""

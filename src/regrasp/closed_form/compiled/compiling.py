@@ -1,7 +1,6 @@
 """Compiling the functions of modules from their own code, so that every formula is written once."""
 
 from hashlib import sha256
-from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -29,4 +28,11 @@ def compiled(modules: tuple[ModuleType, ...], *, inline: bool = True, **options:
 
 def digest(modules: tuple[ModuleType, ...]) -> str:
     """Of the sources: in a loop's closure, it makes Numba's cache watch them as it does the loop's file."""
-    return sha256(b"".join(Path(str(m.__file__)).read_bytes() for m in modules)).hexdigest()
+    return sha256(b"".join(map(_source, modules))).hexdigest()
+
+
+def _source(module: ModuleType) -> bytes:
+    """Of a module from anywhere, an archive too; without sources its byte code."""
+    loader: Any = module.__loader__
+    data: bytes = loader.get_data(module.__file__)
+    return data

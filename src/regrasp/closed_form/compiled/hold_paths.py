@@ -15,7 +15,9 @@ from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import get_num_threads, njit, prange
+from numba import njit, prange
+
+from regrasp.closed_form.compiled.sharing import shared
 
 _NONE = -1.0
 
@@ -115,7 +117,7 @@ def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(error_model="numpy", parallel=True, cache=True)
+@shared(error_model="numpy")
 def widest(  # type: ignore[no-untyped-def]
     frontier, fresh, known, margins, rows, holds, points, near, floor, threads
 ):
@@ -148,7 +150,7 @@ def widest(  # type: ignore[no-untyped-def]
     return wider
 
 
-@njit(error_model="numpy", parallel=True, cache=True)
+@shared(error_model="numpy")
 def cheapest(  # type: ignore[no-untyped-def]
     frontier, fresh, known, move, worth, rows, holds, points, near, turning, step, bound, threads
 ):
@@ -179,8 +181,3 @@ def cheapest(  # type: ignore[no-untyped-def]
                     result[h, o] = tables[thread, h, o]
                     cheaper[h] = True
     return result, cheaper
-
-
-def threads() -> int:
-    """How many threads share a frontier, each with a table of its own."""
-    return int(get_num_threads())

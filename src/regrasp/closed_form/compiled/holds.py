@@ -6,11 +6,12 @@ Pairs are shared out to the threads, a block at a time; ``pairs`` does all loads
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 
 from regrasp.closed_form.compiled import pairs
 from regrasp.closed_form.compiled.compiling import digest
 from regrasp.closed_form.compiled.pairs import held_loads, workspace_for
+from regrasp.closed_form.compiled.sharing import shared
 from regrasp.closed_form.turning_margin import NO_HOLD as NO_HOLD
 
 _BLOCK = 16  # pairs whose margins share a cache line
@@ -19,7 +20,7 @@ STRETCH = 4096
 
 
 def _loops(sources: str) -> tuple[Any, Any]:
-    @njit(error_model="numpy", parallel=True, cache=True)
+    @shared(error_model="numpy")
     def margins(first, second, loads, candidates, result):  # type: ignore[no-untyped-def]
         """Writes the margin of each pair under each load to ``result`` (loads, pairs)."""
         _ = sources
@@ -33,7 +34,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             for k in range(held_loads(candidates, first, second, begin, end, turned, pair, load, margin)):
                 result[load[k], pair[k]] = margin[k]
 
-    @njit(error_model="numpy", parallel=True, cache=True)
+    @shared(error_model="numpy")
     def widest(  # type: ignore[no-untyped-def]
         first, second, loads, candidates, allowed, place, best, where, counts
     ):

@@ -5,7 +5,8 @@ cones and limits, it is the nearest there, too.
 """
 
 import numpy as np
-from numba import njit
+
+from regrasp.compilation import kept
 
 # A direction in which G G' is less than this fraction of its largest entry is no direction of G.
 _FLAT = 1e-13
@@ -13,7 +14,7 @@ _FLAT = 1e-13
 _IDLE = 1e-8
 
 
-@njit(cache=True)
+@kept()
 def shifted_inside(wanted, matrix, load, normals, frictions, limits, tolerance):  # type: ignore[no-untyped-def]
     """Forces (n, w) moved into equilibrium, idle fingers left idle, and whether that is an answer.
 
@@ -49,7 +50,7 @@ def shifted_inside(wanted, matrix, load, normals, frictions, limits, tolerance):
     return forces, answers
 
 
-@njit(cache=True)
+@kept()
 def _used(forces):  # type: ignore[no-untyped-def]
     """(n w,) which numbers are of a finger that carries force."""
     n, w = forces.shape
@@ -60,7 +61,7 @@ def _used(forces):  # type: ignore[no-untyped-def]
     return np.repeat(sizes >= _IDLE * sizes.max(), w)
 
 
-@njit(cache=True)
+@kept()
 def _imbalance(matrix, load, f, off):  # type: ignore[no-untyped-def]
     """``off`` becomes G f + w."""
     rows, columns = matrix.shape
@@ -70,7 +71,7 @@ def _imbalance(matrix, load, f, off):  # type: ignore[no-untyped-def]
             off[r] += matrix[r, j] * f[j]
 
 
-@njit(cache=True)
+@kept()
 def _factored(matrix, used):  # type: ignore[no-untyped-def]
     """L with L L' = G G' of the columns used; flat directions have a zero on the diagonal."""
     rows, columns = matrix.shape
@@ -93,7 +94,7 @@ def _factored(matrix, used):  # type: ignore[no-untyped-def]
     return lower
 
 
-@njit(cache=True)
+@kept()
 def _solved(lower, y):  # type: ignore[no-untyped-def]
     """``y`` becomes the solution of L L' x = y, zero in flat directions."""
     rows = y.size
@@ -108,7 +109,7 @@ def _solved(lower, y):  # type: ignore[no-untyped-def]
         y[r] = y[r] / lower[r, r] if lower[r, r] > 0 else 0.0
 
 
-@njit(cache=True)
+@kept()
 def _is_inside(f, normal, friction, limit):  # type: ignore[no-untyped-def]
     along, square = 0.0, 0.0
     for k in range(f.size):

@@ -21,6 +21,7 @@ from regrasp.closed_form import (
     triple_program,
 )
 from regrasp.closed_form.compiled.compiling import compiled, digest
+from regrasp.closed_form.compiled.sharing import shared
 from regrasp.closed_form.three_fingers import HOLDS, NO_STATE
 from regrasp.closed_form.triple_program import Fingers
 
@@ -95,7 +96,7 @@ def _is_refuted(motions, count, force, moment):  # type: ignore[no-untyped-def]
 
 
 def _loop(digest: str) -> Any:
-    @njit(error_model="numpy", parallel=True, cache=True)
+    @shared(error_model="numpy")
     def margins(  # type: ignore[no-untyped-def]
         triples, allowed, points, normals, frictions, limits, loads, angles, cos_half, peak_ratio,
         with_margin, result,

@@ -16,6 +16,7 @@ from numba import njit, prange
 
 from regrasp.closed_form import best, choice, locus
 from regrasp.closed_form.compiled.compiling import compiled, digest
+from regrasp.closed_form.compiled.sharing import shared
 
 BLOCK = 1024
 """Grasps in a block."""
@@ -45,7 +46,7 @@ def _is_doubtful_limit(fx, fy, tau, limit1, limit2):  # type: ignore[no-untyped-
 
 
 def _loops(sources: str) -> tuple[Any, Any]:
-    @njit(error_model="numpy", parallel=True, cache=True)
+    @shared(error_model="numpy")
     def intervals(r1, n1, mu1, r2, n2, mu2, f, tau, whole, lo, hi):  # type: ignore[no-untyped-def]
         _ = sources
         doubtful = 0
@@ -61,7 +62,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             )  # fmt: skip
         return doubtful
 
-    @njit(error_model="numpy", parallel=True, cache=True)
+    @shared(error_model="numpy")
     def squeezes(  # type: ignore[no-untyped-def]
         r1, n1, mu1, r2, n2, mu2, f, tau, limit1, limit2, objective, peak_ratio, whole, x
     ):

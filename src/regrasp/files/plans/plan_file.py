@@ -11,11 +11,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
+from regrasp.files.plans.words import Method, Objective, PathObjective
 from regrasp.files.source import naming, text_of
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
-from regrasp.mechanics.checks import array
+from regrasp.mechanics.checks import array, file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -53,17 +54,17 @@ class _Scaling(Strict):
 
 class _Choice(Strict):
     end: Literal["start", "end"]
-    objective: str
-    method: str
-    force_limits: list[float | None]  # JSON has no infinity: None is no limit
+    objective: Objective
+    method: Method
+    force_limits: list[Positive | None]  # JSON has no infinity: None is no limit
 
 
 class _Record(Strict):
-    reserve: float
+    reserve: Annotated[float, Field(ge=0, lt=1)]
     choices: list[_Choice]
-    balancing: float
-    path: str = "closed-form"
-    path_objective: str | None = None
+    balancing: NotNegative
+    path: Method = "closed-form"
+    path_objective: PathObjective | None = None
     rate_limits: list[Positive | None] = Field(default_factory=list)
     least_normals: list[NotNegative] = Field(default_factory=list)
 
@@ -118,17 +119,15 @@ class _Regrasp(_Header):
 def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
     """Write a plan with everything needed to read it back and verify it.
 
-    Raises ``InvalidInput`` for a plan with numbers that are not finite, and where the file cannot be written.
+    Args:
+        plan: a ``Transition`` or a ``RegraspPlan``.
+        path: the file, in JSON.
+
+    Raises:
+        InvalidInput: For a plan with numbers that are not finite, and where the file cannot be written.
     """
-    header = {"format": FORMAT, "version": VERSION}
-    if isinstance(plan, RegraspPlan):
-        document = header | _regrasp_document(plan)
-        validated(_Regrasp, document, path)
-    elif isinstance(plan, Transition):
-        document = header | _document(plan)
-        validated(_Plan, document, path)
-    else:
-        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {plan!r}")
+    path = file_path(path)
+    document = plan_document(plan, path)
     with whole_file(path) as file:
         json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
         file.write("\n")
@@ -137,28 +136,62 @@ def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
 def read_plan(path: str | Path) -> Transition | RegraspPlan:
     """The plan of a file that ``write_plan`` wrote; judge it with ``regrasp.verify``.
 
-    Raises one ``InvalidInput`` that names the file and what is wrong in it.
+    Args:
+        path: a file that ``write_plan`` wrote.
+
+    Raises:
+        InvalidInput: In one message, which names the file and what is wrong in it.
     """
-    path = Path(path)
+    path = file_path(path)
     text = text_of(path, "a plan in JSON")
     try:
-        data = json.loads(text)
+        data = json.loads(text, object_pairs_hook=_unique)
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
+    return plan_of(data, path)
+
+
+def plan_document(plan: Transition | RegraspPlan, name: str | Path = "plan") -> dict[str, Any]:
+    """What a plan file holds, as plain data. Raises ``InvalidInput``, which begins with ``name``."""
+    header = {"format": FORMAT, "version": VERSION}
+    if isinstance(plan, RegraspPlan):
+        document = header | _regrasp_document(plan)
+        validated(_Regrasp, document, name)
+    elif isinstance(plan, Transition):
+        document = header | _document(plan)
+        validated(_Plan, document, name)
+    else:
+        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {shown(plan)}")
+    return document
+
+
+def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan:
+    """The plan of what a plan file holds. Raises ``InvalidInput``, which begins with ``name``."""
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise InvalidInput(f'{path}: expected a plan with "format": "{FORMAT}", found other JSON')
-    if data.get("version") != VERSION:
+        raise InvalidInput(f'{name}: expected a plan with "format": "{FORMAT}", found other JSON')
+    if data.get("version") != VERSION or type(data["version"]) is not int:  # True == 1
         raise InvalidInput(
-            f"{path}: version: expected {VERSION}, got {data.get('version')!r}; "
+            f"{name}: version: expected {VERSION}, got {data.get('version')!r}; "
             f"a plan of a newer regrasp needs that regrasp to be read"
         )
     if data.get("kind") == "regrasp":
-        whole = validated(_Regrasp, data, path)
-        with naming(path):
+        whole = validated(_Regrasp, data, name)
+        with naming(name):
             return _regrasp(whole)
-    stored = validated(_Plan, data, path)
-    with naming(path):
+    stored = validated(_Plan, data, name)
+    with naming(name):
         return _plan(stored)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A table of JSON, whose keys come once: of two values a reader would see either."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise InvalidInput(f"the key {max(keys, key=keys.count)!r} comes twice in one table")
+    return table
 
 
 def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:

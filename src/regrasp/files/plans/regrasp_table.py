@@ -7,7 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_quaternions, check_times
+from regrasp.files.plans.setpoint_rows import (
+    Rows,
+    check_angles,
+    check_quaternions,
+    check_spacing,
+    check_times,
+)
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.orientation.quaternion import about, conjugate, product, quaternion
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -61,16 +67,21 @@ class RegraspTable:
         before = 1 + turned.shape[1]
         return [[*row[:before], k + 1, *row[before:]] for row in whole]
 
-    def read(self, path: Path, table: Array) -> list[Rows]:
+    def read(self, path: Path, table: Array, rate: float | None = None) -> list[Rows]:
         """The set-points of each step from all rows. Raises ``InvalidInput`` for those of another plan."""
         plan, d, first = self.plan, self._dimension, self.columns.index("step")
         steps, result = table[:, first], []
         if (np.diff(steps) < 0).any() or set(steps.tolist()) != set(range(1, len(plan.steps) + 1)):
             raise InvalidInput(f"{path}: steps must rise from 1 to {len(plan.steps)}, and each have rows")
-        for k, (step, start) in enumerate(zip(plan.steps, self._starts, strict=True)):
-            here, (points, contacts) = table[steps == k + 1], self._fingers[k]
+        parts = [table[steps == k + 1] for k in range(len(plan.steps))]
+        for here, step, start in zip(parts, plan.steps, self._starts, strict=True):
             check_times(path, here[:, 0], start, start + step.duration)
-            times = np.clip(here[:, 0] - start, 0.0, step.duration)
+        local = [here[:, 0] - start for here, start in zip(parts, self._starts, strict=True)]
+        durations = [step.duration for step in plan.steps]
+        spacing = check_spacing(path, list(zip(local, durations, strict=True)), rate)
+        for k, (step, start) in enumerate(zip(plan.steps, self._starts, strict=True)):
+            here, (points, contacts) = parts[k], self._fingers[k]
+            times = _unrounded(here[:, 0], start, step.duration, spacing)
             angles = self._angles(path, k, here[:, 1:first], step.orientation(times))
             fingers = here[:, first + 1 :].reshape(len(here), len(contacts), d + self._width)
             forces = np.empty((len(here), len(step.grasp), self._width))
@@ -142,6 +153,15 @@ class RegraspTable:
             given = quaternion(rotation)
             result.append(given if given @ last >= 0 else -given)
         return result
+
+
+def _unrounded(times: Array, start: float, duration: float, spacing: float) -> Array:
+    """Times from the start of a step: those of even rows, where they are these but for rounding."""
+    even = spacing * np.arange(times.size)
+    even[-1] = duration
+    same = abs(start + even - times) <= 2 * np.spacing(times)
+    result: Array = np.clip(np.where(same, even, times - start), 0.0, duration)
+    return result
 
 
 def _turned(step: Transition, angles: Array) -> Array:

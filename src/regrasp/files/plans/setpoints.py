@@ -1,17 +1,20 @@
 """Set-points of a plan as a table in CSV."""
 
 import csv
+from array import array
 from collections.abc import Iterator
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.regrasp_table import RegraspTable
-from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_times
+from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_spacing, check_times
 from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
+from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition, setpoint_columns
 from regrasp.verification import Verification, verify_setpoints
@@ -21,6 +24,8 @@ _BLOCK = 8192
 
 # More than a day at 1000 per second; a file of that many rows is a slip of the pen.
 _MOST = 1e8
+# Of a file that is read: some hours at 1000 rows per second.
+_MOST_BYTES = 2**28
 
 
 def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Rows]:
@@ -28,7 +33,8 @@ def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Row
 
     Raises ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points.
     """
-    if plan.duration * rate > _MOST:
+    _check_plan(plan)
+    if plan.duration * number(rate, "rate", above=0) > _MOST:
         raise InvalidInput(
             f"rate {rate:g} for {plan.duration:g} s makes {plan.duration * rate:.3g} set-points; "
             f"at most {_MOST:g} are made"
@@ -60,14 +66,24 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
     the place of ``angle`` stand ``qw``, ``qx``, ``qy``, ``qz``, the unit quaternion from the object's frame
     to its frame at the start; its sign never jumps.
 
-    rate: rows per second; both ends of the plan, and of every step, have a row. Every number reads back as
-    the same double.
-    Raises ``InvalidInput`` as ``setpoint_blocks`` does, and where the file cannot be written.
+    Args:
+        plan: a ``Transition`` or a ``RegraspPlan``.
+        path: the file, in CSV.
+        rate: rows per second; both ends of the plan, and of every step, have a row. Every number reads back
+            as the same double.
+
+    Raises:
+        InvalidInput: As ``setpoint_blocks`` does, and where the file cannot be written.
     """
+    _check_plan(plan)
     blocks = setpoint_blocks(plan, rate)
     with whole_file(path) as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(_columns(plan))
+        columns = _columns(plan)
+        strange = any("\r" in column for column in columns)  # which csv leaves bare
+        csv.writer(
+            file, lineterminator="\n", quoting=csv.QUOTE_ALL if strange else csv.QUOTE_MINIMAL
+        ).writerow(columns)
         if isinstance(plan, RegraspPlan):
             table = RegraspTable(plan)
             for block in blocks:
@@ -78,33 +94,65 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
             rows.writerows(np.column_stack([t, *turned, forces.reshape(t.size, -1)]).tolist())
 
 
-def read_setpoints(path: str | Path, plan: Transition | RegraspPlan) -> list[Rows]:
+def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float | None = None) -> list[Rows]:
     """The set-points of a file that ``write_setpoints`` wrote for this plan, one entry for each step.
 
-    Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise from 0 to the
-    duration, and angles, steps and finger positions that are not the plan's.
+    rate: rows per second that the file must have; None for any even one.
+    Raises ``InvalidInput`` for other columns, rows that are not numbers, times that do not rise evenly from 0
+    to the duration, and angles, steps and finger positions that are not the plan's (``checked``: forces).
     """
-    path = Path(path)
-    header, *lines = text_of(path, "set-points in CSV").splitlines() or [""]
+    path = file_path(path)
+    _check_plan(plan)
+    if rate is not None:
+        number(rate, "rate", above=0)
     columns = _columns(plan)
-    if header.split(",") != columns:
-        raise InvalidInput(f"{path}: expected the columns {','.join(columns)}, got {header[:200]}")
-    try:
-        table = np.array([[float(x) for x in line.split(",")] for line in lines], dtype=float)
-    except ValueError as error:
-        raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
-    if table.ndim != 2 or table.shape[1] != len(columns) or not np.isfinite(table).all():
-        raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
+    table = _table_of(path, columns)
     if isinstance(plan, RegraspPlan):
-        return RegraspTable(plan).read(path, table)
+        return RegraspTable(plan).read(path, table, rate)
     times = table[:, 0]
     check_times(path, times, 0.0, plan.duration)
+    check_spacing(path, [(times, plan.duration)], rate)
     turned = 0 if plan.turn is None else 1
     angles = plan.orientation(times)
     if turned:
         check_angles(path, table[:, 1], angles)
         angles = table[:, 1]
     return [Rows(0, times, angles, table[:, 1 + turned :].reshape(times.size, *plan.start.forces.shape))]
+
+
+def _table_of(path: Path, columns: list[str]) -> Array:
+    """(m, k) the numbers below a header of ``columns``; names may be quoted, as CSV quotes them."""
+    numbers = array("d")
+    with StringIO(text_of(path, "set-points in CSV", most=_MOST_BYTES), newline="") as text:
+        rows = csv.reader(text, strict=True)
+        try:
+            header = next(rows, [])
+            if header != columns:
+                raise InvalidInput(f"{path}: expected the columns {_shown(columns)}, got {_shown(header)}")
+            for row in rows:
+                if len(row) != len(columns):
+                    raise ValueError(f"line {rows.line_num} has {len(row)}")
+                numbers.extend(map(float, row))
+        except (csv.Error, ValueError) as error:
+            if isinstance(error, InvalidInput):
+                raise
+            raise InvalidInput(f"{path}: expected rows of {len(columns)} numbers: {error}") from None
+    table = np.frombuffer(numbers).reshape(-1, len(columns)) if numbers else np.empty((0, len(columns)))
+    if not len(table) or not np.isfinite(table).all():
+        raise InvalidInput(f"{path}: expected rows of {len(columns)} finite numbers")
+    return table
+
+
+def _shown(columns: list[str]) -> str:
+    """A header as one line of a message."""
+    with StringIO() as line:
+        csv.writer(line, lineterminator="").writerow(columns)
+        return line.getvalue().replace("\n", "\\n").replace("\r", "\\r")[:200]
+
+
+def _check_plan(plan: object) -> None:
+    if not isinstance(plan, (Transition, RegraspPlan)):
+        raise InvalidInput(f"set-points are of a Transition or a RegraspPlan, got {shown(plan)}")
 
 
 def _steps(plan: Transition | RegraspPlan) -> tuple[Transition, ...]:

@@ -32,6 +32,11 @@ AnyForce = Annotated[list[float], Field(min_length=2, max_length=4)]
 """A force in the plane or in space; of a soft finger its torque about the normal comes last."""
 Control = Annotated[list[float], AfterValidator(_falling)]
 Name = Annotated[str, Field(min_length=1)]
+PerFinger = Annotated[
+    Annotated[Positive, Tag("number")] | Annotated[list[Positive], Tag("list"), Field(min_length=1)],
+    Discriminator(lambda value: "list" if isinstance(value, list) else "number"),
+]
+"""One number for all fingers, or one for each contact of the scenario, in its order."""
 Method = Annotated[str, AfterValidator(_known_method)]
 
 

@@ -3,14 +3,15 @@
 from math import radians
 from typing import Any, Literal
 
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.scenario import AnyScenario, Scenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
-from regrasp.files.scenarios.tasks import Change, Removal, Rotation
+from regrasp.files.scenarios.tasks import Change, Exchange, OneFinger, Rotation
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.finger_change import plan_addition, plan_removal
+from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
 from regrasp.planning.changes.rotation import plan_rotation
 from regrasp.planning.holds.sequences import MAX_TURN
 from regrasp.planning.regrasps.verbs import plan_regrasp
@@ -24,7 +25,6 @@ _CLOCK = ("duration", "scaling", "rate_limit")  # which the task works out toget
 _STATE_OPTIONS = ("objective", *(name for name in described(PlanOptions) if name not in _CLOCK))
 _CHANGE_OPTIONS = (
     "objective",
-    "whole_objective",
     *(name for name in described(ChangeOptions) if name not in _CLOCK),
 )
 _REGRASP_OPTIONS = (
@@ -40,23 +40,52 @@ _SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
 
 
 def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
-    """What a scenario asks for. Raises ``Infeasible`` and ``InvalidInput`` as the planner does."""
+    """What a scenario asks for.
+
+    Args:
+        scenario: what ``read_scenario`` or ``parse_scenario`` returned.
+
+    Raises:
+        Infeasible: As the planner does.
+        InvalidInput: As the planner does.
+    """
     if isinstance(scenario, RegraspScenario):
         return _regrasp(scenario)
     if isinstance(scenario, SpaceRegraspScenario):
         return _space_regrasp(scenario)
+    if not isinstance(scenario, Scenario):
+        raise InvalidInput(f"a scenario comes from read_scenario or parse_scenario, got {shown(scenario)}")
     task, load = scenario.task, scenario.external
     if isinstance(task, Rotation):
         return _rotation(scenario, task)
-    options = _taken(task, _CHANGE_OPTIONS)
-    options["load"], options["rate_limit"] = load, task.rate_limit
+    own = "start_objective" if isinstance(task, Exchange) else "whole_objective"
+    options = _taken(task, (*_CHANGE_OPTIONS, own))
+    rate_limit = _per_finger(scenario, task)
+    options["load"], options["rate_limit"] = load, rate_limit
     options["scaling"] = task.time_scaling
     if isinstance(load, LoadSeries):
         options["scaling"] = task.scaling_lasting(load.duration)
-    elif task.rate_limit is not None and task.duration is None:
-        straight = options | {"rate_limit": None, "path_objective": None, "idle_time": None}
-        options["scaling"] = _planned(scenario, task, **straight).fastest(task.rate_limit).scaling
-    return _planned(scenario, task, **options, idle_time=task.idle_time)
+    elif rate_limit is not None and task.duration is None:
+        straight = options | {"rate_limit": None, "path_objective": None}
+        options["scaling"] = _planned(scenario, task, **straight).fastest(rate_limit).scaling
+    return _planned(scenario, task, **options, **_idle_times(task))
+
+
+def _per_finger(scenario: Scenario, task: Change) -> float | list[float] | None:
+    """The rate limit in the order of the plan's fingers, in which the one that arrives is the last."""
+    limits = task.rate_limit
+    if not isinstance(limits, list) or not task.arriving:
+        return limits
+    arriving = scenario.grasp.index(task.arriving[0])
+    return [*limits[:arriving], *limits[arriving + 1 :], limits[arriving]]
+
+
+def _idle_times(task: Change) -> dict[str, float | None]:
+    """When fingers are idle, by the verbs' own words."""
+    if isinstance(task, Exchange):
+        return {"idle_from": task.idle_from, "idle_until": task.idle_until}
+    assert isinstance(task, OneFinger)
+    return {"idle_from" if task.leaving else "idle_until": task.idle_time}
 
 
 def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
@@ -108,18 +137,21 @@ def _taken(task: Any, keys: tuple[str, ...]) -> dict[str, Any]:
     return {key: getattr(task, key) for key in keys}
 
 
-def _planned(
-    scenario: Scenario, task: Change, *, idle_time: float | None = None, **options: Any
-) -> Transition:
+def _planned(scenario: Scenario, task: Change, **options: Any) -> Transition:
     whole = scenario.grasp
-    rest = whole.without(task.contact)
-    if isinstance(task, Removal):
+    if not task.arriving:
+        rest = whole.without(task.contact)
         start, end = _given(scenario, whole, "force"), _given(scenario, rest, "end_force")
-        return plan_removal(start or whole, task.contact, end=end, idle_from=idle_time, **options)
-    arriving = whole[task.contact]
-    after = rest.with_contact(arriving)
-    start, end = _given(scenario, rest, "force"), _given(scenario, after, "end_force")
-    return plan_addition(start or rest, arriving, end=end, idle_until=idle_time, **options)
+        return plan_removal(start or whole, task.contact, end=end, **options)
+    (name,) = task.arriving
+    arriving, before = whole[name], whole.without(name)
+    known = _given(scenario, before, "force") or before
+    if isinstance(task, Exchange):
+        after = before.without(task.contact).with_contact(arriving)
+        end = _given(scenario, after, "end_force")
+        return plan_exchange(known, task.contact, arriving, end=end, **options)
+    end = _given(scenario, before.with_contact(arriving), "end_force")
+    return plan_addition(known, arriving, end=end, **options)
 
 
 def _given(scenario: Scenario, grasp: Grasp, key: Literal["force", "end_force"]) -> GraspState | None:

@@ -14,8 +14,10 @@ from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.outline.parts import PARTS
+from regrasp.planning.holds.pairs import MOST_ORIENTATIONS
 from regrasp.planning.holds.sequences import MAX_TURN
 from regrasp.planning.holds.weights import RegraspWeights
+from regrasp.planning.regrasps.options import MOST_CANDIDATES
 
 Ring = Annotated[list[Vector], Field(min_length=3)]
 
@@ -135,11 +137,15 @@ class Weights(Strict):
 class RegraspTask(CommonTask):
     """How to get from the start to the goal."""
 
-    orientations: int = Field(72, ge=1, description="angles of the object that are tried; 1 forbids turning")
+    orientations: int = Field(
+        72, ge=1, le=MOST_ORIENTATIONS, description="angles of the object that are tried; 1 forbids turning"
+    )
     goal_degrees: float = Field(
         0.0, description="the object's angle in the end, counter-clockwise; one of the orientations"
     )
-    candidates: int = Field(120, ge=1, description="points on the outline where fingers may touch")
+    candidates: int = Field(
+        120, ge=1, le=MOST_CANDIDATES, description="points on the outline where fingers may touch"
+    )
     max_turn_degrees: Annotated[float, Field(gt=0, lt=180)] | None = Field(
         None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"
     )

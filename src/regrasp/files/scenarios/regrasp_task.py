@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidFile, InvalidInput
 from regrasp.files.scenarios.keys import Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
@@ -56,7 +56,7 @@ class Ended(Strict):
             except InvalidInput as error:
                 problems.append(f"{end}.{key}[{i}]{self._from}: {error}")
         if problems:
-            raise InvalidInput("\n".join(problems))
+            raise InvalidFile("\n".join(problems))
         return contacts
 
     @property

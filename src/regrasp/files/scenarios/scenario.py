@@ -1,5 +1,6 @@
 """A scenario: load, contacts and task, as a person writes them in a TOML file."""
 
+import re
 import tomllib
 from functools import cached_property
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, TypeAdapter, model_validator
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.scenarios.keys import (
     AnyForce,
     AnyVector,
@@ -20,9 +21,10 @@ from regrasp.files.scenarios.keys import (
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
-from regrasp.files.scenarios.tasks import Addition, Change, Removal, Rotation
+from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Removal, Rotation
 from regrasp.files.source import text_of
 from regrasp.files.strict import Strict, validated
+from regrasp.mechanics.checks import file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.rotated_loads import turned_load
@@ -31,6 +33,11 @@ from regrasp.plans.loads import LoadSeries
 
 if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
+
+_MOST_BYTES = 2**24  # of a file that people write
+# Keys a.b.c of many parts: reading them takes time with the square of their number.
+_DEEP = 50
+_DEEP_KEY = re.compile(rf"(?<![\w\"'-])(?>[\w\"'-]+[ \t]*\.[ \t]*){{{_DEEP}}}")
 
 
 class ContactEntry(Strict):
@@ -100,7 +107,7 @@ class Scenario(Strict):
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
     contacts: list[ContactEntry] = Field(min_length=2)
-    task: Annotated[Removal | Addition | Rotation, Field(discriminator="kind")]
+    task: Annotated[Removal | Addition | Exchange | Rotation, Field(discriminator="kind")]
 
     @cached_property
     def grasp(self) -> Grasp:
@@ -116,7 +123,11 @@ class Scenario(Strict):
         return LoadSeries([e.time for e in self.load], [e.wrench.vector for e in self.load])
 
     def wrench(self, end: Literal["start", "end"]) -> Wrench:
-        """The load at an end of the task."""
+        """The load at an end of the task.
+
+        Args:
+            end: ``start`` or ``end``.
+        """
         external = self.external
         if isinstance(external, Wrench):
             if isinstance(self.task, Rotation) and end == "end":
@@ -134,15 +145,24 @@ class Scenario(Strict):
         except InvalidInput as error:
             raise ValueError(f"contacts: {error}") from None
         task = self.task
-        if isinstance(task, Change) and task.contact not in names:
-            raise ValueError(f"task.contact: expected one of {', '.join(names)}, got {task.contact!r}")
+        if isinstance(task, Change):
+            for key in ("contact", "arrival"):
+                finger = getattr(task, key, None)
+                if finger is not None and finger not in names:
+                    raise ValueError(f"task.{key}: expected one of {', '.join(names)}, got {finger!r}")
         try:
             external = self.external
         except InvalidInput as error:
             raise ValueError(f"load: {error}") from None
         problems = self._unfit_load(external)
-        idle = {"removal": "end_force", "addition": "force"}.get(task.kind)
-        problems += [*self._gaps("force", idle), *self._gaps("end_force", idle)]
+        limits = task.rate_limit if isinstance(task, Change) else None
+        if isinstance(limits, list) and len(limits) != len(self.contacts):
+            problems.append(
+                f"task.rate_limit: expected a number, or {len(self.contacts)} numbers, one for each contact; "
+                f"got {len(limits)}"
+            )
+        leaving, arriving = (task.leaving, task.arriving) if isinstance(task, Change) else ((), ())
+        problems += [*self._gaps("force", arriving), *self._gaps("end_force", leaving)]
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -203,13 +223,13 @@ class Scenario(Strict):
             ]
         return []
 
-    def _gaps(self, key: Literal["force", "end_force"], idle: str | None) -> list[str]:
+    def _gaps(self, key: Literal["force", "end_force"], idle: tuple[str, ...]) -> list[str]:
         """Forces given for some of the contacts that need one, or for the finger that has none."""
         place: dict[bool, list[int]] = {True: [], False: []}
         problems = []
         for i, entry in enumerate(self.contacts):
             given = getattr(entry, key) is not None
-            if key == idle and isinstance(self.task, Change) and entry.name == self.task.contact:
+            if entry.name in idle:
                 if given:
                     verb = "leaves, so it ends" if key == "end_force" else "arrives, so it starts"
                     problems.append(f"contacts[{i}].{key}: {entry.name} {verb} without force; leave it out")
@@ -229,18 +249,31 @@ AnyScenario = Scenario | RegraspScenario | SpaceRegraspScenario
 def read_scenario(path: str | Path) -> AnyScenario:
     """The scenario of a TOML file.
 
-    Raises one ``InvalidInput`` that names the file and lists every problem, each with its key, what was
-    expected and what came.
+    Args:
+        path: a file in TOML.
+
+    Raises:
+        InvalidInput: In one message, which names the file and lists every problem, each with its key, what
+            was expected and what came.
     """
-    path = Path(path)
-    return parse_scenario(text_of(path, "a scenario in TOML"), path)
+    path = file_path(path)
+    return parse_scenario(text_of(path, "a scenario in TOML", most=_MOST_BYTES), path)
 
 
 def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
     """The scenario of a text in TOML; ``file`` is the name that errors give. Raises as ``read_scenario``.
 
     Files that the text names are relative to the folder of ``file``.
+
+    Args:
+        text: in TOML.
+        file: the name that errors give; files that the text names are relative to its folder.
     """
+    if not isinstance(text, str):
+        raise InvalidInput(f"a scenario is parsed from text in TOML, got {shown(text)}")
+    file = file_path(file)
+    if _DEEP_KEY.search(text):
+        raise InvalidInput(f"{file}: not a scenario: a key of more than {_DEEP} parts")
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:

@@ -16,8 +16,11 @@ from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
+from regrasp.planning.holds.pairs import MOST_ORIENTATIONS
 from regrasp.planning.holds.triples import FACETS
+from regrasp.planning.regrasps.options import MOST_CANDIDATES
 from regrasp.planning.regrasps.spatial import MAX_TURN
+from regrasp.planning.states.choosing import MOST_FACETS
 
 # Loads that differ by less than this fraction are one.
 _SAME = 1e-9
@@ -43,6 +46,7 @@ class SpaceRegraspTask(CommonTask):
     orientations: int = Field(
         42,
         ge=1,
+        le=MOST_ORIENTATIONS,
         description="directions of the load, seen from the object, that are tried; 1 forbids turning",
     )
     goal_degrees: float = Field(
@@ -51,13 +55,19 @@ class SpaceRegraspTask(CommonTask):
     goal_axis: SpaceVector | None = Field(
         None, description="of the turn from the start to the end; of any length, through the centre of mass"
     )
-    candidates: int = Field(40, ge=1, description="points on the surface where fingers may touch")
+    candidates: int = Field(
+        40, ge=1, le=MOST_CANDIDATES, description="points on the surface where fingers may touch"
+    )
     seed: int = Field(0, ge=0, description="of these points")
     max_turn_degrees: Annotated[float, Field(gt=0, lt=180)] = Field(
         float(np.degrees(MAX_TURN)), description="largest turn in one step"
     )
     facets: int = Field(
-        FACETS, ge=4, multiple_of=2, description="of the inner pyramids in which holds are looked for"
+        FACETS,
+        ge=4,
+        le=MOST_FACETS,
+        multiple_of=2,
+        description="of the inner pyramids in which holds are looked for",
     )
 
     @cached_property

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from regrasp.files.scenarios.keys import Control, Method, Name, Positive, option
+from regrasp.files.scenarios.keys import Control, Method, Name, PerFinger, Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.orientation.rotations import unit_axis
@@ -32,6 +32,7 @@ class Task(Strict):
     peak_ratio: float = option(PlanOptions, "peak_ratio", ge=1)
     reserve: float = option(PlanOptions, "reserve", ge=0, lt=1)
     balance_tolerance: float = option(PlanOptions, "balance_tolerance", ge=0)
+    min_normal: Annotated[float, Field(ge=0)] | None = option(PlanOptions, "min_normal")
 
     @cached_property
     def time_scaling(self) -> TimeScaling:
@@ -54,32 +55,92 @@ class Task(Strict):
 
 
 class Change(Task):
-    """What removal and addition have in common."""
+    """What changes of the fingers in use have in common."""
 
     contact: Name = Field(description="name of the finger that leaves or arrives")
     objective: ObjectiveName = Field("angle", description="what the state without the finger is chosen for")
-    whole_objective: ObjectiveName = Field("force", description="what the state with it is chosen for")
-    rate_limit: Positive | None = option(ChangeOptions, "rate_limit")
-    min_normal: Annotated[float, Field(ge=0)] | None = option(ChangeOptions, "min_normal")
+    rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
     path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
+    instants: int = option(ChangeOptions, "instants", ge=3)
+    facets: int | None = option(ChangeOptions, "facets", ge=3)
+
+    @property
+    def leaving(self) -> tuple[str, ...]:
+        """Names of the fingers that leave."""
+        return ()
+
+    @property
+    def arriving(self) -> tuple[str, ...]:
+        """Names of the fingers that arrive; they are listed among the contacts."""
+        return ()
+
+
+class OneFinger(Change):
+    """What removal and addition have in common."""
+
+    whole_objective: ObjectiveName = Field("force", description="what the state with it is chosen for")
     idle_time: Positive | None = Field(
         None,
         description="time [s] from which the leaving finger, or up to which the arriving one, has no force",
     )
-    instants: int = option(ChangeOptions, "instants", ge=3)
-    facets: int | None = option(ChangeOptions, "facets", ge=3)
 
 
-class Removal(Change):
+class Removal(OneFinger):
     """One finger leaves."""
 
     kind: Literal["removal"]
 
+    @property
+    def leaving(self) -> tuple[str, ...]:
+        """The finger that leaves."""
+        return (self.contact,)
 
-class Addition(Change):
+
+class Addition(OneFinger):
     """One finger arrives; it is listed among the contacts."""
 
     kind: Literal["addition"]
+
+    @property
+    def arriving(self) -> tuple[str, ...]:
+        """The finger that arrives."""
+        return (self.contact,)
+
+
+class Exchange(Change):
+    """One finger takes over from another; both are listed among the contacts."""
+
+    contact: Name = Field(description="name of the finger that leaves")
+    arrival: Name = Field(description="name of the finger that arrives")
+    objective: ObjectiveName = Field("angle", description="what the state at the end is chosen for")
+    start_objective: ObjectiveName | None = Field(
+        None, description="what the state at the start is chosen for; the same if absent"
+    )
+    idle_from: Positive | None = Field(
+        None, description="time from which the leaving finger has no force [s]"
+    )
+    idle_until: Positive | None = Field(
+        None, description="time up to which the arriving finger has no force [s]"
+    )
+    kind: Literal["exchange"]
+
+    @property
+    def leaving(self) -> tuple[str, ...]:
+        """The finger that leaves."""
+        return (self.contact,)
+
+    @property
+    def arriving(self) -> tuple[str, ...]:
+        """The finger that arrives."""
+        return (self.arrival,)
+
+    @model_validator(mode="after")
+    def _is_an_exchange(self) -> "Exchange":
+        if self.contact == self.arrival:
+            raise ValueError(
+                f"arrival: expected another finger than the one that leaves, got {self.arrival!r}"
+            )
+        return self
 
 
 def _turned(degrees: float) -> float:

@@ -1,9 +1,8 @@
 """Unit quaternions (w, x, y, z) of rotations, which controllers take: cos(angle / 2), sin(angle / 2) axis."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 
 
 def quaternion(matrix: Array) -> Array:

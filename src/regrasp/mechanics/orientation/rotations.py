@@ -3,10 +3,9 @@
 from math import hypot, sin
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
 
 _UNIT = 2.0**-51
 

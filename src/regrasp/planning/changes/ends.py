@@ -1,6 +1,7 @@
 """The two ends of a transition: given states balanced, others chosen, in a grasp of all contacts."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 from regrasp.errors import InvalidInput
@@ -11,6 +12,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import balanced_start
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.states.objectives import recorded
 from regrasp.planning.states.options import BALANCE_TOLERANCE
 from regrasp.plans.record import Choice, Record
 
@@ -28,19 +30,27 @@ class End(NamedTuple):
     idle: tuple[int, ...]
 
     def found(
-        self, grasp: Grasp, method: str, facets: int | None, tolerance: float
+        self, grasp: Grasp, moving: set[int], method: str, facets: int | None, tolerance: float
     ) -> tuple[GraspState | ChosenForces, Choice | None, float]:
         """The forces of the fingers at work, the record of their choice and the change of given ones [N]."""
         rest = grasp
         if self.idle:
             rest = grasp.without(self.idle[0]) if len(self.idle) == 1 else _without(grasp, self.idle)
         if self.given is None:
-            best = choose_forces(rest, self.load, self.criteria, method, facets)
-            choice = Choice(self.label, self.criteria.objective.name, best.method, best.force_limits)
+            best = choose_forces(rest, self.load, self._pressing(grasp, moving), method, facets)
+            choice = Choice(self.label, recorded(self.criteria.objective), best.method, best.force_limits)
             return best, choice, 0.0
         given = self.given if self.given.grasp is rest else GraspState(rest, self.load, self.given.forces)
         state = balanced_start(given, self.criteria, tolerance, self.label)
         return state, None, 0.0 if state is given else float(abs(state.forces - given.forces).max())
+
+    def _pressing(self, grasp: Grasp, moving: set[int]) -> Criteria:
+        """The criteria, with which the fingers that leave or arrive need not push."""
+        least = self.criteria.min_normal
+        if not least or isinstance(least, tuple):
+            return self.criteria
+        at_work = (i for i in range(len(grasp)) if i not in self.idle)
+        return replace(self.criteria, min_normal=tuple(0.0 if i in moving else least for i in at_work))
 
     def among(self, grasp: Grasp, found: GraspState | ChosenForces) -> GraspState:
         """The state of all contacts, the idle ones without force."""
@@ -67,7 +77,8 @@ class Change(NamedTuple):
     def between(cls, grasp: Grasp, first: End, last: End, options: Mapping[str, Any]) -> "Change":
         """The change from one end to the other, states balanced or chosen by the options of a call."""
         tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
-        how = options.get("method", "auto"), options.get("facets"), tolerance
+        moving = {*first.idle, *last.idle}
+        how = moving, options.get("method", "auto"), options.get("facets"), tolerance
         # The state of fewer fingers first: it is the one that may not exist.
         ends = sorted((first, last), key=lambda end: -len(end.idle))
         found = {end.label: end.found(grasp, *how) for end in ends}

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Unpack, cast
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -32,16 +33,6 @@ def plan_removal(
 ) -> Transition:
     """Forces over time that take one finger away while the object stays in equilibrium (Eq. 1-3).
 
-    start: the state to leave from; or a grasp, whose state is then chosen under ``load``. A state chosen
-    under ``max_force`` keeps it, unless another is given.
-    contact: the finger that leaves, by name or index; or several, which leave together.
-    load: constant, a ``LoadSeries``, or a function of time [s] that returns a ``Wrench``; it is sampled at
-    ``instants`` and taken as linear between them (``verify(plan, load=...)`` bounds the difference).
-    end: the state without it, of the whole grasp or of the remaining contacts; chosen if not given.
-    objective, whole_objective: what the state without the finger, and the state with it, are chosen for.
-    The widest force margin, ``force``, gives every finger work; the others may leave one idle.
-    idle_from: time from which the leaving finger carries no force [s]; the end if not given.
-    options
     The path objective ``change`` is the least total change, by the time function, so that Eq. 1-3 is the
     answer where nothing bends it; ``effort`` the least sum of squares over time; ``peak`` the least largest
     force; ``force`` the widest least force margin of the fingers that stay, then the least change. How much
@@ -49,8 +40,25 @@ def plan_removal(
 
     The path is the straight one of Eq. 1-3 where the load is constant and it keeps every demand; else it is a
     ``SampledPath`` by a convex program. ``record.path`` says which.
-    Raises ``Infeasible`` with the escape twist where the fingers cannot hold the load, or with the limit that
-    no path keeps, and ``InvalidInput`` for given states that are no equilibrium inside the cones.
+
+    Args:
+        start: the state to leave from; or a grasp, whose state is then chosen under ``load``. A state chosen
+            under ``max_force`` keeps it, unless another is given.
+        contact: the finger that leaves, by name or index; or several, which leave together.
+        load: object frame [N, N m]: constant, a ``LoadSeries``, or a function of time [s] that returns a
+            ``Wrench``; it is sampled at ``instants`` and taken as linear between them (``verify(plan,
+            load=...)`` bounds the difference).
+        end: the state without it, of the whole grasp or of the remaining contacts; chosen if not given.
+        objective: what the state without the finger is chosen for.
+        whole_objective: what the state with it is chosen for. The widest force margin, ``force``, gives every
+            finger work; the others may leave one idle.
+        idle_from: time from which the leaving finger carries no force [s]; the end if not given.
+        options
+
+    Raises:
+        Infeasible: With the escape twist where the fingers cannot hold the load, or with the limit that no
+            path keeps.
+        InvalidInput: For given states that are no equilibrium inside the cones.
     """
     options = kept_limits(start, objective, options)
     criteria = criteria_of(objective, options)
@@ -82,12 +90,17 @@ def plan_addition(
 ) -> Transition:
     """Forces over time that bring one finger in: the removal of that finger, run backwards.
 
-    start: the state of the fingers that hold the object; or their grasp, whose state is then chosen.
-    contact: where the new finger touches; or several contacts, for fingers that arrive together.
-    end: the state of all contacts, the new ones last; chosen by ``whole_objective`` if not given.
-    idle_until: time up to which the new finger carries no force [s]; the start if not given.
-    options
     Everything else, and what is raised, is as for ``plan_removal``.
+
+    Args:
+        start: the state of the fingers that hold the object; or their grasp, whose state is then chosen.
+        contact: where the new finger touches; or several contacts, for fingers that arrive together.
+        load: as for ``plan_removal`` [N, N m].
+        end: the state of all contacts, the new ones last; chosen by ``whole_objective`` if not given.
+        objective: what the state without the new fingers is chosen for.
+        whole_objective: what the state with them is chosen for.
+        idle_until: time up to which the new finger carries no force [s]; the start if not given.
+        options
     """
     arriving = _contacts(contact)
     options = kept_limits(start, objective, options)
@@ -98,7 +111,9 @@ def plan_addition(
     before, first = grasp_and_load(start, first)
     last = series(series.duration) if series is not None else first
     grasp = Grasp((*before, *arriving))
-    if end is not None and (not isinstance(end, GraspState) or end.grasp != grasp or end.load != last):
+    if end is not None:
+        instance(end, "end", GraspState)
+    if end is not None and (end.grasp != grasp or end.load != last):
         raise InvalidInput(
             f"end must be a state of the start's contacts and the new one, in that order "
             f"({', '.join(grasp.names)}), under the same load; got {end!r}"
@@ -127,15 +142,20 @@ def plan_exchange(
 ) -> Transition:
     """Forces over time in which one finger takes over from another: both touch, one leaves, one arrives.
 
-    start: the state of the fingers that hold the object; or their grasp, whose state is then chosen.
-    leaving: the finger that leaves, by name or index, or several. arriving: where the new finger touches, or
-    several contacts.
-    end: the state without the leaving finger, the new ones last, of these contacts or of all in play; chosen
-    if not given.
-    objective: what the state at the end is chosen for; start_objective: at the start, the same if not given.
-    idle_from, idle_until: time [s] from which the leaving, and up to which the new finger carries no force.
-    options
     Everything else, and what is raised, is as for ``plan_removal``.
+
+    Args:
+        start: the state of the fingers that hold the object; or their grasp, whose state is then chosen.
+        leaving: the finger that leaves, by name or index, or several.
+        arriving: where the new finger touches, or several contacts.
+        load: as for ``plan_removal`` [N, N m].
+        end: the state without the leaving finger, the new ones last, of these contacts or of all in play;
+            chosen if not given.
+        objective: what the state at the end is chosen for.
+        start_objective: what the state at the start is chosen for; the same if not given.
+        idle_from: time from which the leaving finger carries no force [s]; the end if not given.
+        idle_until: time up to which the new finger carries no force [s]; the start if not given.
+        options
     """
     new = _contacts(arriving)
     options = kept_limits(start, objective, options)

@@ -3,7 +3,7 @@
 from functools import lru_cache
 from typing import TypeVar
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -39,11 +39,13 @@ def balanced_start(state: GraspState, criteria: Criteria, tolerance: float, labe
 def grasp_and_load(start: GraspState | Grasp, load: Wrench | None) -> tuple[Grasp, Wrench]:
     """The grasp and the load of a start, which may be a state or a grasp."""
     if isinstance(start, GraspState):
-        if load is not None and load != start.load:
-            raise InvalidInput(f"the start state has the load {start.load!r}; leave load out, got {load!r}")
+        if load is not None and not (isinstance(load, Wrench) and load == start.load):
+            raise InvalidInput(
+                f"the start state has the load {start.load!r}; leave load out, got {shown(load)}"
+            )
         return start.grasp, start.load
     if not isinstance(start, Grasp):
-        raise InvalidInput(f"start must be a GraspState or a Grasp, got {start!r}")
+        raise InvalidInput(f"start must be a GraspState or a Grasp, got {shown(start)}")
     if load is None:
         raise InvalidInput("a plan from a grasp needs the load: load=Wrench(force=[...])")
     check_load(start, load)

@@ -6,10 +6,10 @@ from math import inf
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, ArrayLike, choice, limits, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
@@ -18,7 +18,7 @@ from regrasp.planning.changes.given_ends import scaling_of
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.options import INSTANTS, ChangeOptions, PlanOptions
-from regrasp.plans.loads import LoadSeries
+from regrasp.plans.loads import MOST_INSTANTS, LoadSeries
 from regrasp.plans.sampled import SampledPath
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
@@ -49,8 +49,7 @@ class Demands:
             number(self.min_normal, "min_normal", least=0)
         if self.path_objective is not None:
             choice(self.path_objective, "path_objective", PATH_OBJECTIVES)
-        if isinstance(self.instants, bool) or not isinstance(self.instants, int) or self.instants < 3:
-            raise InvalidInput(f"instants must be a whole number of at least 3, got {self.instants!r}")
+        whole(self.instants, "instants", least=3, most=MOST_INSTANTS)
         check_facets(self.facets)
         for name in ("idle_from", "idle_until"):
             if getattr(self, name) is not None:
@@ -82,15 +81,7 @@ class Demands:
         """(n,) force-rate limits, infinite for none [N/s]."""
         if self.rate_limit is None:
             return np.full(len(grasp), inf)
-        try:
-            rates = np.broadcast_to(np.asarray(self.rate_limit, dtype=float), (len(grasp),))
-        except (TypeError, ValueError):
-            raise InvalidInput(
-                f"rate_limit must be a number or have shape ({len(grasp)},), got {self.rate_limit!r}"
-            ) from None
-        if not (rates > 0).all():
-            raise InvalidInput(f"rate_limit must be greater than 0, got {self.rate_limit!r}")
-        return rates
+        return limits(self.rate_limit, "rate_limit", len(grasp))
 
 
 _NONE = Demands()
@@ -108,6 +99,8 @@ def joined(
 
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
+    if criteria.presses and demands.min_normal is None and not isinstance(criteria.min_normal, tuple):
+        demands = replace(demands, min_normal=criteria.min_normal)
     start, end, record = change.start, change.end, change.record
     grasp = start.grasp
     leaving = tuple(grasp.names[i] for i in change.leaving)
@@ -117,7 +110,7 @@ def joined(
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = ~np.isin(np.arange(len(grasp)), (*change.leaving, *change.arriving))
     least[~stays] = 0.0
-    _refuse_weak_ends(start, end, least)
+    refuse_weak_ends(start, end, least)
     has_rates = bool((rates < inf).any())
     record = replace(record, least_normals=tuple(least.tolist()) if least.any() else ())
     if load is None:
@@ -204,7 +197,8 @@ def _path(
     return SampledPath(times, forces, fine.vectors)
 
 
-def _refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
+def refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:
+    """Raise ``InvalidInput`` for given ends whose fingers push with less than ``least`` (n,) [N]."""
     for label, state in (("start", start), ("end", end)):
         normal = state.grasp.cones.normal(state.forces)
         for name, has, needs in zip(state.grasp.names, normal, least, strict=True):

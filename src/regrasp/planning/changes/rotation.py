@@ -9,10 +9,9 @@ from math import ceil, cos, pi, radians
 from typing import NamedTuple, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, ArrayLike, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import unit_axis
 from regrasp.mechanics.rotated_loads import load_between, still_part, turned_load
@@ -26,9 +25,10 @@ from regrasp.planning.changes.given_ends import (
     limited,
     scaling_of,
 )
+from regrasp.planning.changes.joining import refuse_weak_ends
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.objectives import Objective
+from regrasp.planning.states.objectives import Objective, recorded
 from regrasp.planning.states.options import BALANCE_TOLERANCE, PlanOptions, criteria_of, takes
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.transition import Transition
@@ -57,13 +57,6 @@ def plan_rotation(
 ) -> Transition:
     """Forces over time while the object turns and all fingers stay.
 
-    start: the state to start from; or a grasp, whose state is then chosen under ``load``.
-    angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size, with a
-    warning beyond a whole turn. degrees: the same in degrees, in the place of ``angle``, without a warning.
-    axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in space
-    only. The load is fixed in the world, such as a weight; in the object frame it turns the other way.
-    end: the state after the turn, under the load there; chosen if not given, as are the states on the way.
-    options
     Everything else is as for ``plan_removal``.
 
     Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
@@ -71,7 +64,23 @@ def plan_rotation(
     turn (a torque in the plane, a load along the axis in space), every one of them must exist, and one more
     between each two, under a turning part that is larger by 1 / cos(step / 2); steps are halved down to
     ``STEP`` / 16 until it does.
-    Raises ``Infeasible`` where no states bridge the turn or a force limit does not let them.
+
+    Args:
+        start: the state to start from; or a grasp, whose state is then chosen under ``load``.
+        angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size, with a
+            warning beyond a whole turn.
+        degrees: the same in degrees, in the place of ``angle``, without a warning.
+        axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in
+            space only. The load is fixed in the world, such as a weight; in the object frame it turns the
+            other way.
+        load: before the turn, object frame; fixed in the world [N, N m].
+        end: the state after the turn, under the load there; chosen if not given, as are the states on the
+            way.
+        objective: what states are chosen for.
+        options
+
+    Raises:
+        Infeasible: Where no states bridge the turn or a force limit does not let them.
     """
     options = kept_limits(start, objective, options)
     criteria = criteria_of(objective, options)
@@ -94,12 +103,12 @@ def plan_rotation(
     else:
         best = chooser.at(0.0)
         first = np.array(best.forces)
-        choices.append(Choice("start", criteria.objective.name, best.method, best.force_limits))
+        choices.append(Choice("start", recorded(criteria.objective), best.method, best.force_limits))
     last_load = turned_load(load, turn, about)
     if end is None:
         best = chooser.at(turn)
         last = np.array(best.forces)
-        choices.append(Choice("end", criteria.objective.name, best.method, best.force_limits))
+        choices.append(Choice("end", recorded(criteria.objective), best.method, best.force_limits))
     else:
         _refuse_other_end(end, given, last_load)
         state = GraspState(grasp, last_load, end.forces)
@@ -113,10 +122,17 @@ def plan_rotation(
         GraspState(grasp, load, first),
         GraspState(grasp, last_load, last),
         clock,
-        Record(criteria.reserve, tuple(choices), change),
+        Record(
+            criteria.reserve,
+            tuple(choices),
+            change,
+            least_normals=tuple(criteria.least_normals(grasp)) if criteria.presses else (),
+        ),
         path=knots,
     )
     _refuse_high_forces(plan)
+    if criteria.presses:
+        refuse_weak_ends(plan.start, plan.end, np.array(criteria.least_normals(grasp)))
     return plan
 
 

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, instance, number, whole
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.sequences import MAX_TURN, Hold
 
@@ -25,9 +25,13 @@ _ABOVE = 4.0
 class Bottleneck:
     """The hold that limits every way from a start to a goal, and what all ways have in common.
 
-    margin: the widest least margin of any way [rad]. hold: two contacts and an orientation, by their places
-    in the graph, where the widest way found is that narrow; no way does without a hold as narrow.
-    points, pairs: contacts, and pairs of contacts at whatever orientation, without which no way is left.
+    Args:
+        margin: the widest least margin of any way [rad].
+        hold: two contacts and an orientation, by their places in the graph, where the widest way found is
+            that narrow; no way does without a hold as narrow.
+        points: contacts, by their places in the graph, without which no way is left, at whatever orientation.
+        pairs: pairs of contacts, at whatever orientation, without which no way is left.
+        graph: the holds among which was looked.
     """
 
     margin: float
@@ -60,20 +64,32 @@ def bottleneck(
 ) -> Bottleneck | None:
     """What limits the way from a hold of three contacts to a hold of three; None where there is no way.
 
-    start, goal: three contacts each, by their places in the graph. start is held at the first angle of the
-    graph, goal at that of place ``goal_orientation``. Every finger may touch everywhere.
-    Raises ``InvalidInput`` for what are no places.
+    Every finger may touch everywhere.
+
+    Args:
+        graph: of planar contacts.
+        start: three contacts by their places in the graph, held at its first angle.
+        goal: three contacts by their places in the graph, held at the angle of place ``goal_orientation``.
+        goal_orientation: the place of the last angle in the graph's angles.
+        max_turn: largest turn of the object during one step [rad].
+
+    Raises:
+        InvalidInput: For what are no places.
     """
+    instance(graph, "graph", HoldGraph)
+    whole(goal_orientation, "goal_orientation", least=0, most=len(graph.angles) - 1)
+    if not 0 < number(max_turn, "max_turn") < pi:
+        raise InvalidInput(f"max_turn must be above 0 and below pi, got {shown(max_turn)}")
     for what, places in (("start", start), ("goal", goal)):
         try:
-            whole = [int(place) for place in places]
-            valid = len(set(whole)) == 3 and min(whole) >= 0 and max(whole) < len(graph.contacts)
-        except (TypeError, ValueError):
+            given = [whole(place, what, least=0) for place in places]
+            valid = len(set(given)) == 3 and max(given) < len(graph.contacts)
+        except TypeError:
             valid = False
         if not valid:
             raise InvalidInput(
                 f"{what} must be three contacts by their places in the graph, 0 to "
-                f"{len(graph.contacts) - 1}, got {places!r}"
+                f"{len(graph.contacts) - 1}, got {shown(places)}"
             )
     ends = _Ends(graph, start, goal, goal_orientation, max_turn)
     way = ends.widest(graph.margins)

@@ -56,7 +56,7 @@ class CheapEnd:
 
     def move(self, most: float) -> None:
         """One finger move further, for whole ways that cost at most ``most``."""
-        from regrasp.closed_form.compiled.hold_paths import threads
+        from regrasp.closed_form.compiled.sharing import threads
 
         fingers, costs = self.fingers, self.costs
         bound = np.asarray(most * (1 + 1e-12) - self.rest)

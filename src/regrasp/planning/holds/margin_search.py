@@ -65,7 +65,7 @@ class WideEnd:
 
     def move(self, floor: float) -> None:
         """One finger move further, where that leads to margins above ``floor``."""
-        from regrasp.closed_form.compiled.hold_paths import threads
+        from regrasp.closed_form.compiled.sharing import threads
 
         fingers = self.fingers
         self.fresh = fingers.moves.widest(

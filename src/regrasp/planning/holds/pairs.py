@@ -10,15 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, array, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO
 
 Filter = Callable[[Array, Array, float], NDArray[np.bool_]]
 """(m, 2) first points, (m, 2) second points, the object's angle [rad] -> (m,) which pairs are allowed."""
 
+MOST_ORIENTATIONS = 1_000_000
+"""Angles of the object, or directions of the load, that are tried."""
 MOST_BYTES = 2 * 2**30
 """Default memory for the margins of a hold graph."""
 
@@ -37,7 +40,7 @@ class WidestHolds:
 
 
 @dataclass(frozen=True, eq=False)
-class HoldGraph:
+class HoldGraph(ArrayValue):
     """Pairs of contacts that hold a load through the centre of mass while the object has one of some angles.
 
     contacts: candidates. load: at angle 0. angles: (O,) of the object [rad]. A hold's margin is the widest
@@ -58,6 +61,7 @@ class HoldGraph:
     one_finger: bool = False
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "angles", array(self.angles, "angles", (None,)))
         if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
             raise InvalidInput("a hold graph needs two planar contacts or more")
         if not isinstance(self.load, Wrench):
@@ -73,6 +77,10 @@ class HoldGraph:
     def pairs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """Indices (P,) of the first and the second contact of every pair, the first below the second."""
         from regrasp.closed_form.compiled.holds import pairs_of
+
+        count = len(self.contacts)
+        if 24 * (count * (count - 1) // 2) > max(self.most_bytes, MOST_BYTES):  # while they are listed
+            raise InvalidInput(f"{count} contacts make too many pairs to list; take fewer")
 
         return pairs_of(len(self.contacts))
 
@@ -248,8 +256,7 @@ class HoldGraph:
 
 def evenly(orientations: int) -> Array:
     """(O,) angles of the object [rad] spread over a full turn, the first 0."""
-    if isinstance(orientations, bool) or not isinstance(orientations, int) or orientations < 1:
-        raise InvalidInput(f"orientations must be a whole number of at least 1, got {orientations!r}")
+    whole(orientations, "orientations", least=1, most=MOST_ORIENTATIONS)
     return 2 * np.pi * np.arange(orientations) / orientations
 
 

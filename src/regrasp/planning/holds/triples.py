@@ -7,19 +7,21 @@ from math import comb, cos, inf, pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.closed_form.pyramid import facet_angles
 from regrasp.closed_form.three_fingers import HOLDS, three_finger_hold
 from regrasp.closed_form.triple_program import Fingers
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.choosing import MOST_FACETS
 from regrasp.planning.states.criteria import PEAK_RATIO
 
 TripleFilter = Callable[[Array, Array, Array], NDArray[np.bool_]]
@@ -33,7 +35,7 @@ _TOGETHER = 64  # loads whose margins are held at a time where only verdicts are
 
 
 @dataclass(frozen=True, eq=False)
-class TripleGraph:
+class TripleGraph(ArrayValue):
     """Triples of contacts in space that hold loads with three fingers.
 
     contacts: candidates. loads: (O, 6) force and torque on the object, in its own frame [N, N m]: one load
@@ -68,7 +70,7 @@ class TripleGraph:
         if not loads.any(axis=1).all():
             raise InvalidInput("no load may be zero: it has no direction, and three idle fingers hold it")
         object.__setattr__(self, "loads", loads)
-        if not isinstance(self.facets, int) or self.facets < 4 or self.facets % 2:
+        if whole(self.facets, "facets", least=4, most=MOST_FACETS) % 2:
             raise InvalidInput(f"facets must be an even whole number of at least 4, got {self.facets!r}")
         number(self.peak_ratio, "peak_ratio", least=1)
         reserve_fraction(self.reserve)
@@ -80,6 +82,11 @@ class TripleGraph:
         if self.among is None:
             from regrasp.closed_form.compiled.triples import triples_of
 
+            count = len(self.contacts)
+            if 30 * comb(count, 3) > max(self.most_bytes, MOST_BYTES):  # while they are listed
+                raise InvalidInput(
+                    f"{count} contacts make too many triples to list; take fewer, or sample them by among"
+                )
             return triples_of(len(self.contacts))
         given = array(self.among, "among", (None, 3))
         rows = given.astype(np.int32)

@@ -20,9 +20,12 @@ _TIE = 1e-9
 class RegraspWeights:
     """Weights of a sequence's cost; the least sum is looked for. None may be negative, one must be above 0.
 
-    moves: for each finger move. turning: per radian that the object turns, either way. time: per second of
-    the plan's duration, which is that of its steps. effort: for each hold times its effort, the least largest
-    force with which it can carry the load, as a multiple of the load [-].
+    Args:
+        moves: for each finger move.
+        turning: per radian that the object turns, either way.
+        time: per second of the plan's duration, which is that of its steps.
+        effort: for each hold times its effort, the least largest force with which it can carry the load, as a
+            multiple of the load [-].
     """
 
     moves: float = 1.0
@@ -42,7 +45,13 @@ class RegraspWeights:
         return max(self.moves, self.turning, self.time, self.effort)
 
     def costs(self, graph: HoldGraph, margins: NDArray[np.float32], step_duration: float) -> Costs:
-        """What the search adds up. margins: (P, O), -1 where a pair must not hold."""
+        """What the search adds up.
+
+        Args:
+            graph: the holds of P pairs at O orientations.
+            margins: (P, O) [rad], -1 where a pair must not hold.
+            step_duration: [s] of each step.
+        """
         worth = np.where(margins >= 0, 0.0, inf)
         if self.effort:
             worth += self.effort * efforts(graph, margins >= 0)

@@ -3,10 +3,8 @@
 from math import pi
 from typing import Any, Required
 
-from numpy.typing import ArrayLike
-
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import choice, number
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import ArrayLike, choice, number
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.weights import RegraspWeights
@@ -14,6 +12,11 @@ from regrasp.planning.regrasps.arcs import Arcs
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import LimitOptions, criteria_of, described
+
+MOST_CANDIDATES = 100_000
+"""Points where fingers may touch; the memory of a graph ends before that."""
+MOST_EXTRA = 1000
+"""Moves that a sequence may have more than the fewest."""
 
 
 class RegraspOptions(LimitOptions, total=False):
@@ -46,8 +49,7 @@ def check_steps(step_duration: float, states: str, max_turn: float, least_margin
     """Raises ``InvalidInput`` for options of the steps that are not what they must be."""
     number(step_duration, "step_duration", above=0)
     choice(states, "states", ("each", "joint"))
-    if not 0 < number(max_turn, "max_turn") < pi:
-        raise InvalidInput(f"max_turn must be above 0 and below pi, got {max_turn!r}")
+    turn_below_pi(max_turn)
     number(least_margin, "least_margin", least=0)
 
 
@@ -60,6 +62,14 @@ def settled(problem: Any) -> Criteria:
     given = {name: getattr(problem, name) for name in entries}
     changed = {name: value for name, value in given.items() if value != entries[name][1].default}
     criteria = criteria_of(problem.objective, changed)
+    criteria.refuse_pressing("a regrasp")
     for name in ("objective", *entries):
         object.__setattr__(problem, name, getattr(criteria, name))
     return criteria
+
+
+def turn_below_pi(max_turn: float) -> float:
+    """A checked ``max_turn`` [rad]."""
+    if not 0 < number(max_turn, "max_turn") < pi:
+        raise InvalidInput(f"max_turn must be above 0 and below pi, got {shown(max_turn)}")
+    return max_turn

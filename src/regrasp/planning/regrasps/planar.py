@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_friction
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
 from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
@@ -24,7 +25,13 @@ from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs, arc_lengths, on_arcs
 from regrasp.planning.regrasps.ends import Ends
-from regrasp.planning.regrasps.options import check_steps, settled
+from regrasp.planning.regrasps.options import (
+    MOST_CANDIDATES,
+    MOST_EXTRA,
+    check_steps,
+    settled,
+    turn_below_pi,
+)
 from regrasp.planning.regrasps.remedies import allowed
 from regrasp.planning.regrasps.steps import chosen_states, regrasp_of, spread_states
 from regrasp.planning.regrasps.why_not import why_not
@@ -38,25 +45,41 @@ _SAME_ANGLE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class RegraspProblem:
+class RegraspProblem(ArrayValue):
     """From one grasp of three fingers to another: what is asked, its hold graph, and the plans.
 
-    outline: an ``Outline``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and
-    at the contacts of ``start`` and ``goal``, three each, relative to the centre of mass.
-    load: a force through the centre of mass, seen from the object before it turns.
-    orientations: angles of the object that are tried, over a full turn; 1 forbids turning.
-    goal_orientation: the object's angle in the end [rad]; tried besides if it is none of these.
-    objective: what the state of every hold is chosen for, each by itself. states: ``each``, or ``joint``: all
-    states in one program, for the widest worst force margin and then the least change of force.
-    max_turn: largest turn during one step [rad].
-    least_margin: angle margin [rad] that every hold must have at the least; more moves may be needed for it.
-    min_distance [m], keep: which two fingers may hold together. one_finger: whether a pair also holds where
-    one of its fingers carries the whole load; by default both must push.
-    arcs: where each finger of the start may touch, an arc (lo, hi) in arc length [m], several, or None for
-    everywhere; see ``arcs``. Any finger whose arc allows it may take a contact of the goal.
-    weights: look for the least cost in place of the fewest moves and the widest margin.
-    max_force, peak_ratio, reserve: as for ``choose_state``. step_duration: [s] of each step.
-    Raises ``InvalidInput`` for arguments that are not what they must be.
+    Args:
+        outline: an ``Outline``; fingers may touch at ``candidates`` points spread over it, of ``friction``,
+            and at the contacts of ``start`` and ``goal``, three each, relative to the centre of mass.
+        start: three contacts, relative to the centre of mass [m].
+        goal: three contacts at the end, relative to the centre of mass [m].
+        load: a force through the centre of mass, seen from the object before it turns [N].
+        friction: Coulomb coefficient of the candidates [-].
+        orientations: angles of the object that are tried, over a full turn; 1 forbids turning.
+        goal_orientation: the object's angle in the end [rad]; tried besides if it is none of these.
+        candidates: how many points are spread over the outline.
+        objective: what the state of every hold is chosen for, each by itself.
+        states: ``each``, or ``joint``: all states in one program, for the widest worst force margin and then
+            the least change of force.
+        max_turn: largest turn during one step [rad].
+        least_margin: angle margin [rad] that every hold must have at the least; more moves may be needed for
+            it.
+        min_distance: least distance of two fingers that hold together [m].
+        keep: which two fingers may hold together, by reach or collision: a function of points (k, 2) of the
+            one and (k, 2) of the other, relative to the centre of mass [m], and the object's angle [rad],
+            that returns (k,) booleans; all if not given.
+        arcs: where each finger of the start may touch, an arc (lo, hi) in arc length [m], several, or None
+            for everywhere; see ``arcs``. Any finger whose arc allows it may take a contact of the goal.
+        one_finger: whether a pair also holds where one of its fingers carries the whole load; by default both
+            must push.
+        weights: look for the least cost in place of the fewest moves and the widest margin.
+        max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
+        peak_ratio: as for ``choose_state`` [-].
+        reserve: as for ``choose_state`` [-].
+        step_duration: [s] of each step.
+
+    Raises:
+        InvalidInput: For arguments that are not what they must be.
     """
 
     outline: Outline
@@ -87,6 +110,7 @@ class RegraspProblem:
         _ = self.criteria
         check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
         number(self.goal_orientation, "goal_orientation")
+        whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
         number(self.min_distance, "min_distance", least=0)
         if not isinstance(self.one_finger, bool):
             raise InvalidInput(f"one_finger must be True or False, got {self.one_finger!r}")
@@ -138,7 +162,11 @@ class RegraspProblem:
         return self.graph_on(self.contacts)
 
     def graph_on(self, contacts: Iterable[Contact]) -> HoldGraph:
-        """The holds of contacts, with the friction that the reserve leaves."""
+        """The holds of contacts, with the friction that the reserve leaves.
+
+        Args:
+            contacts: planar, relative to the centre of mass [m].
+        """
         kept = tuple(c.changed(friction=kept_friction(c.friction, self.reserve)) for c in contacts)
         return HoldGraph(
             kept, self.load, self.angles, self.peak_ratio, self.min_distance, self.keep,
@@ -164,10 +192,13 @@ class RegraspProblem:
     def sequences(self, extra: int = 0, max_turn: float | None = None) -> list[Sequence]:
         """The best sequence of holds, and those of up to ``extra`` more moves with wider margins.
 
-        max_turn: in place of the problem's [rad].
+        Args:
+            extra: finger moves beyond the fewest.
+            max_turn: in place of the problem's [rad].
         """
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         start, goal, last = self.places
-        turn = self.max_turn if max_turn is None else max_turn
+        turn = self.max_turn if max_turn is None else turn_below_pi(max_turn)
         if self.weights is None:
             return sequences(
                 self.graph, start, goal, last, max_turn=turn, least_margin=self.least_margin,
@@ -183,10 +214,14 @@ class RegraspProblem:
 
         Forces grow while the object turns. Where force limits leave too little room for that, sequences of
         smaller turns are looked for, of half the size each time.
-        Raises ``Infeasible`` where there is none, and says why.
+
+        Args:
+            extra: finger moves beyond the fewest.
+
+        Raises:
+            Infeasible: Where there is none, and says why.
         """
-        if isinstance(extra, bool) or not isinstance(extra, int) or extra < 0:
-            raise InvalidInput(f"extra must be a whole number of at least 0, got {extra!r}")
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         if extra and self.weights is not None:
             raise InvalidInput("extra trades moves against margin; leave it out, or weights")
         turn, found = self.max_turn, self.sequences(extra)
@@ -206,7 +241,12 @@ class RegraspProblem:
                     ) from None
 
     def allowing(self, force: float) -> "RegraspProblem":
-        """The same problem with at least this force [N] wherever it is limited."""
+        """The same problem with at least this force [N] wherever it is limited.
+
+        Args:
+            force: [N].
+        """
+        number(force, "force", above=0)
         start, goal = (Grasp(allowed(c, force) for c in grasp) for grasp in (self.start, self.goal))
         most = None if self.max_force is None else max(force, self.max_force)
         return replace(self, start=start, goal=goal, max_force=most)

@@ -7,20 +7,21 @@ from math import atan2, cos, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, rotation
+from regrasp.errors import Infeasible, InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, instance, rotation, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.holds.pairs import MOST_ORIENTATIONS
 from regrasp.planning.holds.sequences import Sequence, preferred
 from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.triples import FACETS, TripleFilter, TripleGraph, directions
 from regrasp.planning.regrasps.ends import Ends
-from regrasp.planning.regrasps.options import check_steps, settled
+from regrasp.planning.regrasps.options import MOST_CANDIDATES, MOST_EXTRA, check_steps, settled
 from regrasp.planning.regrasps.steps import chosen_state, kept, spread_states, step_between
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import FORCE, Objective
@@ -38,22 +39,39 @@ _SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class SpaceRegraspProblem:
+class SpaceRegraspProblem(ArrayValue):
     """From one grasp of four fingers to another: what is asked, its triples that hold, and the plans.
 
-    mesh: a ``Mesh``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and at the
-    contacts of ``start`` and ``goal``, four each, relative to the centre of mass.
-    load: a force through the centre of mass, fixed in the world, seen from the object before it turns.
-    orientations: directions of the load, seen from the object, that are tried, spread over the sphere; the
-    start's and the goal's are tried besides. 1 forbids turning.
-    goal_rotation: (3, 3) from the object's frame in the end to its frame at the start; the same if not given.
-    objective: what the state of every hold is chosen for. states: ``each``, or ``joint``: all states in one
-    program, for the widest worst force margin and then the least change of force.
-    max_turn: largest turn during one step [rad], below pi. least_margin: angle margin [rad] that every hold
-    must have in its inner pyramids of ``facets`` faces. min_distance [m], keep: which three fingers may hold
-    together. seed: of the candidates. max_force, peak_ratio, reserve: as for ``choose_state``. step_duration:
-    [s] of each step.
-    Raises ``InvalidInput`` for arguments that are not what they must be.
+    Args:
+        mesh: a ``Mesh``; fingers may touch at ``candidates`` points spread over it, of ``friction``, and at
+            the contacts of ``start`` and ``goal``, four each, relative to the centre of mass.
+        start: four contacts, relative to the centre of mass [m].
+        goal: four contacts at the end, relative to the centre of mass [m].
+        load: a force through the centre of mass, fixed in the world, seen from the object before it turns
+            [N].
+        friction: Coulomb coefficient of the candidates [-].
+        orientations: directions of the load, seen from the object, that are tried, spread over the sphere;
+            the start's and the goal's are tried besides. 1 forbids turning.
+        goal_rotation: (3, 3) from the object's frame in the end to its frame at the start; the same if not
+            given.
+        candidates: how many points are spread over the mesh.
+        objective: what the state of every hold is chosen for.
+        states: ``each``, or ``joint``: all states in one program, for the widest worst force margin and then
+            the least change of force.
+        max_turn: largest turn during one step [rad], below pi.
+        least_margin: angle margin [rad] that every hold must have in its inner pyramids of ``facets`` faces.
+        min_distance: least distance of two fingers that hold together [m].
+        keep: which three fingers may hold together, by reach or collision: a function of points (k, 3) of
+            each of them, relative to the centre of mass [m], that returns (k,) booleans; all if not given.
+        facets: faces of the inner pyramids in which holds are judged.
+        seed: of the candidates.
+        max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
+        peak_ratio: as for ``choose_state`` [-].
+        reserve: as for ``choose_state`` [-].
+        step_duration: [s] of each step.
+
+    Raises:
+        InvalidInput: For arguments that are not what they must be.
     """
 
     mesh: "Mesh"
@@ -78,13 +96,19 @@ class SpaceRegraspProblem:
     step_duration: float = 1.0
 
     def __post_init__(self) -> None:
+        from regrasp.mesh.mesh import Mesh
+
+        instance(self.mesh, "mesh", Mesh)
         _ = self.criteria, self.rotation
         load = self.load
         if not isinstance(load, Wrench) or load.dimension != 3 or load.torque.any() or not load.force.any():
             raise InvalidInput(f"load must be a force in space through the centre of mass, got {load!r}")
         check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
-        if isinstance(self.orientations, bool) or not isinstance(self.orientations, int):
-            raise InvalidInput(f"orientations must be a whole number, got {self.orientations!r}")
+        whole(self.orientations, "orientations", least=0, most=MOST_ORIENTATIONS)
+        whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
+        whole(self.seed, "seed", least=0)
+        if self.keep is not None and not callable(self.keep):
+            raise InvalidInput(f"keep must be a function of points and the load, got {shown(self.keep)}")
         _ = self.directions, self.graph
 
     @cached_property
@@ -148,14 +172,25 @@ class SpaceRegraspProblem:
         return self.ends.start, self.ends.goal, int(_angle(self.directions[0], last) > _SAME)
 
     def sequences(self, extra: int = 0) -> list[Sequence]:
-        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins."""
+        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins.
+
+        Args:
+            extra: finger moves beyond the fewest.
+        """
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         stances = Quads(self.graph, self.directions, self.max_turn, self.least_margin)
         return preferred(stances, *self.places, extra)
 
     def plans(self, extra: int = 0) -> list[SpaceRegraspPlan]:
-        """The plan of each sequence. Raises ``Infeasible`` where there is none, and says why."""
-        if isinstance(extra, bool) or not isinstance(extra, int) or extra < 0:
-            raise InvalidInput(f"extra must be a whole number of at least 0, got {extra!r}")
+        """The plan of each sequence.
+
+        Args:
+            extra: finger moves beyond the fewest.
+
+        Raises:
+            Infeasible: Where there is none, and says why.
+        """
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         found = self.sequences(extra)
         if not found:
             raise self._why_not()

@@ -17,7 +17,7 @@ from regrasp.planning.changes.given_ends import eased
 from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.objectives import ANGLE, FORCE
+from regrasp.planning.states.objectives import ANGLE, FORCE, recorded
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.straight import STRAIGHT
@@ -155,7 +155,13 @@ def chosen_state(
     grasp = Grasp(contacts[i] for i in places)
     best = choose_forces(eased(grasp, ease), load, replace(criteria, max_force=None))
     return Chosen(
-        places, load, grasp, np.array(best.forces), best.force_limits, criteria.objective.name, best.method
+        places,
+        load,
+        grasp,
+        np.array(best.forces),
+        best.force_limits,
+        recorded(criteria.objective),
+        best.method,
     )
 
 

@@ -36,8 +36,18 @@ def plan_regrasp(
     What is proven: every state, every path between two, and that no regrasp on the sampled points and
     orientations has fewer moves or, with as few, a wider least margin; or costs less. Points and orientations
     between the samples are not looked at.
-    Raises ``Infeasible`` where no sequence of holds leads from one to the other, and says why and what would
-    make one possible; ``InvalidInput`` for arguments that are not what they must be.
+
+    Args:
+        outline: an ``Outline``, or a ``Mesh`` in space.
+        start: three contacts, in space four, relative to the centre of mass [m].
+        goal: as many, at the end.
+        load: a force through the centre of mass, seen from the object before it turns [N].
+        **options: of ``RegraspProblem`` or ``SpaceRegraspProblem``; ``friction`` [-] is required.
+
+    Raises:
+        Infeasible: Where no sequence of holds leads from one to the other, and says why and what would make
+            one possible.
+        InvalidInput: For arguments that are not what they must be.
     """
     return _problem(outline, start, goal, load, options).plans()[0]
 
@@ -55,6 +65,14 @@ def plan_regrasps(
 
     First that of ``plan_regrasp``, then those of up to ``extra`` more moves, each with a wider least margin
     than the one before it. Arguments and errors are those of ``plan_regrasp``; ``weights`` have no trade-off.
+
+    Args:
+        outline: as for ``plan_regrasp``.
+        start: as for ``plan_regrasp``.
+        goal: as for ``plan_regrasp``.
+        load: as for ``plan_regrasp`` [N].
+        extra: how many moves beyond the fewest.
+        **options: as for ``plan_regrasp``.
     """
     return _problem(outline, start, goal, load, options).plans(extra)
 

@@ -35,12 +35,17 @@ from regrasp.planning.states.objectives import FORCE
 class RegraspObstacle:
     """Why no sequence of holds leads from a start to a goal; the ``certificate`` of its ``Infeasible``.
 
-    start, goal: components of the hold graph, over all orientations, of the contacts that hold at each end;
-    -1 stands for contacts without any hold. friction: with at least this coefficient at every contact there
-    is a sequence [-]. max_force: with this limit in place of smaller ones there is one [N]. margin: the
-    widest least margin of any sequence where a least margin is asked for [rad]. Each None where it is not
-    what is missing, or where nothing up to a friction of 16, or limits of ten thousand loads, would do.
-    without: options that alone would leave a sequence if they were not given.
+    Args:
+        start: components of the hold graph, over all orientations, of the contacts that hold at each end; -1
+            stands for contacts without any hold.
+        goal: components of the hold graph, over all orientations, of the contacts that hold at each end; -1
+            stands for contacts without any hold.
+        friction: with at least this coefficient at every contact there is a sequence [-].
+        max_force: with this limit in place of smaller ones there is one [N].
+        margin: the widest least margin of any sequence where a least margin is asked for [rad]. Each None
+            where it is not what is missing, or where nothing up to a friction of 16, or limits of ten
+            thousand loads, would do.
+        without: options that alone would leave a sequence if they were not given.
     """
 
     start: tuple[int, ...]

@@ -3,10 +3,9 @@
 from math import inf
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, ArrayLike, number, numbers_in
 from regrasp.planning.states.criteria import PEAK_RATIO
 from regrasp.planning.states.objectives import Objective, objective_of
 
@@ -28,12 +27,23 @@ def locus_intervals(
 ) -> tuple[Array, Array]:
     """Ends (lo, hi) of the squeeze interval of many pairs of planar contacts [N].
 
-    r1, r2: (..., 2) positions; n1, n2: (..., 2) normals of any length; mu1, mu2: (...) frictions;
-    force (..., 2) and torque (...) of the load. Leading shapes broadcast; lo and hi have that shape.
-    An empty locus is lo = inf, hi = -inf. The same function as ``EquilibriumLocus.interval``, compiled by
-    Numba on the first call (seconds, then cached) and run on all cores.
-    Raises ``InvalidInput`` for wrong shapes, numbers that are not finite, zero normals, negative
-    frictions and coincident contacts.
+    Leading shapes broadcast; lo and hi have that shape. An empty locus is lo = inf, hi = -inf. The same
+    function as ``EquilibriumLocus.interval``, compiled by Numba on the first call (seconds, then cached) and
+    run on all cores.
+
+    Args:
+        r1: (..., 2) positions of the first contacts, object frame [m].
+        n1: (..., 2) normals into the object, of any length [-].
+        mu1: (...) frictions [-].
+        r2: (..., 2) positions of the second contacts [m].
+        n2: (..., 2) their normals [-].
+        mu2: (...) their frictions [-].
+        force: (..., 2) of the load, object frame [N].
+        torque: (...) of the load about the centre of mass [N m].
+
+    Raises:
+        InvalidInput: For wrong shapes, numbers that are not finite, zero normals, negative frictions and
+            coincident contacts.
     """
     arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque)
     from regrasp.closed_form.compiled import two_fingers as compiled
@@ -64,6 +74,20 @@ def best_squeezes(
     (...), one for each contact; infinite for none. Without it the objectives ``angle`` and ``force`` limit
     them to ``peak_ratio`` times the least peak force of each pair. The full friction is used: pass
     ``mu * (1 - reserve)`` to keep a reserve.
+
+    Args:
+        r1: (..., 2) positions of the first contacts, object frame [m].
+        n1: (..., 2) normals into the object, of any length [-].
+        mu1: (...) frictions [-].
+        r2: (..., 2) positions of the second contacts [m].
+        n2: (..., 2) their normals [-].
+        mu2: (...) their frictions [-].
+        force: (..., 2) of the load, object frame [N].
+        torque: (...) of the load about the centre of mass [N m].
+        objective: a word, or an objective with a closed form.
+        max_force: (...) limit on both forces, or a tuple of two (...), one for each contact; infinite for
+            none [N].
+        peak_ratio: limit on forces that could grow without end, as a multiple of the least peak force [-].
     """
     sought = objective_of(objective)
     if sought.closed_form is None:
@@ -89,10 +113,14 @@ def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...
     """Flat arrays of one value, or one for every grasp; which of them are whole; the common shape."""
     arrays, leading = [], []
     for (name, size), argument in zip(_SIZES.items(), arguments, strict=False):
-        try:
-            value = np.asarray(argument, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InvalidInput(f"{name} must be an array of numbers, got {type(argument).__name__}") from None
+        if isinstance(argument, np.ndarray) and argument.dtype == np.float64:
+            value = argument  # millions of numbers are not copied
+        else:
+            try:
+                value = numbers_in(argument, name)
+            except InvalidInput:
+                kind = type(argument).__name__
+                raise InvalidInput(f"{name} must be an array of numbers, got {kind}") from None
         if size == 2 and (value.ndim == 0 or value.shape[-1] != 2):
             raise InvalidInput(f"{name} must have shape (..., 2), got {value.shape}")
         arrays.append(value)

@@ -2,15 +2,18 @@
 
 from typing import Unpack
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.mechanics.checks import whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import StateOptions, criteria_of, takes
-from regrasp.planning.states.two_fingers import best_forces
+from regrasp.planning.states.two_fingers import best_forces, is_one_point
 
+MOST_FACETS = 10_000
+"""Sides of a polygon that stands for a circle: one of so many is a circle to eight digits."""
 DEFAULT_BACKEND = "clarabel"
 
 
@@ -23,15 +26,24 @@ def choose_state(
 ) -> ChosenState:
     """The best forces of a grasp under a load.
 
-    objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
-    ``peak``, the least largest force; ``peak_normal`` and ``sum_normal``, the least largest normal force and
-    the least sum of them; ``friction_use``, the least largest fraction of the friction available; an
-    objective of one's own, such as a ``ForceCost``; or ``Criteria``, which hold the limits, too.
-    options
     What limits came to is in the result's ``force_limits``; what facets cost, ``pyramid_losses`` tells.
 
-    Returns a ``GraspState`` with the record of its choice. Raises ``Infeasible`` with the escape twist when
-    no forces exist, ``InvalidInput`` for arguments that are not what they must be.
+    Args:
+        grasp: two contacts or more, in the plane or in space.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        objective: ``angle`` or ``force``, the widest least margin; ``effort``, the least sum of squares;
+            ``peak``, the least largest force; ``peak_normal`` and ``sum_normal``, the least largest normal
+            force and the least sum of them; ``friction_use``, the least largest fraction of the friction
+            available; an objective of one's own, such as a ``ForceCost``; or ``Criteria``, which hold the
+            limits, too.
+        options
+
+    Returns:
+        A ``GraspState`` with the record of its choice.
+
+    Raises:
+        Infeasible: With the escape twist when no forces exist.
+        InvalidInput: For arguments that are not what they must be.
     """
     if not isinstance(grasp, Grasp):
         raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
@@ -43,8 +55,8 @@ def choose_state(
 
 def check_facets(facets: int | None) -> None:
     """Raise ``InvalidInput`` unless ``facets`` is a number of sides, or None."""
-    if facets is not None and (not isinstance(facets, int) or isinstance(facets, bool) or facets < 3):
-        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
+    if facets is not None:
+        whole(facets, "facets", least=3, most=MOST_FACETS)
 
 
 def choose_forces(
@@ -56,6 +68,10 @@ def choose_forces(
         raise InvalidInput(f"method must be text, such as 'auto', got {method!r}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     closed = planar_pair and criteria.objective.closed_form is not None
+    if criteria.presses:
+        if method == "closed-form":
+            raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")
+        closed = False
     if method == "closed-form" and planar_pair and not closed:
         raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use method='auto'")
     if method == "closed-form" and not planar_pair:
@@ -63,12 +79,25 @@ def choose_forces(
             f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
             f"{grasp.dimension}; use method='auto'"
         )
-    if len(grasp) < 2:
-        raise InvalidInput(f"a grasp needs two contacts or more to hold a load, got {len(grasp)}")
+    if planar_pair and is_one_point(grasp):
+        if method == "closed-form":
+            raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
+        closed = False
     if method == "closed-form" and facets is not None:
         raise InvalidInput("the closed form takes force limits as they are; leave facets out")
     if method == "closed-form" or (method == "auto" and closed and facets is None):
-        return best_forces(grasp, load, criteria)
+        try:
+            return best_forces(grasp, load, criteria)
+        except Infeasible as reason:
+            if method == "closed-form" or reason.certificate is not None:
+                raise
+            refused = reason  # without proof: rounding of contacts next to one another, or of the edge
+        from regrasp.planning.states.many_contacts import solved_forces
+
+        try:
+            return solved_forces(grasp, load, criteria, DEFAULT_BACKEND)
+        except RegraspError:
+            raise refused from None
     from regrasp.programs.backends import available_backends, is_available
 
     if method != "auto" and not is_available(method):

@@ -21,23 +21,28 @@ PEAK_RATIO = 3.0
 class Criteria:
     """Objective and limits by which a state is chosen, checked.
 
-    objective: a word, or a value (``regrasp.planning.states.objectives``): ``angle`` or ``force``, the widest
-    least margin; ``effort``, the least sum of squares; ``peak``, the least largest force; ``peak_normal`` and
-    ``sum_normal``, the least largest normal force and the least sum of them; ``friction_use``, the least
-    largest fraction of the friction available; or a ``ForceCost`` of one's own. Kept as a value.
-    max_force: a limit on every force [N] besides the contacts' own, or None.
-    peak_ratio: where any contact has no limit, ``angle``, ``force`` and ``friction_use`` limit all of them
-    to this multiple (at least 1) of the least peak force with which the grasp holds the load, or to a
-    contact's own limit if that is smaller.
-    reserve: fraction of every friction coefficient kept back.
+    Args:
+        objective: a word, or a value (``regrasp.planning.states.objectives``): ``angle`` or ``force``, the
+            widest least margin; ``effort``, the least sum of squares; ``peak``, the least largest force;
+            ``peak_normal`` and ``sum_normal``, the least largest normal force and the least sum of them;
+            ``friction_use``, the least largest fraction of the friction available; or a ``ForceCost`` of
+            one's own. Kept as a value.
+        max_force: a limit on every force [N] besides the contacts' own, or None.
+        peak_ratio: where any contact has no limit, ``angle``, ``force`` and ``friction_use`` limit all of
+            them to this multiple (at least 1) of the least peak force with which the grasp holds the load, or
+            to a contact's own limit if that is smaller.
+        reserve: fraction of every friction coefficient kept back [-].
+        min_normal: least normal force of every finger [N], or a tuple of one for each contact; 0 for none.
 
-    Raises ``InvalidInput`` for anything else.
+    Raises:
+        InvalidInput: For anything else.
     """
 
     objective: Objective = ANGLE
     max_force: float | None = None
     peak_ratio: float = PEAK_RATIO
     reserve: float = RESERVE
+    min_normal: float | tuple[float, ...] = 0.0
 
     def __init__(
         self,
@@ -45,6 +50,7 @@ class Criteria:
         max_force: float | None = None,
         peak_ratio: float = PEAK_RATIO,
         reserve: float = RESERVE,
+        min_normal: float | tuple[float, ...] | None = 0.0,
     ) -> None:
         object.__setattr__(self, "objective", objective_of(objective))
         if max_force is not None:
@@ -54,6 +60,10 @@ class Criteria:
         object.__setattr__(self, "max_force", max_force)
         object.__setattr__(self, "peak_ratio", peak_ratio)
         object.__setattr__(self, "reserve", reserve)
+        least = min_normal or 0.0
+        for value in least if isinstance(least, tuple) else (least,):
+            number(value, "min_normal", least=0)
+        object.__setattr__(self, "min_normal", least)
 
     @property
     def unbounded(self) -> bool:
@@ -61,19 +71,61 @@ class Criteria:
         return self.objective.unbounded
 
     def frictions(self, grasp: Grasp) -> list[float]:
-        """Friction coefficients that planning may use."""
+        """Friction coefficients that planning may use.
+
+        Args:
+            grasp: of n contacts.
+        """
         return [kept_friction(c.friction, self.reserve) for c in grasp]
 
     def limits(self, grasp: Grasp) -> list[float]:
-        """Force limits that planning may use, infinite where there is none [N]."""
+        """Force limits that planning may use, infinite where there is none [N].
+
+        Args:
+            grasp: of n contacts.
+        """
         general = inf if self.max_force is None else self.max_force
         return [
             kept_force(general if c.max_force is None else min(general, c.max_force), self.reserve)
             for c in grasp
         ]
 
+    @property
+    def presses(self) -> bool:
+        """Whether any finger must push with a least normal force."""
+        return bool(self.min_normal) and (not isinstance(self.min_normal, tuple) or any(self.min_normal))
+
+    def least_normals(self, grasp: Grasp) -> list[float]:
+        """Least normal force of each finger [N].
+
+        Args:
+            grasp: the contacts that push.
+        """
+        if not isinstance(self.min_normal, tuple):
+            return [self.min_normal] * len(grasp)
+        if len(self.min_normal) != len(grasp):
+            raise InvalidInput(
+                f"min_normal must be one number or {len(grasp)}, one for each contact, got "
+                f"{len(self.min_normal)}"
+            )
+        return list(self.min_normal)
+
+    def refuse_pressing(self, what: str) -> None:
+        """Raise ``InvalidInput`` where least normal forces are asked for and not kept.
+
+        Args:
+            what: what does not keep them, in words.
+        """
+        if self.presses:
+            raise InvalidInput(f"{what} keeps no least normal force; leave min_normal out of the Criteria")
+
     def demand_limit(self, grasp: Grasp, load: Wrench) -> None:
-        """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero."""
+        """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero.
+
+        Args:
+            grasp: the contacts that hold.
+            load: external wrench on the object about its centre of mass, object frame [N, N m].
+        """
         if self.unbounded and not any(load.plain) and inf in self.limits(grasp):
             raise InvalidInput(
                 f"objective {self.objective.name!r} under a zero load needs max_force: any squeeze holds it, "
@@ -92,7 +144,14 @@ class ChosenForces(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ChosenState(GraspState):
-    """A state with the record of its choice."""
+    """A state with the record of its choice.
+
+    Args:
+        grasp: the contacts that hold.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        criteria: objective and limits of the choice.
+        chosen: its forces (n, d) [N], force limits (n,) [N], method and gap.
+    """
 
     criteria: Criteria
     force_limits: tuple[float, ...]
@@ -102,7 +161,8 @@ class ChosenState(GraspState):
     gap: float | None
     """How much better the best value can be at most, by duality; None for the closed form, which is exact.
 
-    For ``angle`` [rad] and ``friction_use`` mostly 1e-7, and never more than 1e-5.
+    For ``angle`` [rad] and ``friction_use`` mostly 1e-7, and never more than 1e-5 unless rounding hides what
+    is between; infinite where a solver failed next to the edge and forces were found without one.
     """
 
     def __init__(

@@ -10,13 +10,19 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import Infeasible
+from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.exact.refining import proven
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.separation import cleared, gap_left
+from regrasp.planning.states.separation import edge_of, gap_left
 
+AT_LIMIT = 1e-6
+"""A load within this fraction of the edge of what is held is at its limit: rounding may decide it."""
+# Limits beyond this many loads are left out of the search.
+_LOOSE = 1e6
 # Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
 _REACHES = (1e2, 1e4)
 _NEARER = 0.1
@@ -25,7 +31,20 @@ _WORK = 1e-9
 
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
-    """The error that says why no state exists: the cones alone, the force limits, or the reserve."""
+    """The error that says why no state exists: the cones, the force limits, the reserve or the limit."""
+    reason = verdict(grasp, load, criteria)
+    if reason is not None:
+        return reason
+    return Infeasible(
+        f"no forces of {', '.join(grasp.names)} that balance {load!r} were found with {criteria.reserve:g} "
+        f"of the friction kept in reserve, and no motion proves that there are none without it: the load "
+        f"needs more friction than that leaves, or is at the limit of what they can hold; choose a smaller "
+        f"reserve"
+    )
+
+
+def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None:
+    """Why no state exists, where that is proven or the load is at its limit; else None."""
     names = ", ".join(grasp.names)
     loose = loose_twist(grasp, load)
     if loose is not None:
@@ -61,11 +80,38 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             f"{_REACHES[1]:g} times by {limit[1]:.2g}, so no motion proves it; the contacts would "
             f"need a little more friction"
         )
-    return Infeasible(
-        f"no forces of {names} that balance {load!r} were found with {criteria.reserve:g} of the friction "
-        f"kept in reserve, and no motion proves that there are none without it: the load needs more friction "
-        f"than that leaves, or is at the limit of what they can hold; choose a smaller reserve"
-    )
+    kept = criteria.frictions(grasp)
+    for mu in (frictions, kept):
+        if any(load.plain) and _is_at_limit(grasp, load, mu, criteria.limits(grasp)):
+            what = "" if mu is frictions else f" with {criteria.reserve:g} of the friction kept in reserve"
+            return Infeasible(
+                f"{load!r} is at its limit for {names}{what}: within {AT_LIMIT:g} of the edge of what forces "
+                f"inside their friction cones and force limits balance, where rounding decides; none were "
+                f"found, and no motion proves that there are none"
+            )
+    return None
+
+
+def _is_at_limit(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> bool:
+    """Whether a load is within ``AT_LIMIT`` of the edge of what is held, or inside it but for rounding.
+
+    Near the edge: not inside by more, and missed by no more by some forces. Rounding: a solver's forces
+    balance it, and none near them do exactly.
+    """
+    edge = edge_of(grasp, load.vector, frictions, limits)
+    if edge is None:
+        return False
+    if edge.beyond < -AT_LIMIT:
+        cones, mu, most = grasp.cones, np.array(frictions), np.array(limits)
+        given = edge.forces, cones.matrix, load.vector, cones.normals, mu, most, grasp.size or 1.0
+        return nearest_equilibrium(*given) is None
+    if edge.beyond <= AT_LIMIT:
+        return True
+    weight = 1 / grasp.lengths
+    target = -load.vector * weight
+    unit = float(abs(target).max())
+    gap = gap_left(grasp, target / unit, weight, frictions, [limit / unit for limit in limits])
+    return float(np.linalg.norm(gap)) <= AT_LIMIT
 
 
 def loose_twist(grasp: Grasp, load: Wrench) -> EscapeTwist | None:
@@ -93,10 +139,11 @@ def escape_twist(
     unit = float(abs(target).max())
     if unit == 0:
         return None
+    limits = [
+        inf if limit > _LOOSE * unit else limit for limit in limits
+    ]  # they bind no proof, and spoil scales
     if min(limits) < inf or d == 3:
         gaps = [gap_left(grasp, target / unit, weight, frictions, [f / unit for f in limits])]
-        if d == 3:
-            gaps.append(cleared(grasp, gaps[0] * weight, frictions, limits) / weight)
     else:
         gaps = _gaps(_edge_wrenches(grasp, weight, frictions), target / unit)
     twists = [
@@ -105,7 +152,15 @@ def escape_twist(
         if gap.any() and np.isfinite(gap).all()
     ]
     best = max(twists, key=lambda twist: twist.least_force, default=None)
-    return best if best is not None and best.is_proof else None
+    if best is None or best.is_proof:
+        return best
+    near = proven(grasp, load, twists[0].twist, frictions, limits)
+    if near is not None:
+        return near
+    edge = edge_of(grasp, load.vector, frictions, limits)  # a solver's gap is too small to show a direction
+    if edge is None or edge.beyond < -AT_LIMIT:
+        return None
+    return proven(grasp, load, edge.twist, frictions, limits)
 
 
 def _only_in_the_limit(grasp: Grasp, load: Wrench, frictions: list[float]) -> tuple[float, float] | None:
@@ -137,6 +192,8 @@ def _gaps(wrenches: Array, target: Array) -> list[Array]:
     if miss < 1e-9:
         return [gap]  # W'v >= 1 has no solution: the wrenches leave no half-space free
     residual = equations @ combination - goal
+    if not residual[-1] or not residual[:-1].any():
+        return [gap]
     clear = residual[:-1] / residual[-1]
     return [gap, gap + clear * (2.0**-40 * float(np.linalg.norm(gap) / np.linalg.norm(clear)))]
 

@@ -8,9 +8,7 @@ import numpy as np
 
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
-from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
-from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
 from regrasp.planning.states.objectives import FORCE
 from regrasp.planning.states.solving import FEASIBLE, Chooser, Found
@@ -20,8 +18,11 @@ from regrasp.programs import Status
 _SURE = 1e-2
 # The best level must be known this well; how well it is known is in the gap.
 _UNSURE = 100 * LEVEL_TOLERANCE
-# A force below this fraction of the largest may be what a solver leaves at a finger that need not push.
-_NOISE = 1e-6
+# Cones so far from the forces of a solved program, in its units, hold them whatever its tolerance.
+_CLEAR = 1e-6
+# A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
+# root of its tolerance, where the optimum is flat.
+_NOISE = 1e-4
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -44,7 +45,9 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
             proven = level if found.is_proof else proven
             sure = level if found.is_sure else sure
         else:
-            reached = max(narrowing.level(found.forces), held)
+            # Inside the narrowed cones is the level reached, whatever a margin says that rounding blurs:
+            # every step gets on.
+            reached = max(narrowing.level(found.forces), level)
             # Steps that do not shrink converge too slowly: halve what is left once, then climb on.
             climbs = not climbs or reached - held < gained / 2
             gained, held, forces = reached - held, reached, found.forces
@@ -59,22 +62,39 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
     widest = _at_level(chooser, cones, limits, None).forces
     if widest is not None:
         forces = widest
-    forces = _without_noise(chooser, narrowing, forces, limits)
+    if chooser.least is None:
+        forces = _without_noise(chooser, narrowing, forces, limits)
     return Found(forces, max(proven - narrowing.level(forces), 0.0))
 
 
 def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
-    """The forces with those that are a solver's noise made zero, where that costs nothing."""
+    """The forces with those that are a solver's noise made zero, where the level stays as good."""
     sizes = abs(forces).max(axis=1)
-    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
+    used = set(np.flatnonzero(sizes > _NOISE * sizes.max()).tolist())
     if len(used) in (0, len(forces)):
         return forces
-    frictions, bounds = [narrowing.frictions[i] for i in used], [limits[i] for i in used]
-    rest = chooser.of(used).settled(forces[used], frictions, bounds)
-    if rest is None:
+    level = narrowing.level(forces)
+    idle = _of_those_that_push(chooser, forces, narrowing.frictions, limits)
+    if idle is None or narrowing.level(idle) < level - LEVEL_TOLERANCE / 10:
+        cones = narrowing.narrowed(max(level - LEVEL_TOLERANCE / 10, 0.0))
+        idle = _at_level(chooser, {i: mu for i, mu in cones.items() if i in used}, limits, None).forces
+    if idle is None or narrowing.level(idle) < level - LEVEL_TOLERANCE / 5:
         return forces
-    idle = _whole(chooser.grasp, used, rest)
-    return idle if narrowing.level(idle) >= narrowing.level(forces) - LEVEL_TOLERANCE / 10 else forces
+    return idle
+
+
+def _of_those_that_push(
+    chooser: Chooser, forces: Array, frictions: list[float], limits: list[float]
+) -> Array | None:
+    """Forces near these of the fingers that carry more than noise, others idle; None if there are none."""
+    sizes = abs(forces).max(axis=1)
+    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
+    if len(used) in (0, len(forces)) or not np.isfinite(forces).all():
+        return None
+    mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
+    some = chooser.of(used)
+    rest = some.shifted(forces[used][:, : some.grasp.width], mu, bounds)
+    return None if rest is None else _whole(chooser.grasp, used, rest)
 
 
 def _lowest_proof(
@@ -84,8 +104,7 @@ def _lowest_proof(
     step = LEVEL_TOLERANCE
     while above + step < proven:
         cones = narrowing.narrowed(above + step)
-        grasp, bounds = chooser.grasp.subset(cones), [limits[i] for i in cones]
-        if escape_twist(grasp, chooser.load, list(cones.values()), bounds) is not None:
+        if chooser.of(cones).is_lost(list(cones.values()), [limits[i] for i in cones]):
             return above + step
         step *= 4
     return proven
@@ -106,6 +125,8 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     the level rises most. Without ``known`` forces it is the force margin.
     """
     grasp = chooser.grasp
+    if chooser.least is not None and any(chooser.least[i] > 0 for i in range(len(grasp)) if i not in cones):
+        return _Level(None, True, True)  # a finger that must push has no cone left
     used = chooser if len(cones) == len(grasp) else chooser.of(cones)
     frictions, bounds = list(cones.values()), [limits[i] for i in cones]
     weights = None
@@ -117,23 +138,31 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
         answer = failed.solution  # whether it is near enough is seen below
     if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -FEASIBLE:
         forces = used.exact(answer, frictions, bounds)
+        if forces is None and chooser.least is None:
+            forces = _of_those_that_push(used, used.wanted(answer), frictions, bounds)
         if forces is not None:
             return _Level(_whole(grasp, cones, forces))
-    twist = -answer.duals[: used.load.vector.size]
-    twist[grasp.dimension :] /= used.grasp.size or 1.0
+        if answer.status is Status.SOLVED and answer.value[-1] > _CLEAR:
+            return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
+    twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
-    if is_twist and EscapeTwist(used.grasp, used.load, twist, tuple(frictions), tuple(bounds)).is_proof:
+    if is_twist and used.proves(twist, frictions, bounds):
         return _Level(None, True, True)
-    if escape_twist(used.grasp, used.load, frictions, bounds) is not None:
+    # Within a solver's tolerance of the best level a proof is costly and rare: one above it serves.
+    is_near = answer.status is Status.SOLVED and answer.value[-1] >= -FEASIBLE
+    if not is_near and used.is_lost(frictions, bounds):
         return _Level(None, True, True)
     if answer.status is Status.INFEASIBLE or answer.residual <= -_SURE * answer.value[-1]:
         return _Level(None, False, True)
-    forces = None if known is None else used.nearest(known[list(cones)], frictions, bounds)
+    width = used.grasp.width  # point contacts alone have no torques
+    forces = None
+    if known is not None and chooser.least is None:
+        forces = used.nearest(known[list(cones)][:, :width], frictions, bounds)
     return _Level(None if forces is None else _whole(grasp, cones, forces))
 
 
 def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
     """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
     whole = np.zeros((len(grasp), grasp.width))
-    whole[list(contacts)] = forces
+    whole[list(contacts), : forces.shape[1]] = forces
     return whole

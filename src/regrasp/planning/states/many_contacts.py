@@ -1,20 +1,34 @@
 """Choosing the state of any number of contacts by programs."""
 
+from contextlib import suppress
+from dataclasses import replace
 from math import inf
 
 import numpy as np
 
-from regrasp.errors import SolverFailed
+from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import NEVER
+from regrasp.mechanics.exact.membership import vertex_forces
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.degenerate.flat_minima import polished
+from regrasp.planning.states.degenerate.no_load import best_squeeze
+from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
-from regrasp.planning.states.objectives import FORCE, PEAK, ConvexObjective, LevelObjective
-from regrasp.planning.states.solving import LOOSE, Chooser
+from regrasp.planning.states.objectives import EFFORT, FORCE, PEAK, ConvexObjective, LevelObjective
+from regrasp.planning.states.separation import edge_of
+from regrasp.planning.states.solving import LOOSE, Chooser, Found
+
+_SAME = 1e-6  # of a margin [rad, N or -]
+_BESIDE = 1e4  # forces so many times a load are beside it in one program
+_FAR = 1e3  # forces so much larger than the load are the better unit
+VANISHING = 1e-9
+"""A load below this fraction of the force limits changes no margin: the best squeeze is that without."""
 
 
 def solved_forces(
@@ -25,37 +39,150 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
+    if criteria.presses:
+        return _pressed(grasp, load, criteria, backend, facets)
     objective = criteria.objective
     if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
     try:
         return _solved(grasp, load, criteria, backend, facets)
-    except SolverFailed:
-        # Solvers fail at the limit of what can be held. That is no verdict; a proof is.
-        reason = infeasible(grasp, load, criteria)
-        if reason.certificate is None:
+    except (SolverFailed, Infeasible) as failure:
+        # At the limit of what can be held solvers fail or guess. That is no verdict; a proof is.
+        reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
+        if reason is None or reason.certificate is None:
+            anyway = _by_newton(grasp, load, criteria, backend, facets)
+            if anyway is not None:
+                return anyway
+        if reason is None:
             raise
         raise reason from None
+
+
+def _pressed(
+    grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
+) -> ChosenForces:
+    """The best forces with which every finger keeps its least normal force."""
+    frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
+    least = np.array(criteria.least_normals(grasp))
+    chooser = Chooser(grasp, load, backend, facets, limits, least)
+    chooser.rescale(max(chooser.load_size, float(least.max())))
+    objective = criteria.objective
+    if criteria.unbounded and inf in limits:
+        smallest = chooser.best(PEAK, frictions, limits)
+        if smallest is None:
+            raise _too_weak(grasp, load, criteria)
+        peak = _radius(grasp, frictions, smallest.forces, facets)
+        limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
+    found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
+    if found is None:
+        raise _too_weak(grasp, load, criteria)
+    if isinstance(objective, LevelObjective):
+        found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
+    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
+
+
+def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
+    """Why no forces with these least normal forces exist."""
+    reason = verdict(grasp, load, replace(criteria, min_normal=0.0)) if any(load.plain) else None
+    if reason is not None and reason.certificate is not None:
+        return reason
+    least = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, criteria.least_normals(grasp), strict=True))
+    return Infeasible(
+        f"no forces of {', '.join(grasp.names)} that balance {load!r} and push along the normals with "
+        f"{least} or more were found, within cones and force limits; without least normal forces no motion "
+        f"proves that there are none: lower min_normal, or raise the force limits"
+    )
+
+
+def _by_newton(
+    grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
+) -> ChosenForces | None:
+    """Forces that hold the load where a solver gives none: of least effort by Newton's method, or any.
+
+    Nothing is known of how much better an objective other than effort can be: the gap is infinite.
+    """
+    if backend != "clarabel" or facets is not None:
+        return None
+    frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
+    chooser = Chooser(grasp, load, backend, facets, limits)
+    forces = chooser.nearest(np.zeros((len(grasp), grasp.width)), frictions, limits)
+    is_least = forces is not None and criteria.objective is EFFORT
+    if forces is None and grasp.dimension == 2:
+        vertex = vertex_forces(grasp, load, frictions)
+        near = vertex is not None and abs(vertex).max() <= NEVER * chooser.load_size
+        forces = chooser.settled(vertex, frictions, limits) if vertex is not None and near else None
+    if forces is None:
+        edge = edge_of(grasp, load.vector, frictions, limits) if any(load.plain) else None
+        forces = None if edge is None else chooser.settled(edge.forces, frictions, limits)
+    if forces is None:
+        return None
+    found = Found(forces, 0.0 if is_least else inf)
+    if criteria.unbounded and inf in limits:
+        peak = _radius(grasp, frictions, forces, facets)
+        limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
+    if isinstance(criteria.objective, LevelObjective):
+        with suppress(SolverFailed):
+            found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), forces, limits)
+    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 
 def _solved(grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None) -> ChosenForces:
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
+    if criteria.unbounded and chooser.load_size <= VANISHING * min(limits) and max(limits) < inf:
+        squeezed = best_squeeze(grasp, criteria, backend, facets, frictions, limits)
+        if not any(load.plain):  # nothing to hold, and where nothing squeezes nothing to hold it with
+            forces, gap = squeezed or Found(np.zeros((len(grasp), grasp.width)), 0.0)
+            return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
+        room = 1 - 4 * len(grasp) * chooser.load_size / min(limits)  # for what the load adds
+        loaded = None if squeezed is None else chooser.settled(room * squeezed.forces, frictions, limits)
+        if (
+            squeezed is not None
+            and loaded is not None
+            and _changes_nothing(grasp, criteria, squeezed.forces, loaded)
+        ):
+            return ChosenForces(grasp.cones.forces(loaded), tuple(limits), backend, squeezed.gap)
+        # Fingers that take no part in the squeeze must hold the load, with forces of its size.
+        capped = replace(criteria, max_force=_BESIDE * chooser.load_size)
+        with suppress(Infeasible, SolverFailed):  # what the cap forbids is no verdict
+            return _solved(grasp, load, capped, backend, facets)._replace(force_limits=tuple(limits))
     if criteria.unbounded and min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LOOSE))
+    least = None
     if criteria.unbounded and inf in limits:
         least = chooser.best(PEAK, frictions, limits)
         if least is None:
             raise infeasible(grasp, load, criteria)
         peak = _radius(grasp, frictions, least.forces, facets)
+        if peak > _FAR * chooser.unit:
+            chooser.rescale(peak)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     objective = criteria.objective
-    found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
+    try:
+        convex = objective if isinstance(objective, ConvexObjective) else FORCE
+        found = chooser.best(convex, frictions, limits)
+    except SolverFailed:
+        if least is None or not isinstance(objective, LevelObjective):
+            raise
+        found = least  # forces far larger than the load; the search goes on from the smallest
     if found is None:
         raise infeasible(grasp, load, criteria)
+    forces, gap = found
     if isinstance(objective, LevelObjective):
-        found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
-    return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
+        forces, gap = highest(chooser, Narrowing(grasp, objective, frictions), forces, limits)
+    elif isinstance(objective, ConvexObjective) and facets is None:
+        forces = polished(chooser, objective, forces, frictions, limits)
+    return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
+
+
+def _changes_nothing(grasp: Grasp, criteria: Criteria, squeezed: Array, loaded: Array) -> bool:
+    """Whether a squeeze that holds a load, too, is as good as before."""
+    none = Wrench.from_vector(np.zeros(len(grasp.matrix)))
+    before, after = (
+        criteria.objective.value(GraspState(grasp, none, grasp.cones.forces(forces)))
+        for forces in (squeezed, loaded)
+    )
+    return abs(after - before) <= _SAME * max(1.0, abs(before))
 
 
 def _radius(grasp: Grasp, frictions: list[float], forces: Array, facets: int | None) -> float:

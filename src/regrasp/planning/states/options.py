@@ -10,11 +10,11 @@ from dataclasses import replace
 from functools import cache, lru_cache, wraps
 from inspect import Parameter, Signature, cleandoc, signature
 from re import sub
+from textwrap import fill
 from typing import Annotated, Any, NamedTuple, ParamSpec, TypedDict, TypeVar, get_args, get_type_hints
 
-from numpy.typing import ArrayLike
-
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import ArrayLike
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import Objective, objective_of
@@ -22,6 +22,8 @@ from regrasp.plans.timing import TimeScaling
 
 BALANCE_TOLERANCE = 1e-3
 INSTANTS = 101
+WIDTH = 100
+"""Columns of a docstring's words."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -54,6 +56,11 @@ class LimitOptions(TypedDict, total=False):
 class StateOptions(LimitOptions, total=False):
     """How one state is chosen."""
 
+    min_normal: Annotated[
+        float | tuple[float, ...] | None,
+        Option(None, "least normal force of every finger [N], or a tuple of one for each contact"),
+    ]
+
     method: Annotated[
         str,
         Option(
@@ -75,6 +82,8 @@ class StateOptions(LimitOptions, total=False):
 
 class PlanOptions(LimitOptions, total=False):
     """How the ends of a plan are chosen, and its clock."""
+
+    min_normal: Annotated[float | None, Option(None, "least normal force of the fingers that stay [N]")]
 
     method: Annotated[str, Option("auto", "'auto', 'closed-form' or a back end's name, as for choose_state")]
     duration: Annotated[float | None, Option(None, "of the whole plan [s]; 1 unless something else sets it")]
@@ -99,7 +108,6 @@ class ChangeOptions(PlanOptions, total=False):
             "duration the shortest is used, with one the path bends where the straight one is too fast",
         ),
     ]
-    min_normal: Annotated[float | None, Option(None, "least normal force of the fingers that stay [N]")]
     path_objective: Annotated[
         str | None,
         Option(
@@ -157,14 +165,21 @@ def takes(options: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def _with_words(text: str, options: Mapping[str, tuple[Any, Option]]) -> str:
-    """A docstring with the words of options in the place of its line ``options``."""
-    lines = [
-        f"{name}: {option.words}; {option.default!r} if not given." for name, (_, option) in options.items()
+    """A docstring with the words of options in the place of the line ``options`` of its ``Args``."""
+    entries = [
+        fill(
+            f"{name}: {option.words}; {option.default!r} if not given.",
+            WIDTH,
+            initial_indent=" " * 4,
+            subsequent_indent=" " * 8,
+            break_on_hyphens=False,
+        )
+        for name, (_, option) in options.items()
     ]
-    return sub(r"(?m)^options$", lambda _: "\n".join(lines), text)
+    return sub(r"(?m)^    options$", lambda _: "\n".join(entries), text)
 
 
-_LIMITS = tuple(LimitOptions.__annotations__)
+_LIMITS = (*LimitOptions.__annotations__, "min_normal")
 
 
 def criteria_of(objective: "str | Objective | Criteria", options: Mapping[str, Any]) -> Criteria:

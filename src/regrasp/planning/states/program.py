@@ -32,6 +32,7 @@ from scipy import sparse
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.faces import ball_faces, cone_faces
 from regrasp.planning.states.objectives import Bound, ConvexObjective, Objective, objective_of
@@ -94,6 +95,7 @@ def _new_rows(
     weights: Array | None = None,
 ) -> _Rows:
     mu = np.array(frictions)
+    mu[mu <= NEGLIGIBLE] = 0.0
     form = state_form(objective.bound, tuple(mu > 0), limited, facets, grasp.width)
     normals, tangents = grasp.cones.normals, grasp.cones.tangents
     if form.is_round:
@@ -118,7 +120,9 @@ def _new_rows(
     A = form.pattern.filled(np.concatenate(numbers))
     A.data.setflags(write=False)  # programs of other loads share it
     return _Rows(
-        form, Program(*_cost(objective, grasp, unit, form), A, np.zeros(form.rows), form.blocks), shares
+        form,
+        Program(*_cost(objective, grasp, unit, form), A, np.zeros(form.rows), form.blocks, size=1.0),
+        shares,
     )
 
 

@@ -5,9 +5,9 @@ from functools import lru_cache
 from math import ceil
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 from regrasp.planning.states.objectives import Bound
 from regrasp.programs import Block, Cone, Pattern
 

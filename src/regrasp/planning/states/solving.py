@@ -9,9 +9,12 @@ import numpy as np
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.objectives import Bound, ConvexObjective
+from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Solution, Status, solve
 
@@ -48,11 +51,18 @@ class Chooser:
     """
 
     def __init__(
-        self, grasp: Grasp, load: Wrench, backend: str, facets: int | None, limits: list[float]
+        self,
+        grasp: Grasp,
+        load: Wrench,
+        backend: str,
+        facets: int | None,
+        limits: list[float],
+        least: Array | None = None,
     ) -> None:
+        self.least = least
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
-        self.unit = force_unit(grasp, load)
+        self.unit = self.load_size = force_unit(grasp, load)
         if self.unit == 0:  # no load: the limits tell the size of a force; without any, all are zero
             self.unit = min(limits, default=1.0) if min(limits, default=inf) < inf else 1.0
         self.loose = LOOSE * self.unit
@@ -63,7 +73,9 @@ class Chooser:
 
     def of(self, contacts: Iterable[int]) -> "Chooser":
         """The same, for some of the contacts."""
-        some = Chooser(self.grasp.subset(contacts), self.load, self.backend, self.facets, [])
+        chosen = list(contacts)
+        least = None if self.least is None else self.least[chosen]
+        some = Chooser(self.grasp.subset(chosen), self.load, self.backend, self.facets, [], least)
         some.unit, some.loose = self.unit, self.loose
         return some
 
@@ -84,7 +96,7 @@ class Chooser:
         try:
             return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
         except SolverFailed as failed:
-            size = float(abs(self._wanted(failed.solution)).max())
+            size = float(abs(self.wanted(failed.solution)).max())
             if not _FAR * self.unit < size < inf:
                 raise
             self.unit = size
@@ -99,7 +111,7 @@ class Chooser:
         slack: float,
     ) -> Program:
         kept = 1 - slack
-        return state_program(
+        program = state_program(
             self.grasp,
             self.load,
             objective,
@@ -109,6 +121,7 @@ class Chooser:
             self.facets,
             weights,
         )
+        return program if self.least is None else pressing(program, self.grasp, self.least, self.unit)
 
     def best(self, objective: ConvexObjective, frictions: list[float], limits: list[float]) -> Found | None:
         """The best forces for a convex objective; None where the back end says there are none."""
@@ -121,7 +134,7 @@ class Chooser:
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
         if objective.bound is Bound.MARGIN and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
-        wanted = self._wanted(answer)
+        wanted = self.wanted(answer)
         forces = self.settled(wanted, frictions, limits)
         if forces is None:
             return None
@@ -136,22 +149,29 @@ class Chooser:
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
         """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are."""
-        return self.settled(self._wanted(answer), frictions, limits)
+        return self.settled(self.wanted(answer), frictions, limits)
 
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Forces (n, d) moved least into equilibrium, inside cones and limits; None if there are none.
 
-        The least change of all forces does, idle fingers left idle, unless it leaves a cone.
+        The least change of all forces does, idle fingers left idle, unless it leaves a cone. None, too, where
+        a finger then pushes with less than its least normal force.
         """
+        found = self.shifted(wanted, frictions, limits)
+        if found is None and np.isfinite(wanted).all():
+            found = self.nearest(wanted, frictions, limits)
+        if found is None or self.least is None or presses(found, self.grasp, self.least):
+            return found
+        return None
+
+    def shifted(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """Forces (n, d) changed least into equilibrium, idle fingers left idle; None if they leave a cone."""
         from regrasp.closed_form.compiled.shift import shifted_inside
 
         mu, limit = np.array(frictions), np.array(limits)
         given = wanted, self.matrix, self.vector, self.grasp.cones.normals, mu, limit
         forces, is_answer = shifted_inside(*given, EQUILIBRIUM / 2)
-        if is_answer:
-            found: Array = forces
-            return found
-        return self.nearest(wanted, frictions, limits) if np.isfinite(wanted).all() else None
+        return forces if is_answer else None
 
     def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """The forces nearest to ``forces`` in equilibrium, inside cones and limits; None if none are."""
@@ -159,7 +179,21 @@ class Chooser:
         mu, limit = np.array(frictions), np.array(limits)
         return nearest_equilibrium(forces, cones.matrix, self.load.vector, cones.normals, mu, limit, size)
 
-    def _wanted(self, answer: Solution) -> Array:
+    def twist_of(self, answer: Solution) -> Array:
+        """The motion that the duals of the balance are, (3,) or (6,)."""
+        twist: Array = -answer.duals[: self.load.vector.size] / self.grasp.lengths
+        return twist
+
+    def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:
+        """Whether no forces exist, proven by this motion."""
+        return EscapeTwist(self.grasp, self.load, twist, tuple(frictions), tuple(limits)).is_proof
+
+    def is_lost(self, frictions: list[float], limits: list[float]) -> bool:
+        """Whether no forces exist, proven by any motion that is found."""
+        return escape_twist(self.grasp, self.load, frictions, limits) is not None
+
+    def wanted(self, answer: Solution) -> Array:
+        """The answer's forces (n, w), as the cones measure them [N]."""
         w = self.grasp.width
         wanted: Array = answer.value[: w * len(self.grasp)].reshape(-1, w)
         if w == 4:  # a point contact makes no torque, whatever a solver says of a number that does nothing

@@ -6,12 +6,11 @@ from math import inf, isfinite, isnan
 from typing import Unpack, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -23,24 +22,40 @@ from regrasp.planning.states.escape import infeasible
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
+ONE_POINT = 1e-13
+"""Contacts nearer than this fraction of the largest coordinate are at one point: a load through it is
+balanced to rounding by forces at both."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EquilibriumLocus(ArrayValue):
     """LS_B: all forces of two planar contacts that balance a load inside both friction cones (Section III-B).
 
-    They differ by the squeeze x only, the component of f_1 along the unit vector from P_1 to P_2 [N].
-    The locus is judged with the full friction and without force limits; ``best`` keeps a reserve back.
-    Raises ``InvalidInput`` unless the grasp has two planar contacts.
+    They differ by the squeeze x only, the component of f_1 along the unit vector from P_1 to P_2 [N]. The
+    locus is judged with the full friction and without force limits; ``best`` keeps a reserve back.
+
+    Args:
+        grasp: two planar contacts.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+
+    Raises:
+        InvalidInput: Unless the grasp has two planar contacts.
     """
 
     grasp: Grasp
     load: Wrench
 
     def __post_init__(self) -> None:
+        instance(self.grasp, "grasp", Grasp)
         if len(self.grasp) != 2 or self.grasp.dimension != 2:
             raise InvalidInput(
                 f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
                 f"{self.grasp.dimension}; use grasp.subset([...]), or a SqueezeLocus"
+            )
+        if is_one_point(self.grasp):
+            raise InvalidInput(
+                f"an equilibrium locus needs contacts at two points; {' and '.join(self.grasp.names)} "
+                f"are at one"
             )
         check_load(self.grasp, self.load)
 
@@ -50,7 +65,17 @@ class EquilibriumLocus(ArrayValue):
 
         The given wrench acts like a part of the load: the locus is that of the other two contacts under
         ``load`` plus w = (f, r x f).
+
+        Args:
+            grasp: three planar contacts.
+            load: external wrench on the object about its centre of mass, object frame [N, N m].
+            contact: name or index of the third.
+            force: (2,) of the third finger on the object, object frame [N].
         """
+        instance(grasp, "grasp", Grasp)
+        check_load(grasp, load)
+        if grasp.dimension != 2:
+            raise InvalidInput("an equilibrium locus is of planar contacts, got some in space")
         f = array(force, "force", (2,))
         fixed = grasp[contact]
         wrench = Wrench(f, torque=float(torque(fixed.position, f)[0]))
@@ -74,27 +99,44 @@ class EquilibriumLocus(ArrayValue):
         return np.array(self._frame[:2])
 
     def forces(self, squeeze: ArrayLike) -> Array:
-        """Forces (2, 2) at a squeeze, (m, 2, 2) at m of them [N]; in equilibrium for any squeeze."""
+        """Forces (2, 2) at a squeeze, (m, 2, 2) at m of them [N]; in equilibrium for any squeeze.
+
+        Args:
+            squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
+        """
         ux, uy, phi, a, b, _ = self._frame
-        x = np.asarray(squeeze, dtype=float)[..., None]
+        x = finite(squeeze, "squeeze")[..., None]
         u, p = np.array([ux, uy]), np.array([-uy, ux])
         return np.stack([x * u + a * p, -(x + phi) * u + b * p], axis=-2)
 
     def wrenches(self, squeeze: ArrayLike) -> Array:
-        """Wrenches (2, 3) at a squeeze, (m, 2, 3) at m of them [N, N m]."""
+        """Wrenches (2, 3) at a squeeze, (m, 2, 3) at m of them [N, N m].
+
+        Args:
+            squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
+        """
         forces = self.forces(squeeze)
         return np.concatenate([forces, torque(self.grasp.positions, forces)], axis=-1)
 
     def margins(self, squeeze: ArrayLike) -> Margins:
-        """Margins of both contacts at a squeeze, or at m of them."""
+        """Margins of both contacts at a squeeze, or at m of them.
+
+        Args:
+            squeeze: component of f_1 along the unit vector from P_1 to P_2, a number or (m,) [N].
+        """
         return margins(self.forces(squeeze), self.grasp.normals, self.grasp.frictions)
 
     def segment(self, reach: float = inf) -> Array:
         """(2, 3) ends of LS_B in wrench space, as values of w_1.
 
         An infinite end is cut off ``reach`` [N] beyond the finite one; beyond zero if both are infinite.
+
+        Args:
+            reach: how far to show an infinite side [N].
         """
         lo, hi = self.interval
+        if not (isinstance(reach, float) and reach == inf):
+            number(reach, "reach", least=0)
         if self.is_empty:
             raise Infeasible(f"the equilibrium locus of {', '.join(self.grasp.names)} is empty")
         start = lo if isfinite(lo) else (hi if isfinite(hi) else 0.0) - reach
@@ -105,15 +147,27 @@ class EquilibriumLocus(ArrayValue):
         return result
 
     def state(self, squeeze: float) -> GraspState:
-        """The state at a squeeze inside the interval; ``InvalidInput`` outside it."""
+        """The state at a squeeze inside the interval; ``InvalidInput`` outside it.
+
+        Args:
+            squeeze: inside the interval [N].
+        """
         lo, hi = self.interval
+        squeeze = number(squeeze, "squeeze")
         if not lo <= squeeze <= hi:
             where = "the locus is empty" if self.is_empty else f"the locus is [{lo:.9g}, {hi:.9g}]"
             raise InvalidInput(f"squeeze {squeeze!r} is not on the locus; {where}")
         return GraspState(self.grasp, self.load, self.forces(squeeze))
 
     def squeeze(self, state: GraspState) -> float:
-        """The squeeze of a state of this grasp [N]."""
+        """The squeeze of a state of this grasp [N].
+
+        Args:
+            state: a state of this grasp.
+        """
+        instance(state, "state", GraspState)
+        if state.grasp != self.grasp:
+            raise InvalidInput("state must be of the grasp of this locus, got one of other contacts")
         return float(state.forces[0] @ self.direction)
 
     @takes(LimitOptions)
@@ -122,7 +176,9 @@ class EquilibriumLocus(ArrayValue):
     ) -> ChosenState:
         """The best state on the locus for an objective, in closed form; see ``choose_state``.
 
-        options
+        Args:
+            objective: a word, an objective of one's own, or ``Criteria``.
+            options
         """
         criteria = criteria_of(objective, options)
         return ChosenState(self.grasp, self.load, criteria, best_forces(self.grasp, self.load, criteria))
@@ -138,9 +194,17 @@ class EquilibriumLocus(ArrayValue):
         return f"EquilibriumLocus of {names} under {self.load!r}: {span}"
 
 
+def is_one_point(grasp: Grasp) -> bool:
+    """Whether two planar contacts are at one point: the squeeze between them has no direction."""
+    x1, y1, x2, y2 = *grasp.contacts[0].plain[:2], *grasp.contacts[1].plain[:2]
+    largest = max(abs(x1), abs(y1), abs(x2), abs(y2))
+    return max(abs(x2 - x1), abs(y2 - y1)) <= ONE_POINT * largest
+
+
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
     criteria.demand_limit(grasp, load)
+    criteria.refuse_pressing("the closed form")
     code = criteria.objective.closed_form
     if code is None:
         raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use choose_state")

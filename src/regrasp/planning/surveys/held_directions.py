@@ -11,10 +11,9 @@ from math import atan2, degrees, pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 
@@ -29,12 +28,13 @@ _SAME = 1e-12
 class HeldDirections:
     """Directions of the load, a force through the centre of mass, in the object frame: a closed convex cone.
 
-    kind: ``empty``; a single ``direction``; a ``line``, two opposite directions and none between; an ``arc``
-    below pi; a ``half-plane``; ``everything``.
-    arc: (lo, hi) [rad], counter-clockwise from x, lo in [-pi, pi) and lo <= hi <= lo + 2 pi. Of a ``line``
-    only the two ends are held. None if ``empty``.
-
     Friction is used in full and forces have no limit.
+
+    Args:
+        kind: ``empty``; a single ``direction``; a ``line``, two opposite directions and none between; an
+            ``arc`` below pi; a ``half-plane``; ``everything``.
+        arc: (lo, hi) [rad], counter-clockwise from x, lo in [-pi, pi) and lo <= hi <= lo + 2 pi. Of a
+            ``line`` only the two ends are held. None if ``empty``.
     """
 
     kind: Kind
@@ -46,7 +46,11 @@ class HeldDirections:
         return 0.0 if self.arc is None or self.kind == "line" else self.arc[1] - self.arc[0]
 
     def contains(self, direction: ArrayLike | Wrench) -> bool:
-        """Whether a load in this direction, (2,) or a planar ``Wrench`` without torque, can be balanced."""
+        """Whether a load in this direction, (2,) or a planar ``Wrench`` without torque, can be balanced.
+
+        Args:
+            direction: (2,) object frame, of any length, or a planar ``Wrench`` without torque.
+        """
         if isinstance(direction, Wrench):
             if direction.dimension != 2 or direction.torque.any():
                 raise InvalidInput(
@@ -80,7 +84,11 @@ class HeldDirections:
 def held_directions(grasp: Grasp) -> HeldDirections:
     """The directions of a force through the centre of mass that planar contacts balance inside their cones.
 
-    Raises ``InvalidInput`` for a grasp in space.
+    Args:
+        grasp: planar contacts.
+
+    Raises:
+        InvalidInput: For a grasp in space.
     """
     if not isinstance(grasp, Grasp) or grasp.dimension != 2:
         raise InvalidInput(f"held directions are of a planar Grasp; in space use held_sphere; got {grasp!r}")

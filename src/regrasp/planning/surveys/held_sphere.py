@@ -12,10 +12,10 @@ from math import nan, pi, sqrt
 from typing import Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only, whole
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
@@ -27,6 +27,7 @@ from regrasp.planning.states.criteria import ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import LimitOptions, criteria_of, takes
 
+_MOST = 1_000_000  # directions
 COUNT = 400
 """Default number of directions."""
 
@@ -35,11 +36,16 @@ COUNT = 400
 class HeldSphere(ArrayValue):
     """What a grasp in space reaches under a force through the centre of mass, direction by direction.
 
-    magnitude: of the load [N]. directions: (m, 3), unit, of the load in the object frame. values: (m,) the
-    objective reached, units as for ``choose_state``; NaN where the load is not held. forces: (m, n, 3) of
-    those states [N], NaN where not held; (m, n, 4) with soft fingers, as in ``GraspState``.
-
     Sampled: between the directions nothing is said but by ``holds``, which decides for any one.
+
+    Args:
+        grasp: the n contacts.
+        magnitude: of the load [N].
+        criteria: objective and limits of the states.
+        directions: (m, 3), unit, of the load in the object frame.
+        values: (m,) the objective reached, units as for ``choose_state``; NaN where the load is not held.
+        forces: (m, n, 3) of those states [N], NaN where not held; (m, n, 4) with soft fingers, as in
+            ``GraspState``.
     """
 
     grasp: Grasp
@@ -82,7 +88,12 @@ class HeldSphere(ArrayValue):
         """A state that holds the load in a direction (3,), of any length but zero.
 
         The combination of the nearest sampled states where that is a state, else one that is chosen.
-        Raises ``Infeasible`` where the grasp holds no load in that direction.
+
+        Args:
+            direction: (3,) of the load, object frame, of any length but zero.
+
+        Raises:
+            Infeasible: Where the grasp holds no load in that direction.
         """
         load = self._load(direction)
         state = self._combined(load)
@@ -98,6 +109,9 @@ class HeldSphere(ArrayValue):
         """Whether the load in a direction (3,) is held: proven from the samples, or decided by solving.
 
         Friction less the reserve, and the force limits, count as they did for the samples.
+
+        Args:
+            direction: (3,) of the load, object frame, of any length but zero.
         """
         try:
             self.state(direction)
@@ -154,18 +168,25 @@ def held_sphere(
 ) -> HeldSphere:
     """What ``choose_state`` reaches for loads of one magnitude [N] in ``count`` directions, evenly spread.
 
-    The load is a force through the centre of mass. objective: as for ``choose_state``; ``angle`` and
-    ``friction_use`` take tens of programs for each direction.
-    options
-    Raises ``InvalidInput`` for a planar grasp, whose held directions are known exactly, and bad numbers.
+    The load is a force through the centre of mass.
+
+    Args:
+        grasp: contacts in space.
+        magnitude: of the load's force [N].
+        objective: as for ``choose_state``; ``angle`` and ``friction_use`` take tens of programs for each
+            direction.
+        count: how many directions.
+        options
+
+    Raises:
+        InvalidInput: For a planar grasp, whose held directions are known exactly, and bad numbers.
     """
     if not isinstance(grasp, Grasp) or grasp.dimension != 3:
         raise InvalidInput(
             f"a held sphere is of a Grasp in space; in the plane use held_directions; got {grasp!r}"
         )
     number(magnitude, "magnitude", above=0)
-    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-        raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
+    whole(count, "count", least=1, most=_MOST)
     criteria = criteria_of(objective, options)
     directions = even_directions(count)
     values, forces = np.full(count, nan), np.full((count, len(grasp), grasp.width), nan)

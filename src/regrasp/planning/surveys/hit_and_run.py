@@ -93,7 +93,7 @@ def _centre(grasp: Grasp, held: Array, basis: Array, limits: list[float], backen
             rows.at_least_zero(*of(normal, i, 1.0))
         below, offset = of(np.vstack([np.zeros(d), np.eye(d)]), i, 1.0)
         rows.second_order(below, offset + np.eye(d + 1)[0] * limits[i] / unit)
-    answer = solve(rows.program(-np.eye(k + 1)[-1]), backend, throw=False)
+    answer = solve(rows.program(-np.eye(k + 1)[-1], size=1.0), backend, throw=False)
     if not k or answer.status is not Status.SOLVED or answer.value[-1] < _THIN:
         raise InvalidInput(
             "the states fill no volume to draw from: the load is at the limit of what the cones and force "

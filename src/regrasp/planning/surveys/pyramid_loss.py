@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import check_facets, choose_state
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
@@ -18,14 +19,17 @@ if TYPE_CHECKING:
     import pandas
 
 
-@dataclass(frozen=True)
-class PyramidLosses:
+@dataclass(frozen=True, eq=False)
+class PyramidLosses(ArrayValue):
     """A value of ``choose_state`` with exact cones, and with inner pyramids of some numbers of facets.
 
-    exact: the objective reached with exact cones, as ``ChosenState.value`` [unit]. values: the same by number
-    of facets, measured at the state chosen inside the pyramids; NaN where these do not hold the load although
-    the cones do. dimension: of the grasp. In the plane two half-planes are the friction cone, so that facets
-    cost nothing there but for force limits and ``peak``, where they stand for the circle |f| = r.
+    Args:
+        objective: what the states were chosen for.
+        exact: the objective reached with exact cones, as ``ChosenState.value`` [unit].
+        values: the same by number of facets, measured at the state chosen inside the pyramids; NaN where
+            these do not hold the load although the cones do.
+        dimension: of the grasp. In the plane two half-planes are the friction cone, so that facets cost
+            nothing there but for force limits and ``peak``, where they stand for the circle |f| = r.
     """
 
     objective: Objective
@@ -79,12 +83,21 @@ def pyramid_losses(
 ) -> PyramidLosses:
     """The value of ``choose_state`` with exact cones and with inner pyramids of each number of ``facets``.
 
-    options
     All are chosen under the same force limits, those of the exact choice. A pyramid's first vertex lies along
     the first tangent, so that its loss depends on the frame; the exact value does not.
-    Raises ``Infeasible`` where exact cones do not hold the load, ``InvalidInput`` as ``choose_state`` does.
+
+    Args:
+        grasp: two contacts or more, in the plane or in space.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        objective: as for ``choose_state``.
+        facets: numbers of faces, each at least 3.
+        options
+
+    Raises:
+        Infeasible: Where exact cones do not hold the load.
+        InvalidInput: As ``choose_state`` does.
     """
-    if not isinstance(facets, Sequence) or isinstance(facets, str) or not facets:
+    if not isinstance(facets, Sequence) or isinstance(facets, (str, bytes)) or not facets:
         raise InvalidInput(f"facets must be whole numbers, such as (4, 8, 16), got {facets!r}")
     for m in facets:
         check_facets(m)

@@ -8,7 +8,7 @@ import numpy as np
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, number, read_only
+from regrasp.mechanics.checks import Array, instance, number, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
@@ -33,18 +33,20 @@ _LOAD = {"force x": "N", "force y": "N", "torque": "(N m)"}
 class Sensitivity(ArrayValue, Pictured):
     """How the best value of ``choose_state`` changes, per unit of each number of the grasp and the load.
 
-    state: the best state. value: its objective, margins measured within the friction that planning may use.
-    friction: (n,) per unit of mu_i; NaN where mu_i = 0, which can change to one side only.
-    position: (n,) per metre along the contact's tangent, the normal turned left by a right angle. The normal
-    stays as it is: along a boundary of curvature kappa, positive where convex, the value changes by
-    ``position`` - kappa ``normal`` (1 / R on a disc).
-    normal: (n,) per radian that the normal turns counter-clockwise.
-    limit: (n,) per newton of the contact's force limit, its own or ``max_force``; 0 where it does not bind,
-    NaN where none is given.
-    load: (3,) per newton, newton and newton metre of the load.
-
     Each is the value's unit (``angle`` [rad], ``effort`` [N^2], ``friction_use`` [-], others [N]) per the
     parameter's.
+
+    Args:
+        state: the best state.
+        value: its objective, margins measured within the friction that planning may use.
+        friction: (n,) per unit of mu_i; NaN where mu_i = 0, which can change to one side only.
+        position: (n,) per metre along the contact's tangent, the normal turned left by a right angle. The
+            normal stays as it is: along a boundary of curvature kappa, positive where convex, the value
+            changes by ``position`` - kappa ``normal`` (1 / R on a disc).
+        normal: (n,) per radian that the normal turns counter-clockwise.
+        limit: (n,) per newton of the contact's force limit, its own or ``max_force``; 0 where it does not
+            bind, NaN where none is given.
+        load: (3,) per newton, newton and newton metre of the load.
     """
 
     state: ChosenState
@@ -83,6 +85,9 @@ class Sensitivity(ArrayValue, Pictured):
         That fraction of the friction, the force limit and the magnitude of the load's force (of the
         largest finger force if it is zero); of the grasp's size along the tangent; of a radian. The load's
         torque changes as if its force moved by the grasp's size.
+
+        Args:
+            fraction: of friction, limits, sizes and a radian [-].
         """
         share = number(fraction, "fraction", above=0)
         n, size, criteria = len(self.grasp), self.grasp.size, self.state.criteria
@@ -97,7 +102,11 @@ class Sensitivity(ArrayValue, Pictured):
         }
 
     def effects(self, fraction: float = 0.01) -> dict[str, Array]:
-        """The change of the value, to first order, by each of ``steps(fraction)``; in the value's unit."""
+        """The change of the value, to first order, by each of ``steps(fraction)``; in the value's unit.
+
+        Args:
+            fraction: as of ``steps`` [-].
+        """
         return {name: step * getattr(self, name) for name, step in self.steps(fraction).items()}
 
     def to_dataframe(self) -> "pandas.DataFrame":
@@ -164,23 +173,32 @@ def sensitivity(
     """How much the best margin or the least effort changes per unit of friction, position, normal and load.
 
     The arguments are those of ``choose_state``, for planar grasps of two contacts or more.
-    options
-    By the envelope
-    theorem, from the duals of the programs that Clarabel solves (docs/sensitivity.md); a force limit set by
-    ``peak_ratio`` moves with the least peak force.
+
+    By the envelope theorem, from the duals of the programs that Clarabel solves (docs/sensitivity.md); a
+    force limit set by ``peak_ratio`` moves with the least peak force.
 
     Rates hold to first order. Where the constraints that decide change (two fingers equally near their limit
     by symmetry, say) the value has a kink: its rates differ to the two sides, the duals are not unique, and
     what is returned is a mixture. Nothing warns of it: where it matters, choose again after a small change.
 
-    Raises ``Infeasible`` when no forces hold the load, and ``InvalidInput`` for a grasp in space, a state
-    without forces and a ``peak_ratio`` of 1, which leaves nothing to choose; ``SolverFailed`` where there are
-    no duals, at the very limit of what can be held.
+    Args:
+        grasp: two planar contacts or more.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        objective: as for ``choose_state``.
+        options
+
+    Raises:
+        Infeasible: When no forces hold the load.
+        InvalidInput: For a grasp in space, a state without forces and a ``peak_ratio`` of 1, which leaves
+            nothing to choose.
+        SolverFailed: Where there are no duals, at the very limit of what can be held.
     """
+    instance(grasp, "grasp", Grasp)
     check_load(grasp, load)
     if grasp.dimension != 2:
         raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
     criteria = criteria_of(objective, options)
+    criteria.refuse_pressing("a sensitivity")
     if criteria.peak_ratio == 1:
         raise InvalidInput("peak_ratio must be greater than 1 for a sensitivity: 1 leaves nothing to choose")
     state = choose_state(grasp, load, criteria)

@@ -5,10 +5,9 @@ from functools import cached_property
 from math import inf
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, array, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, read_only, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.reserve import RESERVE
@@ -20,6 +19,8 @@ from regrasp.planning.states.criteria import PEAK_RATIO, ChosenState, Criteria
 from regrasp.planning.states.escape import infeasible, loose_twist
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.surveys.squeeze_basis import SqueezeBasis, squeeze_basis
+
+_MOST = 10_000_000  # states of a sample
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -34,9 +35,15 @@ class SqueezeLocus(ArrayValue):
     Contacts too many for one plane or line that holds them all also have forces across it, which no squeeze
     makes: one newton at a further contact, borne by the first ones.
 
-    max_force: a limit on every force besides the contacts' own [N], or None. Friction is used in full;
-    ``best`` keeps a reserve back. The locus is convex: a straight path between two of its states stays in it.
-    Raises ``InvalidInput`` for fewer than two contacts and for soft fingers.
+    Args:
+        grasp: two contacts or more, planar or in space.
+        load: external wrench on the object about its centre of mass, object frame [N, N m].
+        max_force: a limit on every force besides the contacts' own [N], or None. Friction is used in full;
+            ``best`` keeps a reserve back. The locus is convex: a straight path between two of its states
+            stays in it.
+
+    Raises:
+        InvalidInput: For fewer than two contacts and for soft fingers.
     """
 
     grasp: Grasp
@@ -100,8 +107,12 @@ class SqueezeLocus(ArrayValue):
         return read_only(f.reshape(len(self.grasp), -1))
 
     def forces(self, squeezes: ArrayLike) -> Array:
-        """Forces (..., n, d) at squeezes (..., k) [N]; in equilibrium for any squeezes."""
-        x = np.asarray(squeezes, dtype=float)
+        """Forces (..., n, d) at squeezes (..., k) [N]; in equilibrium for any squeezes.
+
+        Args:
+            squeezes: (..., k) coordinates [N].
+        """
+        x = finite(squeezes, "squeezes")
         if x.ndim == 0 or x.shape[-1] != self.dimension:
             raise InvalidInput(
                 f"squeezes must have {self.dimension} numbers ({', '.join(self.coordinates)}), got {x.shape}"
@@ -113,8 +124,11 @@ class SqueezeLocus(ArrayValue):
         """Squeezes (..., k) of forces (..., n, d) in equilibrium, or of a state of this grasp [N].
 
         Of other forces, those of the nearest ones in equilibrium.
+
+        Args:
+            forces: (..., n, d) object frame [N], or a state of this grasp.
         """
-        f = forces.forces if isinstance(forces, GraspState) else np.asarray(forces, dtype=float)
+        f = forces.forces if isinstance(forces, GraspState) else finite(forces, "forces")
         if f.shape[-2:] != self.grasp.positions.shape:
             raise InvalidInput(f"forces must have shape (..., {len(self.grasp)}, {self.grasp.dimension})")
         result: Array = np.tensordot(f, self._readings, axes=((-2, -1), (1, 2)))
@@ -164,8 +178,11 @@ class SqueezeLocus(ArrayValue):
         """Whether squeezes (k,), forces (n, d) or a state of this grasp belong to the locus.
 
         Judged to rounding: equilibrium to 1e-13 of the largest force, cones to 2^-50 of each.
+
+        Args:
+            point: squeezes (k,) [N], forces (n, d) [N] or a state of this grasp.
         """
-        given = point.forces if isinstance(point, GraspState) else array(point, "point", np.shape(point))
+        given = point.forces if isinstance(point, GraspState) else finite(point, "point")
         if given.ndim == 1 and self.why is not None and loose_twist(self.grasp, self.load) is not None:
             return False
         forces = self.forces(given) if given.ndim == 1 else given
@@ -174,7 +191,11 @@ class SqueezeLocus(ArrayValue):
         return state.is_balanced(reserve=0.0) and bool((state.magnitudes <= limits).all())
 
     def state(self, squeezes: ArrayLike) -> GraspState:
-        """The state at squeezes (k,) on the locus; ``InvalidInput`` outside it."""
+        """The state at squeezes (k,) on the locus; ``InvalidInput`` outside it.
+
+        Args:
+            squeezes: (k,) on the locus [N].
+        """
         x = array(squeezes, "squeezes", (self.dimension,))
         if not self.contains(x):
             why = "" if self.why is None else f": {self.why}"
@@ -182,7 +203,11 @@ class SqueezeLocus(ArrayValue):
         return GraspState(self.grasp, self.load, self.forces(x))
 
     def margins(self, squeezes: ArrayLike) -> Margins:
-        """Margins (..., n) of every contact at squeezes (..., k)."""
+        """Margins (..., n) of every contact at squeezes (..., k).
+
+        Args:
+            squeezes: (..., k) coordinates [N].
+        """
         return margins(self.forces(squeezes), self.grasp.normals, self.grasp.frictions)
 
     def best(
@@ -192,7 +217,14 @@ class SqueezeLocus(ArrayValue):
         peak_ratio: float = PEAK_RATIO,
         reserve: float = RESERVE,
     ) -> ChosenState:
-        """The best state on the locus for an objective; see ``choose_state``."""
+        """The best state on the locus for an objective; see ``choose_state``.
+
+        Args:
+            objective: a word, or an objective of one's own.
+            peak_ratio: where a contact has no limit, this multiple of the least peak force limits every force
+                [-].
+            reserve: fraction of every friction coefficient that is kept back [-].
+        """
         return choose_state(
             self.grasp,
             self.load,
@@ -205,14 +237,23 @@ class SqueezeLocus(ArrayValue):
     def sample(self, count: int, seed: int = 0, *, peak_ratio: float = PEAK_RATIO) -> Array:
         """(count, n, d) forces of random states spread evenly over the locus, each by a walk of its own [N].
 
-        Where a contact has no limit, all forces are kept below ``peak_ratio`` times the least peak force
-        that holds the load, as in ``choose_state``. ``squeezes`` of the result are points to draw.
-        Raises ``Infeasible`` for an empty locus, ``InvalidInput`` for one without volume.
+        Where a contact has no limit, all forces are kept below ``peak_ratio`` times the least peak force that
+        holds the load, as in ``choose_state``. ``squeezes`` of the result are points to draw.
+
+        Args:
+            count: how many states.
+            seed: of the random choice; the same seed, the same choice.
+            peak_ratio: where a contact has no limit, this multiple of the least peak force limits every force
+                [-].
+
+        Raises:
+            Infeasible: For an empty locus.
+            InvalidInput: For one without volume.
         """
         from regrasp.planning.surveys.hit_and_run import walked
 
-        if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-            raise InvalidInput(f"count must be a whole number of at least 1, got {count!r}")
+        whole(count, "count", least=1, most=_MOST)
+        whole(seed, "seed", least=0)
         if isinstance(self._some, Infeasible):
             raise self._some
         criteria = self._criteria("force", peak_ratio)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.plots.escapes.space_escape import draw_escape
 from regrasp.plots.escapes.words import (
@@ -52,10 +52,17 @@ def plot_escape(twist: EscapeTwist, ax: Axes | None = None, *, mesh: Any = None,
 
     In space a dash-dotted green line is the screw axis, with the sense of the turn; thin lines are the ways
     of the contacts, and thin edges the object a little later. The title gives the pitch.
-    mesh: the object of a grasp in space, as for ``plot_state``.
 
-    Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
+    Args:
+        twist: the certificate of ``Infeasible``.
+        ax: the axes to draw on; new ones if not given.
+        mesh: the object of a grasp in space, as for ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
+    instance(twist, "twist", EscapeTwist)
     triangles = surface_of(mesh, twist.grasp)
     if twist.grasp.dimension == 3:
         drawn: Axes = draw_escape(twist, ax, mesh=triangles, units=units)

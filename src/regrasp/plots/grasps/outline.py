@@ -7,9 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike, instance
 from regrasp.outline.outline import Outline
 from regrasp.plots.look.style import (
     GREY,
@@ -38,8 +37,13 @@ def plot_outline(
 ) -> Axes:
     """The material, its holes, its centre of mass at the origin, and the arc length in round steps outside.
 
-    arc_lengths: (m,) of candidate contacts [m], drawn as dots with their inward normals.
+    Args:
+        outline: the shape to draw.
+        ax: the axes to draw on; new ones if not given.
+        arc_lengths: (m,) of candidate contacts [m], drawn as dots with their inward normals.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(outline, "outline", Outline)
     outer = outline.polygon()
     size = float(np.ptp(outer, axis=0).max())
     outer, holes = outline.polygon(_DETAIL * size), outline.hole_polygons(_DETAIL * size)

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.plans.transition import Transition
@@ -55,13 +56,21 @@ def plot_state(
     In space the axes are 3-D, at one scale along x, y and z, and the object is its ``mesh``, translucent, for
     the arrows lie inside it.
 
-    force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's extent.
-    colours: of the contacts by name; by their place in the grasp if not given.
-    absent: names of contacts whose finger is not there in this state: an open circle marks the place.
-    mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the object
-    frame with the centre of mass at the origin.
-    Raises ``InvalidInput`` for flat axes and a grasp in space, and for a mesh and a planar grasp.
+    Args:
+        state: the state to draw.
+        ax: the axes to draw on; new ones if not given.
+        force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's
+            extent.
+        colours: of the contacts by name; by their place in the grasp if not given.
+        absent: names of contacts whose finger is not there in this state: an open circle marks the place.
+        mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the
+            object frame with the centre of mass at the origin.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For flat axes and a grasp in space, and for a mesh and a planar grasp.
     """
+    instance(state, "state", GraspState)
     triangles = surface_of(mesh, state.grasp)
     colours = contact_colours(state.grasp) if colours is None else colours
     scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
@@ -94,7 +103,15 @@ def plot_transition(
     """The forces at both states of a transition and the path of each force head between them (Fig. 10).
 
     Drawn as by ``plot_state``: solid arrows are the forces at the start, open ones those at the end.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        force_scale: length of a unit force [m/N]; chosen if not given.
+        mesh: the object of a grasp in space, as for ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     triangles = surface_of(mesh, transition.grasp)
     colours = contact_colours(transition.grasp)
     scale = force_scale

@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch
 from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
-from numpy.typing import ArrayLike
+
+from regrasp.mechanics.checks import ArrayLike
 
 _LOOK: dict[str, Any] = {
     "arrowstyle": "-|>,head_length=0.5,head_width=0.2",

@@ -3,9 +3,8 @@
 from math import cos, radians, sin
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 
 # Other directions that are tried, from the one wanted [deg].
 _ASIDE = (0, 35, -35, 70, -70, 110, -110, 150, -150)

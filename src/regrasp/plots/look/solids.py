@@ -3,10 +3,10 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 
 Triangles = tuple[Array, NDArray[np.intp]]
 """Vertices (v, 3) [m], object frame, and faces (f, 3), rows of vertices."""

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import ArrayLike
 from regrasp.plots.look.style import SMALL, label_axis, new_figure
 from regrasp.plots.look.units import Units
 from regrasp.plots.look.view import projection

@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter
-from numpy.typing import ArrayLike
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import ArrayLike, instance
 from regrasp.mechanics.grasp import Grasp
 
 # Okabe and Ito, "Color Universal Design", 2008; yellow, too pale for a line, is left out.
@@ -35,7 +35,12 @@ Colours = Mapping[str, str]
 
 
 def contact_colours(grasp: Grasp) -> dict[str, str]:
-    """A colour for each contact, by its place in the grasp; a seventh contact begins the palette again."""
+    """A colour for each contact, by its place in the grasp; a seventh contact begins the palette again.
+
+    Args:
+        grasp: whose contacts are to be told apart.
+    """
+    instance(grasp, "grasp", Grasp)
     return dict(zip(grasp.names, cycle(PALETTE), strict=False))
 
 

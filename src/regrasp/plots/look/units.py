@@ -8,6 +8,11 @@ class Units(NamedTuple):
 
     Nothing is converted: with contacts in millimetres and forces in newtons, ``Units("mm", "N")`` makes the
     labels say so, torques in N mm. Units must be consistent, as everywhere in regrasp.
+
+    Args:
+        length: such as mm.
+        force: such as kN.
+        time: such as ms.
     """
 
     length: str = "m"
@@ -15,7 +20,11 @@ class Units(NamedTuple):
     time: str = "s"
 
     def of(self, unit: str) -> str:
-        """The unit of an objective, given in terms of N, by these names."""
+        """The unit of an objective, given in terms of N, by these names.
+
+        Args:
+            unit: in terms of N, such as N^2.
+        """
         return {"N": self.force, "N^2": rf"{self.force}$^2$"}.get(unit, unit)
 
     @property

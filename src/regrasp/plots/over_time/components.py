@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import INK, PALETTE, axes_or_new, contact_colours, label_axis, legend, literal
 from regrasp.plots.look.units import SI, Units
@@ -17,7 +17,14 @@ _DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 
 
 def plot_force_components(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """f_x, f_y and in space f_z of every finger: a colour for each finger, a dash for each component."""
+    """f_x, f_y and in space f_z of every finger: a colour for each finger, a dash for each component.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     forces = transition.forces(t)
@@ -47,9 +54,18 @@ def plot_wrench_components(
 ) -> Axes:
     """The wrench of one finger about the centre of mass over time: forces, and torques dashed on the right.
 
-    Six lines in space, three in the plane; a colour for each axis. Raises ``InvalidInput`` for an unknown
-    contact.
+    Six lines in space, three in the plane; a colour for each axis.
+
+    Args:
+        transition: the transition to draw.
+        contact: name or index of the finger.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For an unknown contact.
     """
+    instance(transition, "transition", Transition)
     i = transition.grasp.index(contact)
     ax = axes_or_new(ax)
     t, d = _times(transition), transition.grasp.dimension

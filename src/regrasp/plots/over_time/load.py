@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
@@ -17,8 +18,17 @@ _SAMPLES = 201
 def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """External force and torque on the object over time, in the object frame; dots where it is given.
 
-    The torque has its own axis on the right. Raises ``InvalidInput`` where the load is constant.
+    The torque has its own axis on the right.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: Where the load is constant.
     """
+    instance(transition, "transition", Transition)
     if not transition.load_varies:
         raise InvalidInput("the load of this path is constant; there is nothing to draw over time")
     course = transition.course

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from regrasp.mechanics.checks import Array, choice
+from regrasp.mechanics.checks import Array, choice, instance
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import GREY, INK, axes_or_new, contact_colours, label_axis, legend, literal
 from regrasp.plots.look.units import SI, Units
@@ -12,7 +12,14 @@ _SAMPLES = 201
 
 
 def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """|f_i(t)| of every finger (Fig. 9a)."""
+    """|f_i(t)| of every finger (Fig. 9a).
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
@@ -26,7 +33,13 @@ def plot_angles(transition: Transition, ax: Axes | None = None, *, units: Units 
     """The angle between f_i(t) and the normal n_i, below the limit atan(mu_i) of its cone (Fig. 9b).
 
     A limit that all contacts share is one grey line. A finger without force has no angle there.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
     t = _times(transition)
     limits = np.array([contact.half_angle for contact in transition.grasp])
@@ -53,7 +66,14 @@ def plot_margins(
 
     The dashed line is the least margin at both ends, or at any instant of a path through instants: no margin
     falls below it in between (fact 1).
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        objective: ``angle`` or ``force``.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     choice(objective, "objective", ("angle", "force"))
     ax = axes_or_new(ax)
     t = _times(transition)

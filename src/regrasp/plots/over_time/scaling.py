@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from regrasp.mechanics.checks import instance
 from regrasp.plans.timing import TimeScaling
 from regrasp.plots.look.style import GREY, PALETTE, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
@@ -13,7 +14,15 @@ _SAMPLES = 201
 def plot_scaling(
     scaling: TimeScaling, ax: Axes | None = None, *, control: bool = False, units: Units = SI
 ) -> Axes:
-    """T(t) over the duration (Fig. 8), with its control values if ``control``."""
+    """T(t) over the duration (Fig. 8), with its control values if ``control``.
+
+    Args:
+        scaling: the time function to draw.
+        ax: the axes to draw on; new ones if not given.
+        control: whether to draw its control values.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(scaling, "scaling", TimeScaling)
     ax = axes_or_new(ax)
     t = np.linspace(0, scaling.duration, _SAMPLES)
     ax.plot(t, scaling(t), color=PALETTE[0], linewidth=1.4, label="$T(t)$")

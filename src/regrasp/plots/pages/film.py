@@ -43,10 +43,18 @@ def animate(
     Forces are those of the fingers on the object, with their tails at the contacts. A dashed ring is a finger
     in the air; its way between two contact points is only suggested and takes ``move_time`` [s], which no
     plan says. Time runs as in the plan.
-    outline: in space the solid, as for ``plot_regrasp``. Without it the hull of all contacts stands for the
-    object.
-    path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
-    Raises ``InvalidInput`` for another ending and for MP4 without ffmpeg.
+
+    Args:
+        plan: a ``RegraspPlan`` or a ``Transition``.
+        outline: in space the solid, as for ``plot_regrasp``. Without it the hull of all contacts stands for
+            the object.
+        path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
+        frames_per_second: [1/s].
+        move_time: how long a finger is in the air [s].
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For another ending and for MP4 without ffmpeg.
     """
     target = Path(path)
     ending = target.suffix.lower()

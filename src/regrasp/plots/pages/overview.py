@@ -4,6 +4,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from regrasp.mechanics.checks import instance
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plans.transition import Transition
 from regrasp.plots.grasps.state import force_scale_of, plot_state, plot_transition
@@ -32,8 +33,12 @@ from regrasp.plots.wrench_space.wrench_loop import plot_wrench_loop, plot_wrench
 def transition_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
     """The object with its force paths, magnitudes, angles and T(t), or the load if it varies, two by two.
 
-    mesh: the object of a grasp in space, as for ``plot_state``.
+    Args:
+        transition: the transition to draw.
+        mesh: the object of a grasp in space, as for ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
     ax = _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition)
@@ -60,7 +65,12 @@ def _panel(
 
 
 def transition_png(transition: Transition) -> bytes:
-    """``transition_figure`` as a PNG image, for display in notebooks."""
+    """``transition_figure`` as a PNG image, for display in notebooks.
+
+    Args:
+        transition: the transition to draw.
+    """
+    instance(transition, "transition", Transition)
     return png(transition_figure(transition))
 
 
@@ -70,8 +80,13 @@ def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> d
     ``overview``, ``states``, ``object``, ``time_scaling``, ``magnitudes``, ``angles``, ``margins``; ``load``
     where it varies. In the plane, of a removal or an addition, ``iso_torque``, ``wrench_loop``,
     ``wrench_paths``, and ``locus`` where two contacts remain; in space ``components`` and ``wrenches``.
-    mesh: the object of a grasp in space, as for ``plot_state``.
+
+    Args:
+        transition: the transition to draw.
+        mesh: the object of a grasp in space, as for ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     drawn: dict[str, Any] = {
         "overview": transition_figure(transition, mesh=mesh, units=units),
         "states": states_figure(transition, mesh=mesh, units=units),
@@ -114,7 +129,14 @@ def _of_one_finger(transition: Transition, moves: str, units: Units) -> dict[str
 
 
 def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
-    """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not."""
+    """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not.
+
+    Args:
+        transition: the transition to draw.
+        mesh: the object of a grasp in space, as for ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 3.4)
     grid = figure.add_gridspec(1, 2)
     if transition.grasp.dimension == 3:
@@ -132,7 +154,13 @@ def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI
 
 
 def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
-    """The wrench of every finger about the centre of mass over time, a panel for each."""
+    """The wrench of every finger about the centre of mass over time, a panel for each.
+
+    Args:
+        transition: the transition to draw.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(transition, "transition", Transition)
     columns = min(2, len(transition.grasp))
     rows = -(-len(transition.grasp) // columns)
     figure = new_figure(WIDTH * columns, 2.4 * rows)
@@ -142,7 +170,13 @@ def wrenches_figure(transition: Transition, *, units: Units = SI) -> Figure:
 
 
 def iso_torque_figure(transition: Transition, *, units: Units = SI) -> Figure:
-    """Iso-torque lines of every contact, with its forces at the state of all fingers (Fig. 2)."""
+    """Iso-torque lines of every contact, with its forces at the state of all fingers (Fig. 2).
+
+    Args:
+        transition: the transition to draw.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(transition, "transition", Transition)
     refuse_space(transition.grasp.dimension)
     state = transition.start if transition.leaving else transition.end
     colours = contact_colours(state.grasp)

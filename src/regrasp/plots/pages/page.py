@@ -48,11 +48,17 @@ def html(
 
     The page holds all it needs (about 5 MB) and opens without a network; drag to turn, scroll to come nearer.
     Of the load its force is drawn, not its torque.
-    path: where to write it, whole or not at all; returned. Without a path the text is returned.
-    mesh: the object, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), as for ``plot_state``.
 
-    Raises ``InvalidInput`` for a planar grasp and a path that cannot be written, ``ImportError`` without
-    plotly, the extra ``regrasp[html]``.
+    Args:
+        value: a state or a transition in space.
+        path: where to write it, whole or not at all; returned. Without a path the text is returned.
+        mesh: the object, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), as for
+            ``plot_state``.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For a planar grasp and a path that cannot be written.
+        ImportError: Without plotly, the extra ``regrasp[html]``.
     """
     if not isinstance(value, (GraspState, Transition)):
         raise InvalidInput(

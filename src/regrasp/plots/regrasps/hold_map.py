@@ -8,7 +8,7 @@ from matplotlib.colors import ListedColormap
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import HoldGraph
@@ -35,11 +35,17 @@ def plot_hold_map(
 ) -> Axes:
     """Margins of all two-finger holds: the place of one finger against that of the other along the outline.
 
-    graph: whose contacts lie on the outline. o: the place of one orientation in ``graph.angles``; by default
-    the best margin over all of them is shown. Grey: no hold; white: not sampled, as near corners.
-    plan: its holds, drawn as a path from the square to the disc. An exchange is a line along one axis:
-    the other finger stays. It moves through the air, so what the line crosses means nothing.
+    Args:
+        graph: whose contacts lie on the outline.
+        outline: the outline whose boundary the contacts lie on.
+        o: the place of one orientation in ``graph.angles``; by default the best margin over all of them is
+            shown. Grey: no hold; white: not sampled, as near corners.
+        ax: the axes to draw on; new ones if not given.
+        plan: its holds, drawn as a path from the square to the disc. An exchange is a line along one axis:
+            the other finger stays. It moves through the air, so what the line crosses means nothing.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(graph, "graph", HoldGraph)
     if o is not None and not -len(graph.angles) <= o < len(graph.angles):
         raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {o!r}")
     places = np.array([_place(outline, contact) for contact in graph.contacts])

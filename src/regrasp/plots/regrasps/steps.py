@@ -47,9 +47,14 @@ def plot_regrasp(plan: RegraspPlan, outline: Outline | Any = None, *, units: Uni
     during it. A filled finger pushes: arrows are its force on the object, all at one scale; black is the
     load. In space a dashed arrow is the move of a finger before the step, and a thin line the axis of a turn.
 
-    outline: in space the solid, anything with ``surface()`` or (vertices (v, 3), faces (f, 3)).
-    Without it the hull of all contacts stands for the object.
-    Raises ``InvalidInput`` for anything else.
+    Args:
+        plan: the regrasp to draw.
+        outline: in space the solid, anything with ``surface()`` or (vertices (v, 3), faces (f, 3)). Without
+            it the hull of all contacts stands for the object.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For anything else.
     """
     if not isinstance(plan, RegraspPlan):
         raise InvalidInput(f"plan must be a RegraspPlan, got {type(plan).__name__}; see plot_transition")

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import items
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plots.look.style import INK, PALETTE, TEXT, axes_or_new, note, short
 
@@ -16,12 +17,14 @@ def plot_trade_off(plans: Sequence[RegraspPlan], ax: Axes | None = None) -> Axes
 
     Each disc is a plan: its finger moves, the least angle margin of its holds, and beside it that margin
     and its steps. Between two discs a further move buys nothing, so the line is level.
+
+    Args:
+        plans: of ``plan_regrasps``, by rising number of moves.
+        ax: the axes to draw on; new ones if not given.
     """
-    if (
-        isinstance(plans, RegraspPlan)
-        or not plans
-        or not all(isinstance(plan, RegraspPlan) for plan in plans)
-    ):
+    plans = items(plans, "plans")
+    given = () if isinstance(plans, RegraspPlan) else items(plans, "plans")
+    if not given or not all(isinstance(plan, RegraspPlan) for plan in given):
         raise InvalidInput(f"plans must be RegraspPlans, as plan_regrasps gives them, got {plans!r}")
     ordered = sorted(plans, key=lambda plan: (len(plan.moves), plan.margin))
     moves = [len(plan.moves) for plan in ordered]

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
 from regrasp.errors import Infeasible, InvalidInput
-from regrasp.mechanics.checks import Array, choice, number
+from regrasp.mechanics.checks import Array, choice, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_state
@@ -33,8 +33,18 @@ def plot_directions(
 
     Shaded: the directions held at all, exact (``held_directions``). Line: the margin of the state
     chosen for each of them under a load of ``load_size`` [N], as ``choose_state`` does by default.
-    objective: ``angle`` [deg] or ``force`` [N]. ax: polar. Raises ``InvalidInput`` for a grasp in space.
+
+    Args:
+        grasp: planar contacts.
+        load_size: magnitude of the load [N].
+        ax: polar.
+        objective: ``angle`` [deg] or ``force`` [N].
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For a grasp in space.
     """
+    instance(grasp, "grasp", Grasp)
     refuse_space(grasp.dimension)
     choice(objective, "objective", ("angle", "force"))
     number(load_size, "load_size", above=0)

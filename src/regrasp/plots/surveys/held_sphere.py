@@ -8,10 +8,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.plots.grasps.space_body import RIM, write
 from regrasp.plots.look.arrows import arrow3d
 from regrasp.plots.look.space_axes import in_space
@@ -29,11 +29,14 @@ def plot_load_sphere(
 ) -> Any:
     """A sphere of load directions in the object frame, each patch coloured like the direction nearest to it.
 
-    directions: (m, 3), not zero, of any length; between them nothing is known, so sample them evenly.
-    values: (m,) margins, NaN where the load is not held; or booleans, held or not.
-    label: of the colour bar, with the unit. Loads that are not held are pale, and hatched on the map.
-    ax: 3-D. The back is hidden: ``plot_load_map`` shows all, ``load_sphere_figure`` both side by side.
-    Raises ``InvalidInput`` for other shapes and flat axes.
+    Args:
+        directions: (m, 3), not zero, of any length; between them nothing is known, so sample them evenly.
+        values: (m,) margins, NaN where the load is not held; or booleans, held or not.
+        ax: 3-D. The back is hidden: ``plot_load_map`` shows all, ``load_sphere_figure`` both side by side.
+        label: of the colour bar, with the unit. Loads that are not held are pale, and hatched on the map.
+
+    Raises:
+        InvalidInput: For other shapes and flat axes.
     """
     known = _known(directions, values)
     if ax is None:
@@ -56,7 +59,13 @@ def plot_load_map(
     """All load directions on one equal-area map (Hammer's); as ``plot_load_sphere``.
 
     Longitude is the angle about z from x, latitude the angle from the xy plane, up to z. Black dots are the
-    directions given, where they are few enough to see. ax: with ``projection="hammer"`` or another map.
+    directions given, where they are few enough to see.
+
+    Args:
+        directions: (m, 3) directions of the load, object frame, of any length but zero.
+        values: (m,) of each, NaN where the load is not held.
+        ax: with ``projection="hammer"`` or another map.
+        label: the words beside it.
     """
     known = _known(directions, values)
     if ax is None:
@@ -74,7 +83,13 @@ def plot_load_map(
 def load_sphere_figure(
     directions: ArrayLike, values: ArrayLike, *, label: str = "least angle margin [deg]"
 ) -> Figure:
-    """``plot_load_sphere`` and ``plot_load_map`` side by side under one scale of colours."""
+    """``plot_load_sphere`` and ``plot_load_map`` side by side under one scale of colours.
+
+    Args:
+        directions: (m, 3) directions of the load, object frame, of any length but zero.
+        values: (m,) of each, NaN where the load is not held.
+        label: the words beside it.
+    """
     known = _known(directions, values)
     figure = new_figure(2 * WIDTH, 2.7)
     figure.set_layout_engine("none")

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.planning.surveys.sensitivity import Sensitivity
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import (
@@ -33,7 +33,13 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
 
     A bar per contact for its friction, its place along the boundary's tangent, its normal and its force
     limit, where one is given; below them the load's force and torque. Angles are in degrees.
+
+    Args:
+        sensitivity: what ``regrasp.sensitivity`` found.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(sensitivity, "sensitivity", Sensitivity)
     steps, effects = sensitivity.steps(), sensitivity.effects()
     degrees = sensitivity.unit == "rad"
     factor, unit = (np.degrees(1.0), "deg") if degrees else (1.0, units.of(sensitivity.unit))

@@ -6,9 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Wedge
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike
 
-from regrasp.mechanics.checks import Array, array
+from regrasp.mechanics.checks import Array, ArrayLike, array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, iso_torque_line
 from regrasp.plots.look.arrows import arrow
@@ -43,10 +42,18 @@ def plot_iso_torque(
     inside the friction cone. The distance d_i to the contact is marked for the line of ``force``, or for the
     outermost one.
 
-    torques: of the lines [N m]; round values over the friction cone by default.
-    force: (2,) a force at the contact to draw with its line [N].
-    Raises ``InvalidInput`` for a contact in space and for one at the centre of mass, which makes no torque.
+    Args:
+        contact: a planar contact, not at the centre of mass.
+        ax: the axes to draw on; new ones if not given.
+        torques: of the lines [N m]; round values over the friction cone by default.
+        force: (2,) a force at the contact to draw with its line [N].
+        colour: of Matplotlib.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For a contact in space and for one at the centre of mass, which makes no torque.
     """
+    instance(contact, "contact", Contact)
     refuse_space(contact.dimension)
     ax = axes_or_new(ax, height=3.0)
     shown = None if force is None else array(force, "force", (2,))

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from regrasp.errors import Infeasible
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.objectives import Objective, objective_of
 from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -45,10 +45,20 @@ def plot_locus(
     ``chosen``, a state of the two contacts to mark. The curves go on a little beyond the ends, where
     margins are negative. Where a force exceeds its limit the locus is hatched.
 
-    force_limits: (2,) [N], infinite for none. By default those that ``chosen`` was chosen under, where it
-    records them as ``locus.best`` does; else the contacts' own.
-    Raises ``Infeasible`` for an empty locus.
+    Args:
+        locus: of two planar contacts.
+        ax: the axes to draw on; new ones if not given.
+        objective: a word, or an objective with a value per contact.
+        chosen: a state of the two contacts to mark; none if not given.
+        colours: of the contacts by name; by their place in the grasp if not given.
+        force_limits: (2,) [N], infinite for none. By default those that ``chosen`` was chosen under, where it
+            records them as ``locus.best`` does; else the contacts' own.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        Infeasible: For an empty locus.
     """
+    instance(locus, "locus", EquilibriumLocus)
     sought = objective_of(objective)
     if locus.is_empty:
         raise Infeasible(f"the equilibrium locus of {', '.join(locus.grasp.names)} is empty: nothing to draw")

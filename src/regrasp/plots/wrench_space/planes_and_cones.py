@@ -11,7 +11,7 @@ import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from regrasp.errors import Infeasible
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.wrench_space import WrenchCone, WrenchPlane
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plots.look.space_axes import boxed
@@ -55,7 +55,16 @@ def plot_wrench_plane(
     colour: str = PALETTE[0],
     units: Units = SI,
 ) -> Any:
-    """Pi_i: wrenches of all forces at a contact, shown for |f_x|, |f_y| up to ``reach`` [N] (Fig. 3)."""
+    """Pi_i: wrenches of all forces at a contact, shown for |f_x|, |f_y| up to ``reach`` [N] (Fig. 3).
+
+    Args:
+        plane: the plane to draw.
+        ax: the axes to draw on; new ones if not given.
+        reach: largest force shown [N].
+        colour: of Matplotlib.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(plane, "plane", WrenchPlane)
     corners = plane.wrench(reach * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]))
     ax = wrench_axes(ax, [corners])
     _surface(ax, corners, colour, 0.1, gid=f"plane {plane.contact.name}")
@@ -73,8 +82,15 @@ def plot_wrench_cone(
 ) -> Any:
     """S Pi_i, a flat sector of the plane Pi_i from its apex, for forces up to ``reach`` [N] (Fig. 3-5).
 
-    shadow: draw the friction cone C_i too, the sector's projection along tau onto the plane of the apex.
+    Args:
+        cone: the cone to draw.
+        ax: the axes to draw on; new ones if not given.
+        reach: largest force shown [N].
+        colour: of Matplotlib.
+        shadow: draw the friction cone C_i too, the sector's projection along tau onto the plane of the apex.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(cone, "cone", WrenchCone)
     corners = cone_corners(cone, reach)
     ax = wrench_axes(ax, [corners])
     _surface(ax, corners, colour, 0.22, gid=f"cone {cone.contact.name}")
@@ -98,8 +114,19 @@ def plot_locus_segment(
 
     With the wrenches of other fingers added to the load of the locus it is LS_A (Fig. 6). An infinite side is
     cut off as in ``plot_locus``.
-    Raises ``Infeasible`` for an empty locus.
+
+    Args:
+        locus: of two planar contacts.
+        ax: the axes to draw on; new ones if not given.
+        chosen: a state of the two contacts to mark; none if not given.
+        label: the words beside it.
+        colour: of Matplotlib.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        Infeasible: For an empty locus.
     """
+    instance(locus, "locus", EquilibriumLocus)
     if locus.is_empty:
         raise Infeasible(f"the equilibrium locus of {', '.join(locus.grasp.names)} is empty: nothing to draw")
     ax = wrench_axes(ax)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench_space import WrenchLoop
@@ -41,11 +41,18 @@ def plot_wrench_loop(
     The last cone of the loop is inverted and starts at the origin, where its wrench ends. Cones are cut off
     a little beyond their forces. Two contacts meet in LS_B, drawn bold (Fig. 5).
 
-    order: of the contacts after the load; as in the grasp by default.
-    colours: of the contacts by name; by their place in the grasp if not given.
-    New axes are seen from where no surface is edge-on; axes that are given keep their view.
-    Raises ``InvalidInput`` for a grasp in space.
+    Args:
+        state: the planar state to draw.
+        ax: the axes to draw on; new ones if not given.
+        order: of the contacts after the load; as in the grasp by default.
+        colours: of the contacts by name; by their place in the grasp if not given. New axes are seen from
+            where no surface is edge-on; axes that are given keep their view.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For a grasp in space.
     """
+    instance(state, "state", GraspState)
     refuse_space(state.grasp.dimension)
     colours = contact_colours(state.grasp) if colours is None else colours
     loop = WrenchLoop(state, order)
@@ -66,7 +73,13 @@ def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = 
     next to last in the loop; thin lines show its wrench on the way, keeping its direction while it grows or
     shrinks, and the bold translucent lines are the paths of the others: of the heads of their wrenches, and
     for the last one, which ends at the origin, of its tail. Two other contacts show their LS_B.
+
+    Args:
+        transition: the transition to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
     """
+    instance(transition, "transition", Transition)
     grasp = transition.grasp
     refuse_space(grasp.dimension)
     colours = contact_colours(grasp)

@@ -1,0 +1,128 @@
+"""Verdicts near the edge of what a grasp holds: states inside, proofs outside, and what is neither.
+
+    python benchmarks/edges.py 10000 -o DIR    so many grasps, each under 18 loads; the same line goes on
+    python benchmarks/edges.py --table -o DIR  the table of what DIR holds
+
+Grasps are made with their edge (``boundary``), so that the place of every load follows from the construction.
+In the plane without limits it is decided again by membership in rational arithmetic, and certificates and
+states are judged so everywhere (``exact_judge``).
+"""
+
+import argparse
+import json
+from collections import Counter
+from math import inf
+from pathlib import Path
+
+import numpy as np
+
+import regrasp as rg
+from boundary import KINDS, boundary
+from exact_judge import is_escape, is_held, state_faults
+
+CHUNK = 50
+OBJECTIVES = ("effort", "angle", "peak", "force", "friction_use", "peak_normal")
+DISTANCES = tuple(10.0**-e for e in range(1, 10))
+ROUNDING = 1e-12
+"""The construction is exact to rounding: a verdict may change with as much of the friction."""
+
+
+def verdicts(seed: int) -> list[tuple[int, float, str]]:
+    """(dimension, distance beyond the edge, outcome) of a grasp under all loads; inside it is negative."""
+    rng = np.random.default_rng(seed)
+    d = int(rng.integers(2, 4))
+    kind = str(rng.choice([k for k in KINDS if d == 3 or k != "box turns"]))
+    at = boundary(rng, d, kind)
+    grasp = rg.Grasp(
+        rg.Contact(r, n, float(mu), max_force=None if limit == inf else float(limit))
+        for r, n, mu, limit in zip(at.positions, at.normals, at.frictions, at.limits, strict=True)
+    )
+    found = []
+    for distance in DISTANCES:
+        for side in (1, -1):
+            load = at.load(side * distance)
+            objective = str(rng.choice(OBJECTIVES))
+            found.append((d, side * distance, outcome(at, grasp, load, side < 0, objective)))
+    return found
+
+
+def outcome(at: object, grasp: rg.Grasp, load: np.ndarray, inside: bool, objective: str) -> str:
+    """The word for a verdict."""
+    data = grasp.positions, grasp.normals, grasp.frictions
+    if (
+        grasp.dimension == 2
+        and (grasp.max_forces == inf).all()
+        and is_held(*data, load) != inside
+        and is_held(*data[:2], grasp.frictions * (1 + (ROUNDING if inside else -ROUNDING)), load) != inside
+    ):
+        return "the construction is wrong"
+    try:
+        state = rg.choose_state(grasp, rg.Wrench.from_vector(load), objective)
+    except rg.Infeasible as reason:
+        twist = reason.certificate
+        if twist is None:
+            return "at its limit" if "at its limit" in str(reason) else "plain refusal"
+        if inside or not is_escape(*data, np.array(twist.limits), load, twist.twist):
+            return "wrong: false proof"
+        return "proven"
+    except rg.SolverFailed:
+        return "solver failed"
+    faults = state_faults(*data, grasp.max_forces, load, state.forces)
+    return f"wrong: {faults[0]}" if faults else "held"
+
+
+def run(count: int, folder: Path) -> None:
+    """Grasps up to ``count``, those of chunks not yet there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for first in range(0, count, CHUNK):
+        path = folder / f"{first:08d}.json"
+        if path.exists():
+            continue
+        counts = Counter(
+            f"{d}|{distance:g}|{word}"
+            for seed in range(first, min(first + CHUNK, count))
+            for d, distance, word in verdicts(seed)
+        )
+        part = path.with_suffix(".part")
+        part.write_text(json.dumps({"counts": counts, "grasps": min(CHUNK, count - first)}), encoding="utf-8")
+        part.replace(path)
+
+
+def table(folder: Path) -> str:
+    """Counts by dimension and distance, in Markdown."""
+    counts: Counter[str] = Counter()
+    grasps = 0
+    for path in sorted(folder.glob("*.json")):
+        chunk = json.loads(path.read_text(encoding="utf-8"))
+        counts.update(chunk["counts"])
+        grasps += chunk["grasps"]
+    words = sorted({key.split("|")[2] for key in counts})
+    lines = [
+        f"{grasps:,} grasps",
+        "",
+        "| | beyond the edge by | " + " | ".join(words) + " |",
+        "|---|--:|" + "--:|" * len(words),
+    ]
+    for d, where in ((2, "plane"), (3, "space")):
+        for distance in (*DISTANCES, *(-x for x in reversed(DISTANCES))):
+            row = [f"{counts[f'{d}|{distance:g}|{word}']:,}" for word in words]
+            lines.append(f"| {where} | {distance:g} | " + " | ".join(row) + " |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """The command line above."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("count", type=int, nargs="?", default=0)
+    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results" / "edges")
+    parser.add_argument("--table", action="store_true")
+    options = parser.parse_args()
+    if not options.table:
+        run(options.count, options.output)
+    print(table(options.output))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""Single changes of the source, and how many tests notice: ``python benchmarks/mutants [AREA ...]``.
+
+Every change of the modules of an area is tried against the tests nearest to them. What was tried is kept in
+``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, a module that
+changed is tried anew, and ``--survivors`` tries those again, against tests that came since. Survivors and the
+reasons for them stand in ``survivors.txt``: a change that no input can tell from the original is no slip, and
+does not count. JOBS sets the number of processes, SHARE a part of the changes, SLOW the longest test [s].
+"""
+
+import hashlib
+import json
+import os
+import sys
+from pathlib import Path
+
+os.environ.setdefault("HYPOTHESIS_STORAGE_DIRECTORY", "/tmp/regrasp-mutants-hypothesis")
+HERE, ROOT = Path(__file__).parent, Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(HERE), str(ROOT / "src"), str(ROOT / "tests")]
+SOURCE, TESTS, KEPT = ROOT / "src" / "regrasp", ROOT / "tests", ROOT / ".mutants"
+SURVIVORS = HERE / "survivors.txt"
+
+# Area -> modules, tests (patterns), and the least share of changes noticed.
+AREAS: dict[str, tuple[list[str], list[str], float]] = {
+    "verification": (
+        ["verification/*.py"],
+        ["verification/test_[!c]*.py", "verification/test_co*.py", "**/test_verification.py"],
+        0.95,
+    ),
+    "programs": (["programs/*.py", "programs/judging/*.py"], ["programs/test_*.py"], 0.95),
+    "path": (
+        ["planning/changes/path_search.py", "planning/changes/path_program.py"],
+        ["**/test_paths.py"],
+        0.85,
+    ),
+    "rotation": (["planning/**/rotation.py"], ["**/test_rotation.py"], 0.85),
+    "files": (
+        [
+            f"files/**/{name}.py"
+            for name in ("plan_file", "*rows", "setpoints", "regrasp_table", "strict", "source")
+        ],
+        ["files/test_*.py", "**/test_files.py", "**/test_regrasp_files.py", "**/test_space_regrasp_files.py"],
+        0.85,
+    ),
+    "bench": (
+        ["bench/**/judgement.py", "bench/**/contests.py", "bench/**/outcomes.py", "bench/**/closeness.py"],
+        ["**/test_misjudgements.py", "**/test_bench_report.py", "bench/test_*.py"],
+        0.85,
+    ),
+}
+
+
+def main() -> int:
+    asked = [word for word in sys.argv[1:] if not word.startswith("-")] or list(AREAS)
+    if any(word not in AREAS for word in asked):
+        print(f"areas: {', '.join(AREAS)}", file=sys.stderr)
+        return 2
+    KEPT.mkdir(exist_ok=True)
+    good = True
+    for area in asked:
+        pid = os.fork()  # each area imports only its own tests
+        if pid == 0:
+            os._exit(_run(area, fresh="--fresh" in sys.argv))
+        good &= os.waitstatus_to_exitcode(os.wait()[1]) == 0
+    return 0 if good else 1
+
+
+def _run(area: str, fresh: bool) -> int:
+    import pytest
+    from engine import NONE, NOTICED, SURVIVED, UNSEEN, Engine
+
+    sources, tests, least = AREAS[area]
+    modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
+    wanted = sorted({str(path) for pattern in tests for path in TESTS.glob(pattern)})
+    kept = KEPT / f"{area}.jsonl"
+    if fresh:
+        kept.unlink(missing_ok=True)
+    prints = {str(path): hashlib.sha256(path.read_bytes()).hexdigest()[:12] for path in modules}
+    rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
+    found = {row["key"].strip(): row for row in rows if prints.get(row["module"]) == row["print"]}
+    reasons = _reasons()
+
+    def told(key: str, change: object, verdict: str) -> None:
+        module = str(SOURCE / key.split(" ")[0])
+        row = {"key": key, "line": change.line, "verdict": verdict, "module": module, "print": prints[module]}
+        found[key] = row
+        with kept.open("a") as file:
+            file.write(json.dumps(row) + "\n")
+        if verdict not in (NOTICED, NONE) and key not in reasons:
+            print(f"{verdict:9}{change.line:5} {key}", flush=True)
+
+    again = (SURVIVED, UNSEEN) if "--survivors" in sys.argv else ()
+    known = {key: row["verdict"] for key, row in found.items() if row["verdict"] not in again}
+    known |= {key: SURVIVED for key, reason in reasons.items() if reason.startswith("=")}
+    engine = Engine(modules, known, told)
+    quiet = ["-qq", "-p", "no:cacheprovider", "--capture=no", "--hypothesis-seed=0"]
+    pytest.main([*quiet, *wanted], plugins=[engine])
+    return _summed_up(area, list(found.values()), reasons, least)
+
+
+def _summed_up(area: str, rows: list[dict], reasons: dict[str, str], least: float) -> int:
+    from engine import NONE, NOTICED
+
+    judged = [row for row in rows if row["verdict"] != NONE and reasons.get(row["key"], "?")[:1] != "="]
+    noticed = sum(row["verdict"] == NOTICED for row in judged)
+    share = noticed / max(len(judged), 1)
+    equal = sum(reasons.get(row["key"], "?")[:1] == "=" for row in rows)
+    print(
+        f"{area}: {noticed} of {len(judged)} changes noticed, {100 * share:.1f} % "
+        f"(wanted {100 * least:.0f} %); {equal} more are no slips"
+    )
+    return 0 if share >= least else 1
+
+
+def _reasons() -> dict[str, str]:
+    """Key -> reason, of ``survivors.txt``; ``=`` at its start says that nothing tells the two apart."""
+    text = SURVIVORS.read_text(encoding="utf-8") if SURVIVORS.exists() else ""
+    entries = [line for line in text.splitlines() if line and not line.startswith("#")]
+    return {key.strip(): reason.strip() for key, _, reason in (entry.rpartition(" | ") for entry in entries)}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,236 @@
+"""Tests run once without a change to learn which functions each enters, then against every change in a fork.
+
+Everything is imported and collected once. A child of the process swaps the code of the changed function in
+place, runs the tests that enter it, the likeliest and quickest first, and says whether one of them failed.
+"""
+
+import ast
+import builtins
+import functools
+import gc
+import os
+import signal
+import sys
+import time
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import pytest
+from changes import Change, changes
+
+# Tests that take longer [s] are left out: a change that only they notice counts as not noticed.
+SLOW = float(os.environ.get("SLOW", "1"))
+# A part of all changes, chosen by their names, gives an estimate.
+SHARE = float(os.environ.get("SHARE", "1"))
+_CACHED = type(functools.cache(lambda: None))
+NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
+
+
+class Engine:
+    """A pytest plugin whose run of the tests is the run of the changes."""
+
+    def __init__(
+        self, modules: list[Path], known: dict[str, str], told: Callable[[str, Change, str], None]
+    ) -> None:
+        self.modules, self.known, self.told = modules, known, told
+        self.jobs = int(os.environ.get("JOBS", "2"))
+        self.killers: dict[str, list[int]] = {}
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Run the tests once, then the changes."""
+        import hypothesis.internal.conjecture.engine as hypothesis_engine
+
+        hypothesis_engine.MAX_SHRINKS = 0  # that it fails is enough
+        session.config.option.maxfail = 1
+        seen = [entry for entry in self._baseline(session.items) if entry[2] < SLOW]
+        limit = 30 + 6 * int(sum(duration for *_, duration in seen))
+        running: dict[int, tuple[str, Change, int]] = {}
+        for path in self.modules:
+            name = str(path)
+            functions = {code.co_qualname.replace("<locals>.", "") for code in _all_codes(_compiled(path))}
+            for change, key in _named(changes(path.read_text(encoding="utf-8")), name):
+                if key in self.known or zlib.crc32(key.encode()) % 1000 >= 1000 * SHARE:
+                    continue
+                looks = [
+                    k for k, (_, entered, _) in enumerate(seen) if f"{name} {change.function}" in entered
+                ]
+                if change.function not in functions:  # of the module or of a class
+                    looks = list(range(len(seen)))
+                if not looks:
+                    self.told(key, change, UNSEEN)
+                    continue
+                while len(running) >= self.jobs:
+                    self._wait(running)
+                often = self.killers.get(f"{name} {change.function}", []) + self.killers.get(name, [])
+                looks.sort(key=lambda k, often=often: (-often.count(k), k))
+                read, write = os.pipe()
+                pid = os.fork()
+                if pid == 0:
+                    _child(path, change, [(k, seen[k][0]) for k in looks], limit, write)
+                os.close(write)
+                running[pid] = key, change, read
+        while running:
+            self._wait(running)
+        return True
+
+    def _wait(self, running: dict[int, tuple[str, Change, int]]) -> None:
+        pid, status = os.wait()
+        if pid not in running:
+            return
+        key, change, read = running.pop(pid)
+        if killer := os.read(read, 20):
+            module = key.split(" ")[0]
+            path = next(str(path) for path in self.modules if str(path).endswith(module))
+            for where in (path, f"{path} {change.function}"):
+                self.killers.setdefault(where, []).append(int(killer))
+        os.close(read)
+        self.told(key, change, {0: SURVIVED, 77: NONE}.get(os.waitstatus_to_exitcode(status), NOTICED))
+
+    def _baseline(self, items: list[pytest.Item]) -> list[tuple[pytest.Item, set[str], float]]:
+        """Each test with the functions of the modules that it enters, and its time, quickest first."""
+        found = []
+        for path in self.modules:
+            swap(path, _instrumented(path))
+        remembering = [function for path in self.modules for function in _caches(path)]
+        for item in items:
+            entered: set[str] = set()
+            for function in remembering:
+                function.cache_clear()
+            builtins.__entered__ = entered.add  # type: ignore[attr-defined]
+            start = time.process_time()
+            if not _run(item):
+                raise SystemExit(f"{item.nodeid} fails without a change")
+            found.append((item, entered, time.process_time() - start))
+        for path in self.modules:
+            swap(path, ast.parse(path.read_text(encoding="utf-8")))
+        return sorted(found, key=lambda entry: entry[2])
+
+
+def _instrumented(path: Path) -> ast.Module:
+    """The module, each of whose functions says that it was entered."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+
+    def walk(node: ast.AST, function: str) -> None:
+        for child in ast.iter_child_nodes(node):
+            named = isinstance(child, (ast.FunctionDef, ast.ClassDef))
+            inside = f"{function}.{child.name}".lstrip(".") if named else function
+            walk(child, inside)
+            if isinstance(child, ast.FunctionDef):
+                told = ast.parse(f"__entered__({f'{path} {inside}'!r})").body[0]
+                child.body.insert(0, ast.copy_location(told, child.body[0]))
+
+    walk(tree, "")
+    return ast.fix_missing_locations(tree)
+
+
+def _compiled(path: Path) -> CodeType:
+    return compile(path.read_text(encoding="utf-8"), str(path), "exec")
+
+
+def _named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]:
+    """Changes and keys; equal ones of one function are counted."""
+    count: dict[str, int] = {}
+    short = module.split("/src/regrasp/")[-1]
+    for change in found:
+        key = f"{short} {change.key}".strip()
+        count[key] = count.get(key, 0) + 1
+        yield change, key if count[key] == 1 else f"{key}  ({count[key]})"
+
+
+def _run(item: pytest.Item) -> bool:
+    reports = []
+
+    class Listener:
+        @pytest.hookimpl
+        def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+            reports.append(report)
+
+    listener = Listener()
+    item.config.pluginmanager.register(listener)
+    try:
+        item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
+    finally:
+        item.config.pluginmanager.unregister(listener)
+    return not any(report.failed for report in reports)
+
+
+def _child(path: Path, change: Change, items: list[tuple[int, pytest.Item]], limit: int, write: int) -> None:
+    """Never returns: the status says whether a test failed, ``write`` hears which."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 1)
+    os.dup2(null, 2)
+    signal.alarm(limit)
+    os.nice(5)
+    try:
+        if not swap(path, change.tree):
+            os._exit(77)
+    except Exception:
+        os._exit(77)
+    try:
+        for k, item in items:
+            if not _run(item):
+                os.write(write, str(k).encode())
+                os._exit(1)
+    except BaseException:
+        os._exit(1)
+    os._exit(0)
+
+
+def swap(path: Path, tree: ast.Module) -> bool:
+    """Put the code of ``tree`` in the place of the module's, in every function that is alive."""
+    module = next(m for m in list(sys.modules.values()) if getattr(m, "__file__", None) == str(path))
+    new = compile(tree, str(path), "exec")
+    codes = {(code.co_qualname, code.co_firstlineno): code for code in _all_codes(new)}
+    changed = False
+    for function in gc.get_objects():
+        if not isinstance(function, FunctionType) or function.__code__.co_filename != str(path):
+            continue
+        code = codes.get((function.__code__.co_qualname, function.__code__.co_firstlineno))
+        if code is not None and code != function.__code__:
+            function.__code__ = code
+            changed = True
+    for function in _caches(path):
+        function.cache_clear()
+    return _swap_constants(module, new) or changed
+
+
+def _caches(path: Path) -> list[Any]:
+    """The functions of a module that remember what they returned."""
+    return [
+        function
+        for function in gc.get_objects()
+        if isinstance(function, _CACHED)
+        and getattr(getattr(function.__wrapped__, "__code__", None), "co_filename", "") == str(path)
+    ]
+
+
+def _swap_constants(module: ModuleType, new: CodeType) -> bool:
+    """Put changed plain values of a module in its place, and wherever else they were imported by name."""
+    values: dict[str, Any] = {"__name__": module.__name__, "__file__": module.__file__}
+    exec(new, values)
+    changed = False
+    for name, value in values.items():
+        old = getattr(module, name, None)
+        if name.startswith("__") or not _is_plain(value) or not _is_plain(old) or value == old:
+            continue
+        for other in list(sys.modules.values()):
+            if isinstance(other, ModuleType) and getattr(other, name, None) is old:
+                setattr(other, name, value)
+        changed = True
+    return changed
+
+
+def _is_plain(value: Any) -> bool:
+    from numbers import Number
+
+    return isinstance(value, (Number, str, tuple, list, dict, frozenset, set))
+
+
+def _all_codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for inner in code.co_consts:
+        if isinstance(inner, CodeType):
+            yield from _all_codes(inner)

@@ -1,0 +1,159 @@
+"""The solver benchmark: run, reported, exported."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+from click.core import ParameterSource
+
+from regrasp.cli.speech import called, json_option, say
+from regrasp.cli.verdicts import progress_bar
+from regrasp.errors import InvalidInput
+
+# Problems that all solvers here work through in a minute or so.
+_QUICK_UNKNOWNS = 60
+
+
+@click.group(invoke_without_command=True)
+@click.option("--family", "families", multiple=True, metavar="NAME", help="Only this family; repeatable.")
+@click.option("--solver", "solvers", multiple=True, metavar="NAME", help="Only this solver; repeatable.")
+@click.option(
+    "--settings",
+    multiple=True,
+    type=click.Choice(["default", "low", "mid", "high"]),
+    help="Accuracy asked for; repeatable.  [default: default]",
+)
+@click.option(
+    "--repeat", type=click.IntRange(1, 1000), default=1, show_default=True, help="Solves of each kind."
+)
+@click.option(
+    "--time-limit", type=float, default=None, metavar="SECONDS", help="Of each solve.  [default: 60, quick 5]"
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1, 1000),
+    default=1,
+    show_default=True,
+    help="Solves at once; disturbs timing.",
+)
+@click.option("--most", type=click.IntRange(1, 10**9), metavar="UNKNOWNS", help="Leave larger problems out.")
+@click.option("--quick", is_flag=True, help="Small problems only: two minutes at most.")
+@click.option("-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Folder of the results.")
+@json_option
+@click.pass_context
+def bench(
+    context: click.Context,
+    families: tuple[str, ...],
+    solvers: tuple[str, ...],
+    settings: tuple[str, ...],
+    repeat: int,
+    time_limit: float | None,
+    jobs: int,
+    most: int | None,
+    quick: bool,
+    output: Path | None,
+) -> dict[str, Any] | None:
+    """Run solvers on contact-force problems whose answers are known.
+
+    A run that was ended goes on where it was when the same command is given again.
+    """
+    if context.invoked_subcommand:
+        _hand_over(context)
+        return None
+    if output is None:
+        raise click.UsageError("the results need a folder: -o DIR")
+    from regrasp.bench.families.catalogue import FAMILIES
+    from regrasp.bench.running.runner import Limits, chosen_problems, run
+    from regrasp.bench.running.solvers import chosen_solvers
+
+    if quick:
+        most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
+    if jobs > 1:
+        click.echo(f"Warning: {jobs} solves at once disturb one another's timing.", err=True)
+    if time_limit is None:
+        time_limit = 5.0 if quick else 60.0
+    limits = Limits(repeat, time_limit, jobs)
+    with progress_bar() as progress:
+        task = progress.add_task("making problems", total=None)
+        problems = chosen_problems(FAMILIES, families, most)
+        progress.update(task, description="looking for solvers")
+        there = chosen_solvers(solvers)
+
+        tenths = 0
+
+        def told(what: str, done: int, total: int) -> None:
+            nonlocal tenths
+            progress.update(task, description=what or None, completed=done, total=total)
+            if progress.disable and 10 * done // total > tenths:  # no terminal: a log wants few lines
+                tenths = 10 * done // total
+                click.echo(f"{done} of {total} solves", err=True)
+
+        rows = run(output, problems, there, settings or ("default",), limits, told)
+    right = sum(row.correct is True for row in rows)
+    unjudged = sum(row.correct is None for row in rows)
+    lost = sum(row.is_lost for row in rows)
+    say(
+        f"{len(rows)} solves in {output}: {right} right, {len(rows) - right - unjudged} wrong or without an "
+        f"answer ({lost} of them timed out or crashed), {unjudged} not judged"
+    )
+    say(f"Next: {called()} bench report {output}")
+    return {
+        "status": "done",
+        "exit": 0,
+        "folder": output,
+        "solves": len(rows),
+        "right": right,
+        "wrong": len(rows) - right - unjudged,
+        "lost": lost,
+        "unjudged": unjudged,
+    }
+
+
+def _hand_over(context: click.Context) -> None:
+    """Give options that stand before a subcommand to it; an error for those it does not have."""
+    name = str(context.invoked_subcommand)
+    subcommand = bench.commands[name]
+    known = {parameter.name for parameter in subcommand.params}
+    given: dict[str, Any] = {}
+    for parameter in bench.params:
+        if parameter.name is None or parameter.name not in context.params:
+            continue
+        if context.get_parameter_source(parameter.name) == ParameterSource.DEFAULT:
+            continue
+        if parameter.name not in known:
+            raise click.UsageError(f"{parameter.opts[0]} is of a run; bench {name} does not take it")
+        given[parameter.name] = context.params[parameter.name]
+    context.obj = given
+
+
+@bench.command("report")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@json_option
+def bench_report(folder: Path) -> dict[str, Any]:
+    """Write the report of the results in DIR."""
+    from regrasp.bench.reporting.report import write_report
+
+    written = list(write_report(folder))
+    for path in written:
+        say(f"wrote {path}")
+    return {"status": "done", "exit": 0, "wrote": written}
+
+
+@bench.command("export")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("--family", "families", metavar="NAME", multiple=True, help="Only this family; repeatable.")
+@json_option
+@click.pass_context
+def bench_export(context: click.Context, folder: Path, families: tuple[str, ...]) -> dict[str, Any]:
+    """Write the problems to files in DIR, CBF for conic ones and NPZ for QPs, with a manifest."""
+    from regrasp.bench.exchange import export
+    from regrasp.bench.families.catalogue import FAMILIES
+
+    before = (context.obj or {}).get("families", ())  # those that stood before the subcommand count, too
+    families = tuple(dict.fromkeys((*before, *families)))
+    unknown = [name for name in families if name not in FAMILIES]
+    if unknown:
+        raise InvalidInput(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
+    written = export([FAMILIES[name] for name in families or FAMILIES], folder)
+    say(f"wrote {written}")
+    return {"status": "done", "exit": 0, "wrote": [written]}

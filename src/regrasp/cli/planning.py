@@ -1,0 +1,139 @@
+"""Planning a scenario: planned, verified, and only then written and drawn."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from regrasp.cli.speech import called, json_option, say
+from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
+
+if TYPE_CHECKING:
+    from regrasp.files import AnyScenario
+    from regrasp.mesh.mesh import Mesh
+    from regrasp.outline.outline import Outline
+    from regrasp.plans.regrasp_plan import RegraspPlan
+    from regrasp.plans.transition import Transition
+
+
+@click.command()
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    default="regrasp-demo",
+    show_default=True,
+    help="Folder for the files.",
+)
+@json_option
+def demo(output: Path) -> dict[str, Any]:
+    """Work the paper's example.
+
+    Plans it, verifies the plan, and writes plan, set-points, figures and the scenario itself.
+    """
+    from importlib.resources import files
+
+    from regrasp.files import parse_scenario
+
+    name = "paper.toml"
+    text = (files("regrasp.files.scenarios") / name).read_text(encoding="utf-8")
+    facts = _work(parse_scenario(text, name), name, output, copy=text)
+    say(f"\nNext: change {output / name}, then run  {called()} plan {output / name} -o {output}")
+    return facts
+
+
+@click.command()
+@click.argument("scenario", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Folder for the files. Those of the same names in it are replaced, others left alone.",
+)
+@click.option("--no-figures", is_flag=True, help="Write plan.json and setpoints.csv only.")
+@json_option
+def plan(scenario: Path, output: Path, no_figures: bool) -> dict[str, Any]:
+    """Plan the change of grasp, the turn or the whole regrasp in a SCENARIO.
+
+    SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
+    """
+    from regrasp.files import read_scenario
+
+    return _work(read_scenario(scenario), scenario, output, draw=not no_figures)
+
+
+def _work(
+    scenario: "AnyScenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
+) -> dict[str, Any]:
+    """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
+    from regrasp.files import plan_scenario, write_plan, write_setpoints
+    from regrasp.files.plans.setpoints import checked, setpoint_blocks
+    from regrasp.files.source import legible, naming
+    from regrasp.files.staging import whole_folder
+    from regrasp.mechanics.value import one_line
+    from regrasp.verification import verify
+
+    rate, count = scenario.task.rate, 0
+    given = [contact.name for contact in getattr(scenario, "contacts", ())]
+    with legible(given), naming(name), progress_bar() as progress:
+        task = progress.add_task("planning", total=None)
+        planned = plan_scenario(scenario)
+        progress.update(task, description="verifying")
+        verdict = verified(verify(planned), name)
+        progress.update(task, total=planned.duration * rate)
+        for rows in setpoint_blocks(planned, rate):
+            verified(checked(planned, rows), name)
+            count += rows.times.size
+            progress.update(task, completed=count)
+    with legible(given) as shown:
+        say(f"{one_line(scenario.title)}\n\n{shown(planned)}" if scenario.title else shown(planned))
+    say(f"{verdict}\neach of {count} set-points verified too")
+
+    with whole_folder(output) as folder:
+        write_plan(planned, folder / "plan.json")
+        write_setpoints(planned, folder / "setpoints.csv", rate)
+        if copy is not None:
+            (folder / name).write_text(copy, encoding="utf-8")
+        if draw:
+            _draw(planned, _shape(scenario), folder)
+        written = sorted(file.name for file in folder.iterdir())
+    say("")
+    for file in written:
+        say(f"wrote {output / file}")
+    return verdict_facts(planned, verdict, count) | {"wrote": [output / file for file in written]}
+
+
+def _shape(scenario: "AnyScenario") -> "Outline | Mesh | None":
+    """The outline or the solid of a scenario, to be drawn; None where only the contacts are known."""
+    from regrasp.files import RegraspScenario
+
+    if isinstance(scenario, RegraspScenario):
+        return scenario.outline.value
+    return None if scenario.object is None else scenario.object.value
+
+
+def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", folder: Path) -> None:
+    """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
+    with progress_bar() as progress:
+        task = progress.add_task("drawing figures", total=None)
+        from regrasp.plans.regrasp_plan import RegraspPlan
+        from regrasp.plots.pages import overview
+
+        first = planned.steps[0] if isinstance(planned, RegraspPlan) else planned
+        solid: dict[str, Any] = {"mesh": shape} if first.grasp.dimension == 3 else {}
+        if isinstance(planned, RegraspPlan):
+            from regrasp.plots.regrasps.steps import plot_regrasp
+
+            drawn = {"overview": plot_regrasp(planned, shape)}
+            for k, step in enumerate(planned.steps, 1):
+                drawn[f"step_{k}"] = overview.transition_figure(step, **solid)
+                progress.update(task, total=len(planned.steps), completed=k)
+        else:
+            drawn = overview.figures(planned, **solid)
+        progress.update(task, description="saving figures", total=len(drawn), completed=0)
+        for stem, figure in drawn.items():
+            figure.savefig(folder / f"{stem}.png")
+            progress.advance(task)

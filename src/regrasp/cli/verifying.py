@@ -1,0 +1,42 @@
+"""Judging a plan that was written before."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from regrasp.cli.speech import json_option, say
+from regrasp.cli.verdicts import names_of, verdict_facts, verified
+
+
+@click.command()
+@click.argument("path", metavar="PLAN", type=click.Path(path_type=Path))
+@click.option("--rate", type=float, metavar="HZ", help="Set-points per second there must be.  [default: any]")
+@json_option
+def verify(path: Path, rate: float | None) -> dict[str, Any]:
+    """Check a PLAN in exact arithmetic.
+
+    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too: every row must
+    hold the object and be the plan's at its time.
+    """
+    import numpy as np
+
+    from regrasp import verify as verdict_on
+    from regrasp.files import read_plan
+    from regrasp.files.plans.setpoints import checked, read_setpoints
+    from regrasp.files.source import legible
+
+    path = path / "plan.json" if path.is_dir() else path
+    planned = read_plan(path)
+    table, count = path.with_name("setpoints.csv"), 0
+    with np.errstate(all="ignore"), legible(names_of(planned)) as shown:  # any numbers at all
+        say(shown(planned))
+        verdict = verified(verdict_on(planned), path)
+        say(verdict)
+        if table.exists():
+            steps = read_setpoints(table, planned, rate)
+            for rows in steps:
+                verified(checked(planned, rows), table)
+            count = sum(rows.times.size for rows in steps)
+            say(f"each of {count} set-points in {table} verified too")
+    return verdict_facts(planned, verdict, count)

@@ -1,0 +1,113 @@
+"""Compiling functions with Numba, and keeping the machine code between runs wherever that is possible.
+
+Numba keeps it beside the source or in the user's cache. Where it can do neither it raises, and a file that
+was cut short or spoiled fails every later run. Here, a file that is not what was written is no file, and
+where nothing can be kept, functions are compiled in memory: slower at the start of every run, and said once.
+"""
+
+import logging
+import os
+import pickle
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from numba import njit
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+_DIGEST = 32
+
+_said: set[str] = set()
+
+
+def kept(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """``numba.njit`` with these options, whose machine code is kept for the next run where it can be."""
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        dispatcher = njit(**options)(function)
+        if not hasattr(dispatcher, "enable_caching"):  # NUMBA_DISABLE_JIT leaves functions as they are
+            return dispatcher
+        try:
+            dispatcher._cache = _Cache(function)
+        except (OSError, RuntimeError) as error:  # no folder can be written to
+            _say_once(error)
+        return dispatcher
+
+    return compiled
+
+
+class _Cache(FunctionCache):
+    """Numba's cache of a function; what cannot be read is compiled again, what cannot be written is not."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        impl = self._impl
+        self._cache_file = _Files(self.cache_path, impl.filename_base, impl.locator.get_source_stamp())
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """The machine code of a signature; None where none is kept."""
+        try:
+            return super().load_overload(signature, target)
+        except OSError:
+            return None
+
+    def save_overload(self, signature: Any, code: Any) -> None:
+        """Keep the machine code of a signature, if the disk lets us."""
+        try:
+            super().save_overload(signature, code)
+        except OSError as error:
+            _say_once(error)
+
+
+class _Files(IndexDataCacheFile):
+    """Numba's files, each behind the digest of what was written; the code names what it is the code of."""
+
+    def save(self, key: Any, data: Any) -> None:
+        """Write the code of a key, and the key."""
+        super().save(key, (key, data))
+
+    def load(self, key: Any) -> Any:
+        """None where another process wrote other code under the name that was given to ours."""
+        found = super().load(key)
+        return found[1] if found is not None and found[0] == key else None
+
+    def _save_index(self, overloads: dict[Any, str]) -> None:
+        with self._open_for_write(self._index_path) as file:
+            file.write(self._dump((self._version, self._source_stamp, overloads)))
+
+    def _load_index(self) -> dict[Any, str]:
+        kept = _read(self._index_path)
+        if kept is None or kept[:2] != (self._version, self._source_stamp):
+            return {}
+        overloads: dict[Any, str] = kept[2]
+        return overloads
+
+    def _load_data(self, name: str) -> Any:
+        return _read(self._data_path(name))
+
+    def _dump(self, value: Any) -> bytes:
+        data: bytes = super()._dump(value)
+        return sha256(data).digest() + data
+
+
+def _read(path: str) -> Any:
+    """What was dumped to a file; None where there is none, or not all of it, or something else."""
+    try:
+        content = Path(path).read_bytes()
+    except OSError:
+        return None
+    digest, data = content[:_DIGEST], content[_DIGEST:]
+    return pickle.loads(data) if sha256(data).digest() == digest else None
+
+
+def _say_once(error: Exception) -> None:
+    """One line for a process: each of its functions meets the same disk."""
+    if "memory" not in _said:
+        _said.add("memory")
+        reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no folder"
+        logging.getLogger("regrasp").warning(
+            "compiled code cannot be kept (%s), so every run compiles anew; "
+            "set NUMBA_CACHE_DIR to a folder that can be written to",
+            reason,
+        )

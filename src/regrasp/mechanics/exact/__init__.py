@@ -1,0 +1,1 @@
+"""What is decided in rational arithmetic on the doubles given."""

@@ -1,0 +1,1 @@
+"""Outlines from DXF, as they are seen."""

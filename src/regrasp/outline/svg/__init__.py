@@ -1,0 +1,1 @@
+"""Outlines from SVG, as they are seen."""

@@ -1,0 +1,1 @@
+"""What general programs answer badly: no load, minima that are flat."""

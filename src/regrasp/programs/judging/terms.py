@@ -1,0 +1,87 @@
+"""The matrices of a program and of the sizes of their terms, in the layout in which products are fastest."""
+
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from regrasp.programs.blocks import Array
+from regrasp.programs.cones import Cones
+
+_SMALL = 10_000
+"""Entries up to which a dense matrix is multiplied faster than a sparse one."""
+
+ROUNDING = 1e-12
+"""An entry this small beside the largest of its row was to be zero."""
+
+
+class Terms:
+    """P, A, the sizes |P|, |A| and their inverses 1 / |a_ij|: dense for small programs, else sparse.
+
+    of_rows: (m,) the largest entry of each row or cone of |A|. diagonal: (n,) of P.
+    """
+
+    def __init__(self, P: sparse.csc_matrix, A: sparse.csc_matrix, cones: Cones) -> None:
+        self.is_dense = (A.shape[0] + P.shape[0]) * A.shape[1] <= _SMALL
+        self.P, self.A = (_dense(M) if self.is_dense else M.tocsr() for M in (P, A))
+        self.abs_P, self.abs_A = abs(self.P), abs(self.A)
+        self.of_rows = cones.largest(self.in_rows(np.ones(A.shape[1])))
+        self.inverse_A = self._inverse()
+        self.diagonal = P.diagonal()
+
+    def _inverse(self) -> Any:
+        """1 / |a_ij|, zero where an entry is, or is the rounding of a row's largest."""
+        largest = self.of_rows
+        if self.is_dense:
+            return np.where(self.abs_A > ROUNDING * largest[:, None], reciprocal(self.abs_A), 0.0)
+        inverse = self.abs_A.copy()
+        rows = np.repeat(np.arange(largest.size), np.diff(inverse.indptr))
+        inverse.data = np.where(inverse.data > ROUNDING * largest[rows], reciprocal(inverse.data), 0.0)
+        return inverse
+
+    def in_columns(self, of_rows: Array) -> Array:
+        """(n,) the largest |a_ij| of_rows_i of each column; of_rows: (m,)."""
+        return self._largest(self.abs_A, of_rows, 0)
+
+    def in_rows(self, of_columns: Array) -> Array:
+        """(m,) the largest |a_ij| of_columns_j of each row; of_columns: (n,)."""
+        return self._largest(self.abs_A, of_columns, 1)
+
+    def back_in_rows(self, of_columns: Array) -> Array:
+        """(m,) the largest of_columns_j / |a_ij| of each row; of_columns: (n,)."""
+        return self._largest(self.inverse_A, of_columns, 1)
+
+    def back_in_columns(self, of_rows: Array) -> Array:
+        """(n,) the largest of_rows_i / |a_ij| of each column; of_rows: (m,)."""
+        return self._largest(self.inverse_A, of_rows, 0)
+
+    def _largest(self, matrix: Any, factors: Array, axis: int) -> Array:
+        if 0 in matrix.shape:
+            return np.zeros(matrix.shape[1 - axis])
+        if self.is_dense:
+            found: Array = (matrix * (factors if axis else factors[:, None])).max(axis=axis)
+        else:
+            scaled = matrix @ sparse.diags(factors) if axis else sparse.diags(factors) @ matrix
+            found = scaled.max(axis=axis).toarray().ravel()
+        return found
+
+
+def _dense(matrix: sparse.csc_matrix) -> Any:
+    return matrix.toarray()
+
+
+def largest(amounts: Array, units: Array) -> float:
+    """The largest of amounts / units; nothing counts as zero of whatever unit, and NaN is passed on."""
+    ratios = np.divide(amounts, units, out=np.zeros_like(amounts), where=amounts != 0)
+    return float(ratios.max(initial=0.0))
+
+
+def reciprocal(units: Array) -> Array:
+    """1 / units, and zero where a unit is: there all terms are."""
+    inverse: Array = np.divide(1.0, units, out=np.zeros_like(units), where=units != 0)
+    return inverse
+
+
+def total(values: Array) -> float:
+    """The sum, taken one after the other as compiled loops do, so that both are equal to the last bit."""
+    return float(np.cumsum(values)[-1]) if values.size else 0.0

@@ -1,0 +1,85 @@
+"""Solvers of quadratic programs, each called by its own module. Where one needs it, in proximal steps."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from regrasp.programs.answer import Answer, Claim
+from regrasp.programs.facts import BACKENDS
+from regrasp.programs.judging.proofs import unboundedness_residual
+from regrasp.programs.program import Array, Program
+from regrasp.programs.solution import Solution, Status
+
+_STATUS = {
+    Claim.FOUND: Status.SOLVED,
+    Claim.INFEASIBLE: Status.INFEASIBLE,
+    Claim.UNBOUNDED: Status.UNBOUNDED,
+}
+# Weights of the proximal steps beside the linear objective: near it first, then far at one stride.
+_WEIGHTS = np.repeat([1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7], [2, 2, 10, 4, 3, 3, 3])
+# The last step's pull on the dual equation, relative to the objective.
+_PULL = 1e-10
+# A last step that is nearly a direction of descent is taken for one.
+_FALLING = 1e-3
+
+
+def solve(program: Program, name: str, **options: Any) -> Solution:
+    """Solve a program without second-order cones; ``options`` go to the solver as they are."""
+    facts = BACKENDS[name]
+    call = import_module(facts.module)
+    started = perf_counter()
+
+    def ask(given: Program) -> Answer:
+        answer: Answer = call.Session(call.layout(given), **{**facts.options, **options}).solve()
+        return answer
+
+    answer = _by_steps(program, ask) if facts.strictly_convex else ask(program)
+    took = perf_counter() - started
+    solving = took if answer.solve_time is None else answer.solve_time
+    claim = Claim(answer.status)
+    x = None if claim in (Claim.FAILED, Claim.REFUSED, Claim.INFEASIBLE) else answer.x
+    z = None if claim in (Claim.FAILED, Claim.REFUSED, Claim.UNBOUNDED) else answer.duals
+    status, said = _STATUS.get(claim, Status.NOT_FOUND), answer.said
+    if (claim is Claim.INFEASIBLE and z is None) or (claim is Claim.UNBOUNDED and x is None):
+        status, said = Status.NOT_FOUND, f"{said}, without a certificate"
+    return Solution(
+        program, name, status, _filled(x, program.q.size), _filled(z, program.b.size), answer.iterations,
+        max(took - solving, 0.0), solving, said,
+    )  # fmt: skip
+
+
+def _filled(values: Array | None, size: int) -> Array:
+    """The numbers, or NaN where there are none: several solvers fill in whatever they had."""
+    return np.full(size, np.nan) if values is None else np.array(values, dtype=float)
+
+
+def _by_steps(program: Program, ask: Callable[[Program], Answer]) -> Answer:
+    """The answer of a solver that needs a strictly convex objective, by steps that have one.
+
+    The proximal point method (Rockafellar, SIAM J. Control and Optimization 14, 1976) minimises the objective
+    plus w/2 |x - x_k|^2 from x_k to x_k+1. On linear programs it ends after finitely many steps, and where it
+    stands still its duals are those of the program. Where it never does, its steps turn into the direction
+    along which the objective falls.
+    """
+    P, q = program.P, program.q
+    if P.diagonal().min(initial=np.inf) > 0:
+        return ask(program)
+    size = float(abs(q).max(initial=0.0)) or 1.0
+    identity = sparse.identity(q.size, format="csc")
+    x = step = np.zeros(q.size)
+    for weight in size * _WEIGHTS:
+        answer = ask(replace(program, P=sparse.csc_matrix(P + weight * identity), q=q - weight * x))
+        if answer.status != Claim.FOUND.value or answer.x is None:
+            break
+        moved, before, x = float(abs(answer.x - x).max()), x, answer.x
+        if weight * moved <= _PULL * size:
+            return answer
+        step = answer.x - before
+    if answer.status == Claim.FOUND.value and unboundedness_residual(program, step) <= _FALLING:
+        return replace(answer, status=Claim.UNBOUNDED.value, x=step, said=f"{answer.said}, falling for ever")
+    return answer

@@ -1,0 +1,95 @@
+"""Many rows of forces at once: the instants of a course, and set-points.
+
+Rows that are inside by more than rounding are settled in floating point; the others are decided exactly. With
+u = 2^-53 and numbers between 2^-480 and 2^480, whose squares neither vanish nor overflow, computed normal and
+tangential forces are within 16 u |f| of the true ones, so that
+
+    mu f_n - |f_t| > 2^-40 (1 + mu) |f|   and   |f| <= (1 - 2^-40) max_force
+
+prove a force inside its cone and limit, with 2^13 u where 16 u (1 + mu) would do. A sum of n forces, or of
+their torques over the largest arm l, is within 8 (n + 1)^2 u of the largest of |f_i|, |F|, |tau| / l and
+|m_i| / l: by that much less than 2^-40 a row must be in equilibrium.
+"""
+
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import torque
+from regrasp.verification.exact import RESOLUTION, check_forces, exact
+
+_DOUBT = float(RESOLUTION)
+_UNIT = 2.0**-53
+_LEAST, _MOST = 2.0**-480, 2.0**480
+
+
+class Checked(NamedTuple):
+    """What was found of some rows; fields as in ``Verification``."""
+
+    violations: list[str]
+    worst_residual: float
+    least_angle: float
+    least_cone_slack: float
+
+
+def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checked:
+    """Check forces (m, n, d) against loads (m, 3 or 6); ``labels`` names row k by ``labels.format(k)``."""
+    broken, *found = judge_rows(grasp, forces, loads, labels)
+    return Checked([violation for row in broken.values() for violation in row], *found)
+
+
+@np.errstate(all="ignore")
+def judge_rows(
+    grasp: Grasp, forces: Array, loads: Array, labels: str, first: int = 0
+) -> tuple[dict[int, list[str]], float, float, float]:
+    """What is broken in each row that is not good, counted from ``first``, and the rest of ``Checked``."""
+    d, mu, limits = grasp.dimension, grasp.frictions, grasp.max_forces
+    arm = grasp.size if grasp.positions.any() else 1.0
+    pushed = forces[..., :d]
+    normal = (pushed * grasp.normals).sum(axis=-1)
+    tangential = _length(pushed - normal[..., None] * grasp.normals)
+    magnitude = _length(pushed)
+    size = np.maximum(magnitude.max(axis=1), _length(loads[:, :d]))
+    size = np.maximum(size, _length(loads[:, d:] / arm))
+    torques, most = torque(grasp.positions / arm, pushed), size
+    known = np.ones(magnitude.shape, dtype=bool)  # numbers that the bounds above hold for
+    if grasp.torsions is not None:
+        about, soft = forces[..., 3], grasp.torsions > 0
+        used = np.divide(mu * about, grasp.torsions, out=0 * about, where=soft)
+        known = np.where(soft, (about == 0) | (abs(mu * about) > _LEAST) & (used != 0), about == 0)
+        tangential, magnitude = np.hypot(tangential, used), np.hypot(magnitude, used)
+        torques = torques + (about / arm)[..., None] * grasp.normals
+        most = np.maximum(size, abs(about).max(axis=1) / arm)
+    known &= (magnitude > _LEAST) & (magnitude < _MOST)
+    inside = known & (mu * normal - tangential > _DOUBT * (1 + mu) * magnitude)
+    inside &= magnitude <= limits * (1 - _DOUBT)
+    inside |= ~forces.any(axis=-1)  # the apex
+    total = pushed.sum(axis=1) + loads[:, :d], torques.sum(axis=1) + loads[:, d:] / arm
+    off = np.maximum(*map(_length, total))
+    spare = _DOUBT * size - 8 * (len(grasp) + 1) ** 2 * _UNIT * most
+    settled = inside.all(axis=1) & (off < spare) & (size > _LEAST) & (size < _MOST)
+    settled &= _LEAST < arm < _MOST
+    settled |= ~forces.any(axis=(1, 2)) & ~loads.any(axis=1)
+    slack_of = mu**2 - (tangential / normal) ** 2
+    slacks = [float(slack_of[settled][magnitude[settled] > 0].min(initial=inf))]
+    residuals = [float((off / size)[settled & (size > 0)].max(initial=0.0))]
+    broken = {}
+    for row in np.flatnonzero(~settled).tolist():
+        load, label = exact(loads[row].tolist()), labels.format(first + row)
+        residual, slack, violations = check_forces(grasp, forces[row], load, label)
+        if violations:
+            broken[first + row] = violations
+        slacks.append(slack)
+        residuals.append(residual)
+    angles = np.arctan(mu) - np.arctan2(tangential, normal)
+    least = angles[magnitude > _DOUBT * size[:, None]].min(initial=inf)
+    return broken, max(residuals), float(least), min(slacks)
+
+
+def _length(vectors: Array) -> Array:
+    """The Euclidean length along the last axis."""
+    result: Array = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
+    return result

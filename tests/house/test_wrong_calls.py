@@ -1,0 +1,109 @@
+"""Wrong calls of every public name: one line that says what was expected and what came, and nothing else."""
+
+import inspect
+import warnings
+
+import matplotlib.pyplot as plt
+import pytest
+
+import regrasp as rg
+import regrasp.files
+import regrasp.plots
+from refusals import refusal
+from wrong_calls import called_wrongly, cases, rows
+
+pytestmark = pytest.mark.contract
+
+ROWS = rows()
+
+# Records of results: they are made by the verbs, and hold what they are given.
+RECORDS = {
+    "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "Margins", "PyramidLosses",
+    "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity", "SpaceRegraspPlan",
+    "Transition", "TurningTransition", "Verification", "Mesh", "StraightPath", "SampledPath", "TurningPath",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_wrong_arguments_are_refused_in_one_line(name: str) -> None:
+    row, tried = ROWS[name], 0
+    try:
+        for case in cases(name, row):
+            said = refusal(lambda case=case: called_wrongly(row, case))
+            assert said is not None, f"{case} was taken"
+            assert said.strip(), case
+            assert "\n" not in said, case
+            assert len(said) < 700, case
+            tried += 1
+    finally:
+        plt.close("all")
+    assert tried > 0 or not inspect.signature(row.call).parameters
+
+
+def test_thousands_are_tried() -> None:
+    assert sum(1 for name, row in ROWS.items() for _ in cases(name, row)) > 5000
+
+
+def test_every_public_name_has_a_row() -> None:
+    errors = {
+        n for n in rg.__all__ if isinstance(getattr(rg, n), type) and issubclass(getattr(rg, n), Exception)
+    }
+    missing = set(rg.__all__) - {name.split(".")[0].split(" ")[0] for name in ROWS} - errors - RECORDS
+    assert missing == set()
+    functions = {n for n in regrasp.files.__all__ if inspect.isfunction(getattr(regrasp.files, n))}
+    assert functions - {"scenario_schema"} <= ROWS.keys()
+
+
+def test_every_parameter_is_tried_where_it_has_a_right_value_too() -> None:
+    """The calls that the wrong ones are made from are right, so that one thing is wrong with each."""
+    unanswered = {"read_scenario", "read_plan", "Outline.from_file", "Mesh.from_file", "Mesh.save_stl"}
+    for name, row in ROWS.items():
+        if name in unanswered or name.startswith("plots."):
+            continue
+        needed = [
+            key
+            for key, parameter in inspect.signature(row.call).parameters.items()
+            if parameter.default is inspect.Parameter.empty
+            and parameter.kind not in (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+        ]
+        assert set(needed) <= row.right.keys() | set(row.kinds) - set(row.kinds), (name, needed)
+        if name.endswith(".plans"):
+            continue
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            first = next(iter(inspect.signature(row.call).parameters), None)
+            positional = [row.right[first]] if needed and needed[0] == first else []
+            row.call(*positional, **{k: v for k, v in row.right.items() if not (positional and k == first)})
+
+
+def test_what_came_is_shown_shortly() -> None:
+    from regrasp.errors import shown
+
+    class Broken:
+        def __repr__(self) -> str:
+            raise RuntimeError("no words")
+
+    assert shown(Broken()) == "a value of type Broken"
+    assert len(shown(list(range(10_000)))) == 120
+    assert shown(10**5000) == "a value of type int"
+    assert shown("two\nlines") == r"'two\nlines'"
+    assert str(rg.InvalidInput("expected this,\n  got that")) == "expected this, got that"
+
+
+def test_numbers_that_are_numbers_are_taken() -> None:
+    """Fractions, decimals, NumPy's kinds and large whole numbers, as before."""
+    from decimal import Decimal
+    from fractions import Fraction
+
+    import numpy as np
+
+    for position in (
+        [Fraction(1, 2), 1],
+        (Decimal("0.5"), 1),
+        np.array([0.5, 1], dtype=np.float32),
+        [2**70, 1],
+    ):
+        for friction in (np.float64(0.5), np.int64(1), Fraction(1, 2), np.array(0.5), 10**300):
+            contact = rg.Contact(position, [0, 1], friction)
+            assert contact.friction == float(friction)
+            assert contact.position[1] == 1.0

@@ -1,0 +1,125 @@
+"""One small example of every kind of value that regrasp hands out, made when it is asked for."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from paper import GRASP, LOAD, STATE
+
+
+@cache
+def removal() -> rg.Transition:
+    return rg.plan_removal(STATE, "P3")
+
+
+@cache
+def bent() -> rg.Transition:
+    return rg.plan_removal(GRASP, "P3", load=shaken, rate_limit=15.0, instants=11)
+
+
+def shaken(t: float) -> rg.Wrench:
+    return rg.Wrench([-1.5, -3.5 + np.sin(t)])
+
+
+@cache
+def rotation() -> rg.Transition:
+    return rg.plan_rotation(removal().end.without("P3"), 0.1)
+
+
+@cache
+def ellipse() -> rg.Outline:
+    return rg.Outline.ellipse(2, 1)
+
+
+def three_on_ellipse(*places: float) -> rg.Grasp:
+    outline = ellipse()
+    return rg.Grasp(outline.contact_at(p * outline.length, friction=0.5) for p in places)
+
+
+@cache
+def problem() -> rg.RegraspProblem:
+    first, last = three_on_ellipse(0.02, 0.35, 0.7), three_on_ellipse(0.2, 0.5, 0.85)
+    return rg.RegraspProblem(
+        ellipse(), first, last, rg.Wrench([0, -3]), friction=0.5, candidates=20, orientations=8
+    )
+
+
+@cache
+def regrasp() -> rg.RegraspPlan:
+    return problem().plans()[0]
+
+
+@cache
+def escape() -> rg.EscapeTwist:
+    with pytest.raises(rg.Infeasible) as caught:
+        rg.plan_removal(STATE, "P1")
+    certificate: rg.EscapeTwist = caught.value.certificate
+    return certificate
+
+
+@cache
+def space_grasp() -> rg.Grasp:
+    arms = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=float)
+    return rg.Grasp(rg.Contact(r, -r, 0.8) for r in arms)
+
+
+@cache
+def mesh() -> rg.Mesh:
+    return rg.Mesh.box(0.1, 0.08, 0.06)
+
+
+@cache
+def four_on_box() -> rg.Grasp:
+    box = mesh()
+    tips = ((0.05, 0.01, 0.0), (-0.05, 0.01, 0.0), (0.01, 0.04, 0.0), (0.01, -0.04, 0.01))
+    return rg.Grasp(box.contact_at(box.centre_of_mass + tip, friction=0.8) for tip in tips)
+
+
+@cache
+def space_problem() -> rg.SpaceRegraspProblem:
+    load = rg.Wrench([0, 0, -1.0])
+    return rg.SpaceRegraspProblem(
+        mesh(), four_on_box(), four_on_box(), load, friction=0.8, candidates=4, orientations=1
+    )
+
+
+WEIGHT = rg.Wrench([0, 0, -1.0])
+PAIR = GRASP.without("P3")
+SQUARE = [[0, 0], [4, 0], [4, 3], [0, 3]]
+
+VALUES: dict[str, Callable[[], Any]] = {
+    "Contact": lambda: rg.Contact([1, 2], [3, 4], 0.5, max_force=2.0, name="thumb"),
+    "soft Contact": lambda: rg.Contact([1, 2, 0], [3, 4, 0], 0.5, torsion=0.01),
+    "Wrench": lambda: LOAD,
+    "Grasp": lambda: GRASP,
+    "GraspState": lambda: STATE,
+    "Margins": lambda: removal().end.margins,  # one of them is not a number
+    "ChosenState": lambda: rg.choose_state(GRASP, LOAD),
+    "EquilibriumLocus": lambda: rg.EquilibriumLocus(PAIR, LOAD),
+    "SqueezeLocus": lambda: rg.SqueezeLocus(GRASP, LOAD),
+    "EscapeTwist": escape,
+    "TimeScaling": lambda: rg.TimeScaling.minimum_jerk(2.0),
+    "LoadSeries": lambda: rg.LoadSeries([0, 1], [[0, 0, 0], [1, 1, 1]]),
+    "straight Transition": removal,
+    "bent Transition": bent,
+    "turning Transition": rotation,
+    "RegraspPlan": regrasp,
+    "FingerMove": lambda: regrasp().moves[0],
+    "RegraspProblem": problem,
+    "SpaceRegraspProblem": space_problem,
+    "RegraspWeights": lambda: rg.RegraspWeights(turning=0.5),
+    "Bottleneck": lambda: problem().bottleneck(),
+    "Outline, polygon with a hole": lambda: rg.Outline(SQUARE, holes=[[[1, 1], [2, 1], [2, 2]]]),
+    "Outline, smooth": lambda: rg.Outline.smooth(SQUARE),
+    "Outline, ellipse": ellipse,
+    "Mesh": mesh,
+    "Verification": lambda: rg.verify(removal()),
+    "HeldDirections": lambda: rg.held_directions(PAIR),
+    "HeldSphere": lambda: rg.held_sphere(space_grasp(), count=12),
+    "PyramidLosses": lambda: rg.pyramid_losses(space_grasp(), WEIGHT, facets=(3, 4)),
+    "Sensitivity": lambda: rg.sensitivity(PAIR, LOAD),
+}
