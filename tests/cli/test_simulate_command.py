@@ -10,6 +10,8 @@ import pytest
 from executed_plans import removal
 from regrasp.files import write_plan
 
+pytestmark = pytest.mark.end_to_end
+
 pytest.importorskip("mujoco")
 
 

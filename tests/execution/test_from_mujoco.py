@@ -8,6 +8,8 @@ import pytest
 import regrasp as rg
 from regrasp.execution import grasp_from_mujoco
 
+pytestmark = pytest.mark.oracle
+
 mujoco = pytest.importorskip("mujoco")
 
 TIPS = np.array(

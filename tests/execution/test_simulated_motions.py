@@ -8,6 +8,8 @@ from executed_plans import ellipse, removal
 from regrasp.execution import simulate
 from regrasp.motions import plan_motions
 
+pytestmark = pytest.mark.laws
+
 pytest.importorskip("mujoco")
 
 SHAPE = rg.Outline.ellipse(0.04, 0.02)

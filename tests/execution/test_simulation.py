@@ -11,6 +11,8 @@ import regrasp as rg
 from executed_plans import PLANS, bracket, ellipse, paper, removal, turned
 from regrasp.execution import Execution, Setup, critical_friction, simulate
 
+pytestmark = pytest.mark.laws
+
 pytest.importorskip("mujoco")
 
 

@@ -4,6 +4,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.contract
+
 HIDDEN = "import sys; sys.modules['mujoco'] = None; "
 
 

@@ -13,6 +13,8 @@ from executed_plans import LOAD, ellipse, lifted, removal, tipped, turned
 from regrasp.files import write_mcap
 from regrasp.files.plans.bag import topics_of
 
+pytestmark = pytest.mark.contract
+
 pytest.importorskip("rosbags")
 
 

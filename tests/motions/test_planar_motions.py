@@ -12,6 +12,8 @@ from regrasp.motions import Motions, plan_motions
 from regrasp.outline import parts
 from regrasp.plans.record import Record
 
+pytestmark = pytest.mark.laws
+
 RADIUS, CLEARANCE = 0.003, 0.002
 HUNDRED = 100
 

@@ -39,9 +39,17 @@ def write_mcap(
     ``/object/pose`` (PoseStamped) and ``/tf``: how the object is turned in ``world``, as the plan counts it.
     ``/forces`` (visualization_msgs/MarkerArray): an arrow for each force that ends at its contact.
     Names keep letters and digits, all else becomes ``_``. Fingers that are not in a step are silent then.
-    rate: messages per second; both ends of every step have one. start: stamp of the first [s].
-    metres_per_newton: length of the arrows; half the size of the grasp for the largest force by default.
-    Raises ``InvalidInput`` for another ending than ``.mcap``, ``ImportError`` without rosbags.
+
+    Args:
+        plan: a transition or a whole regrasp.
+        path: of the file, which ends in ``.mcap``.
+        rate: messages per second; both ends of every step have one.
+        start: stamp of the first [s].
+        metres_per_newton: length of the arrows; half the size of the grasp for the largest force by default.
+
+    Raises:
+        InvalidInput: For another ending than ``.mcap``.
+        ImportError: Without rosbags.
     """
     target = Path(path)
     if target.suffix != ".mcap":

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from regrasp.execution.measured import SLIPPED, Execution
+from regrasp.mechanics.checks import instance
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import (
     GREY,
@@ -26,7 +27,14 @@ from regrasp.plots.look.units import SI, Units
 
 
 def plot_measured_forces(execution: Execution, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """|f_i| of every contact as measured, and in black dashes as planned."""
+    """|f_i| of every contact as measured, and in black dashes as planned.
+
+    Args:
+        execution: the run to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     measured, planned = (np.linalg.norm(f, axis=2) for f in (execution.forces, execution.planned))
     for name, colour, column in zip(execution.names, cycle(PALETTE), measured.T, strict=False):
@@ -42,7 +50,14 @@ def plot_measured_forces(execution: Execution, ax: Axes | None = None, *, units:
 
 
 def plot_friction_use(execution: Execution, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """|f_t| / (mu f_n) under the true friction, measured, and planned in dashes; above 1 a contact slides."""
+    """|f_t| / (mu f_n) under the true friction, measured, and planned in dashes; above 1 a contact slides.
+
+    Args:
+        execution: the run to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     measured, planned = execution.margins.friction_use, execution.planned_margins.friction_use
     for colour, column, wanted in zip(cycle(PALETTE), measured.T, planned.T, strict=False):
@@ -57,7 +72,14 @@ def plot_friction_use(execution: Execution, ax: Axes | None = None, *, units: Un
 
 
 def plot_slip(execution: Execution, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """How far every contact has slid, on a logarithmic scale, with the object's drift; dashed: slipped."""
+    """How far every contact has slid, on a logarithmic scale, with the object's drift; dashed: slipped.
+
+    Args:
+        execution: the run to draw.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     size = max(float(np.linalg.norm(c.position)) for c in execution.contacts)
     least = 1e-6 * size
@@ -73,7 +95,13 @@ def plot_slip(execution: Execution, ax: Axes | None = None, *, units: Units = SI
 
 
 def execution_figure(execution: Execution, *, units: Units = SI) -> Figure:
-    """Forces, friction use and slip over the time of the run, one above the other."""
+    """Forces, friction use and slip over the time of the run, one above the other.
+
+    Args:
+        execution: the run to draw.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(execution, "execution", Execution)
     figure = new_figure(1.6 * WIDTH, 5.6)
     panels = [tidy(ax) for ax in figure.subplots(3, 1, sharex=True)]
     plot_measured_forces(execution, panels[0], units=units)

@@ -10,7 +10,7 @@ from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
 from regrasp.errors import InvalidInput
 from regrasp.execution.measured import Execution
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, instance, number
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.plots.look.solids import creases
@@ -26,8 +26,17 @@ def animate_execution(
     """Write a film of a run in the world frame: the object as it moved, fingertips, measured forces.
 
     The shape is the setup's, or the hull of the contacts. In space the view is along z.
-    path: ``.gif``, or ``.mp4``, which needs ffmpeg. Returns it. Raises ``InvalidInput`` for another ending.
+
+    Args:
+        execution: the run to draw.
+        path: ``.gif``, or ``.mp4``, which needs ffmpeg. It is returned.
+        frames_per_second: of the run's own time.
+        units: what one unit of length, force and time is called; nothing is converted.
+
+    Raises:
+        InvalidInput: For another ending, and for MP4 without ffmpeg.
     """
+    instance(execution, "execution", Execution)
     target = Path(path)
     if target.suffix.lower() not in (".gif", ".mp4"):
         raise InvalidInput(f"path must end in .gif or .mp4, got {str(target)!r}")
