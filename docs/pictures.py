@@ -4,9 +4,10 @@ from importlib.resources import files
 from pathlib import Path
 
 import regrasp as rg
+from regrasp.execution import simulate
 from regrasp.files import parse_scenario, plan_scenario
 from regrasp.outline import parts
-from regrasp.plots import plot_escape, plot_outline, plot_sensitivity, transition_figure
+from regrasp.plots import execution_figure, plot_escape, plot_outline, plot_sensitivity, transition_figure
 
 IMAGES = Path(__file__).parent / "images"
 
@@ -23,6 +24,10 @@ if __name__ == "__main__":
     found = rg.sensitivity(removal.grasp, removal.start.load, "force", max_force=8)
     figure = plot_sensitivity(found).figure
     figure.savefig(IMAGES / "sensitivity.png", dpi=160, metadata={"Software": None})
+    metres = rg.Grasp(rg.Contact(0.01 * c.position, c.normal, c.friction, name=c.name) for c in removal.grasp)
+    moved = rg.GraspState(metres, removal.start.load, removal.start.forces)
+    figure = execution_figure(simulate(rg.plan_removal(moved, "P3")))
+    figure.savefig(IMAGES / "execution.png", dpi=120, metadata={"Software": None})
     part = parts.bracket()
     figure = plot_outline(part, arc_lengths=part.sample(40)).figure
     figure.savefig(IMAGES / "outline.png", dpi=160, metadata={"Software": None})

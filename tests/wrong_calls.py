@@ -378,7 +378,7 @@ def picture_rows() -> dict[str, Row]:
     found = {}
     for name in plots.__all__:
         draw = getattr(plots, name)
-        if inspect.isfunction(draw) and name not in ("png", "html", "animate"):
+        if inspect.isfunction(draw) and name not in ("png", "html", "animate", "animate_execution"):
             first, *others = inspect.signature(draw).parameters
             needed = {key: value for key, value in more.items() if key in others}
             kind = "table" if first == "directions" else "value"

@@ -38,6 +38,8 @@ FLOORS: dict[str, Set[str]] = {
         "plans",
         "planning",
     },
+    "motions": {"errors", "mechanics", "outline", "plans", "motions"},
+    "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "motions", "execution"},
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
@@ -53,7 +55,17 @@ FLOORS: dict[str, Set[str]] = {
         "verification",
         "files",
     },
-    "plots": {"errors", "mechanics", "outline", "mesh", "closed_form", "plans", "planning", "plots"},
+    "plots": {
+        "errors",
+        "mechanics",
+        "outline",
+        "mesh",
+        "closed_form",
+        "plans",
+        "planning",
+        "execution",
+        "plots",
+    },
     "bench": {
         "errors",
         "mechanics",
@@ -76,6 +88,7 @@ FLOORS: dict[str, Set[str]] = {
         "verification",
         "files",
         "plots",
+        "execution",
         "bench",
         "cli",
     },
@@ -126,6 +139,8 @@ HEAVY = {
     "ezdxf",
     "trimesh",
     "plotly",
+    "mujoco",
+    "rosbags",
 }
 LINES = 360
 """Of a file, besides the sections Args, Returns and Raises of docstrings."""
@@ -180,6 +195,8 @@ def may_import(module: str, package: str) -> bool:
         return here == "plots"
     if package == "plotly":
         return module == "regrasp.plots.pages.page"
+    if package == "rosbags":
+        return module == "regrasp.files.plans.bag"
     if package == "pydantic":
         return here == "files"
     if package == "numba":
@@ -190,8 +207,10 @@ def may_import(module: str, package: str) -> bool:
         return module in [f"regrasp.{place.format(package)}" for place in places]
     if package in ("click", "rich"):
         return here == "cli"
+    if package == "mujoco":
+        return module == "regrasp.execution.engine"
     if package == "shapely":
-        return here in ("outline", "mesh")
+        return here in ("outline", "mesh", "motions")
     if package in ("svgpathtools", "ezdxf"):
         return here == "outline"
     if package == "trimesh":
@@ -302,6 +321,8 @@ OFFENCES = [
     ("regrasp.plans.timing", "import_module('matplotlib')", "matplotlib"),
     ("regrasp.plans.timing", "from .. import plots", "regrasp.plots"),
     ("regrasp.plans.timing", "import shapely", "shapely"),
+    ("regrasp.execution.simulation", "import mujoco", "mujoco"),
+    ("regrasp.planning", "from regrasp.execution import simulate", "regrasp.execution"),
     ("regrasp.plots.pages.page_scene", "from plotly import graph_objects", "plotly"),
     ("regrasp.outline.svg.reader", "from ...files.source import text_of", "regrasp.files.source"),
     ("regrasp.outline.outline", "from regrasp.mesh import Mesh", "regrasp.mesh"),

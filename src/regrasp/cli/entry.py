@@ -13,6 +13,7 @@ from regrasp import __version__
 from regrasp.cli.benchmarking import bench
 from regrasp.cli.planning import demo, plan
 from regrasp.cli.scenarios import new, schema
+from regrasp.cli.simulating import simulate
 from regrasp.cli.speech import say_json, wants_json
 from regrasp.cli.statuses import (
     BAD_INPUT,
@@ -40,7 +41,7 @@ def commands() -> None:
     """
 
 
-for command in (demo, new, plan, verify, schema, bench):
+for command in (demo, new, plan, verify, simulate, schema, bench):
     commands.add_command(command)
 
 

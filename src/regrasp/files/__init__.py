@@ -1,5 +1,6 @@
 """Scenarios in, plans and set-points out. Imports pydantic, so it is imported when it is used."""
 
+from regrasp.files.plans.bag import write_mcap
 from regrasp.files.plans.plan_file import read_plan, write_plan
 from regrasp.files.plans.setpoints import write_setpoints
 from regrasp.files.scenarios.planned import plan_scenario
@@ -23,6 +24,7 @@ __all__ = [
     "read_plan",
     "read_scenario",
     "scenario_schema",
+    "write_mcap",
     "write_plan",
     "write_setpoints",
 ]

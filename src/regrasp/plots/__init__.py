@@ -12,6 +12,12 @@ from regrasp.plots.look.png import png
 from regrasp.plots.look.style import contact_colours
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.over_time.components import plot_force_components, plot_wrench_components
+from regrasp.plots.over_time.execution import (
+    execution_figure,
+    plot_friction_use,
+    plot_measured_forces,
+    plot_slip,
+)
 from regrasp.plots.over_time.load import plot_load
 from regrasp.plots.over_time.magnitudes import plot_angles, plot_magnitudes, plot_margins
 from regrasp.plots.over_time.scaling import plot_scaling
@@ -25,6 +31,7 @@ from regrasp.plots.pages.overview import (
     wrenches_figure,
 )
 from regrasp.plots.pages.page import html
+from regrasp.plots.pages.run_film import animate_execution
 from regrasp.plots.regrasps.hold_map import plot_hold_map
 from regrasp.plots.regrasps.steps import plot_regrasp
 from regrasp.plots.regrasps.trade_off import plot_trade_off
@@ -44,7 +51,9 @@ __all__ = [
     "SI",
     "Units",
     "animate",
+    "animate_execution",
     "contact_colours",
+    "execution_figure",
     "figures",
     "html",
     "iso_torque_figure",
@@ -53,6 +62,7 @@ __all__ = [
     "plot_directions",
     "plot_escape",
     "plot_force_components",
+    "plot_friction_use",
     "plot_hold_map",
     "plot_iso_torque",
     "plot_load",
@@ -62,10 +72,12 @@ __all__ = [
     "plot_locus_segment",
     "plot_magnitudes",
     "plot_margins",
+    "plot_measured_forces",
     "plot_outline",
     "plot_regrasp",
     "plot_scaling",
     "plot_sensitivity",
+    "plot_slip",
     "plot_state",
     "plot_trade_off",
     "plot_transition",

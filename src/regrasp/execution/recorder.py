@@ -1,0 +1,145 @@
+"""What a run measures: forces at contacts, motion, slip."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.execution.measured import IN_USE, Execution
+from regrasp.execution.scene import Scene
+from regrasp.execution.schedule import Schedule
+from regrasp.execution.setup import Setup
+from regrasp.execution.units import PEAK, Units
+from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.wrench import torque
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.transition import Transition
+
+
+class Recorder:
+    """Samples of a run in the simulation's units, and the slip summed over every step of it.
+
+    Slip is the motion of the tip's material against the object's at the contact, along the surface: rolling,
+    where both move alike, does not count. It is summed in the object's frame while a finger carries force,
+    from the moment it touches.
+    """
+
+    def __init__(self, scene: Scene, wanted: Schedule, units: Units, apart: int) -> None:
+        self._scene, self._wanted, self._units, self._apart = scene, wanted, units, apart
+        n, d = len(wanted.contacts), wanted.targets.shape[2]
+        self._d = d
+        self._normals = np.array([c.normal for c in wanted.contacts])
+        self._slip = np.zeros((n, d))
+        loaded = np.linalg.norm(wanted.forces, axis=2) > IN_USE * PEAK * units.force
+        self._slides = loaded & (wanted.at >= 0)
+        self._slides[: wanted.gripping] = False
+        self._touched = [-1] * wanted.at.shape[1]
+        self._six = np.zeros(6)
+        self._rows: list[tuple[Any, ...]] = []
+        self._geoms = {geom: i for i, geom in enumerate(scene.tips)}
+
+    def place(self, data: Any) -> Array:
+        """(d,) the object's centre of mass."""
+        result: Array = data.qpos[: self._d]
+        return result
+
+    def step(self, mujoco: Any, data: Any, j: int, *, over: bool) -> None:
+        """Sum the slip of a step, and every so often, and when it is over, take a sample."""
+        R = self._rotation(mujoco, data)
+        at = self._wanted.at[j].tolist()
+        for finger, contact in enumerate(at):
+            if contact >= 0 and contact != self._touched[finger]:
+                self._slip[contact] = 0.0
+        self._touched = at
+        moving = np.flatnonzero(self._slides[j])
+        if moving.size:
+            self._slip_of(data, R, moving, self._wanted.at[j][moving])
+        since = j + 1 - self._wanted.gripping
+        if since == 0 or (since > 0 and since % self._apart == 0) or over:
+            forces, touching = self._forces(mujoco, data, R, at)
+            tips = data.qpos[self._scene.slides.places].copy()
+            slip = np.linalg.norm(self._slip, axis=1)
+            self._rows.append((since, forces, touching, self.place(data).copy(), R, slip, tips))
+
+    def _rotation(self, mujoco: Any, data: Any) -> Array:
+        if self._d == 2:
+            c, s = np.cos(data.qpos[2]), np.sin(data.qpos[2])
+            return np.array([[c, -s], [s, c]])
+        flat = np.zeros(9)
+        mujoco.mju_quat2Mat(flat, data.qpos[3:7])
+        return flat.reshape(3, 3)
+
+    def _slip_of(self, data: Any, R: Array, fingers: NDArray[np.intp], contacts: NDArray[np.intp]) -> None:
+        """Add the sliding of a step."""
+        d, scene = self._d, self._scene
+        normals = self._normals[contacts]
+        reach = self._units.tip_radius * (normals @ R.T)  # from the tips' centres to where they touch
+        tips, speeds = data.qpos[scene.slides.places[fingers]], data.qvel[scene.slides.speeds[fingers]]
+        arm = tips + reach - data.qpos[:d]
+        spin = data.qvel[2:3] if d == 2 else R @ data.qvel[3:6]
+        relative = speeds - data.qvel[:d] - _cross(spin, arm)
+        if scene.joints is not None:
+            turning = data.qvel[scene.joints.speeds[fingers]]
+            if d == 3:  # in each tip's own frame
+                turning = _rotated(data.qpos[scene.joints.places[fingers]], turning)
+            relative = relative + _cross(turning, reach)
+        inside = relative @ R
+        inside -= (inside * normals).sum(axis=1, keepdims=True) * normals
+        self._slip[contacts] += inside * self._units.timestep
+
+    def _forces(self, mujoco: Any, data: Any, R: Array, at: list[int]) -> tuple[Array, Array]:
+        """(n, d) forces of the fingers on the object, its frame, and (n,) whether they touch."""
+        forces, touching = np.zeros((len(self._normals), 3)), np.zeros(len(self._normals), dtype=bool)
+        six, geoms = self._six, self._geoms
+        for number in range(data.ncon):
+            contact = data.contact[number]
+            first, second = contact.geom
+            mujoco.mj_contactForce(self._scene.model, data, number, six)
+            force = contact.frame.reshape(3, 3).T @ six[:3]  # of the first geom on the second
+            place = at[geoms[first]] if first in geoms else at[geoms[second]]
+            if place >= 0:
+                forces[place] += force if first in geoms else -force
+                touching[place] |= six[0] > 0
+        return forces[:, : self._d] @ R, touching
+
+    def execution(
+        self, plan: Transition | RegraspPlan, setup: Setup, frictions: Array, *, complete: bool
+    ) -> Execution:
+        """The samples as a value, in the plan's units."""
+        units, wanted = self._units, self._wanted
+        since, forces, touching, places, turned, slip, tips = (
+            np.array(column) for column in zip(*self._rows, strict=True)
+        )
+        steps = since + wanted.gripping - 1
+        return Execution(
+            plan=plan,
+            setup=setup,
+            contacts=wanted.contacts,
+            frictions=read_only(np.array(frictions)),
+            times=read_only(since * units.timestep * units.time),
+            clock=read_only(wanted.clock[steps]),
+            planned=read_only(wanted.planned[steps]),
+            forces=read_only(forces * units.force),
+            touching=touching,
+            positions=read_only(places * units.length),
+            rotations=read_only(turned),
+            turned=read_only(wanted.rotations[steps]),
+            slip=read_only(slip * units.length),
+            tips=read_only(tips * units.length),
+            mass=units.mass * units.force * units.time**2 / units.length,
+            stiffness=units.stiffness * units.force / units.length,
+            complete=complete,
+        )
+
+
+def _cross(spin: Array, arm: Array) -> Array:
+    """Omega x r; in the plane omega is one number."""
+    if arm.shape[1] == 2:
+        return spin.reshape(-1, 1) * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+    return torque(np.broadcast_to(spin, arm.shape), arm)
+
+
+def _rotated(quaternions: Array, vectors: Array) -> Array:
+    """Vectors turned by unit quaternions (w, x, y, z), row by row."""
+    w, u = quaternions[:, :1], quaternions[:, 1:]
+    return vectors + 2 * np.cross(u, np.cross(u, vectors) + w * vectors)

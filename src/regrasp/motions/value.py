@@ -1,0 +1,133 @@
+"""Motions of the fingers that are free while others hold."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import ArrayValue
+from regrasp.motions.rounded import RoundedWay
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.transition import Transition
+
+
+@dataclass(frozen=True, eq=False)
+class Motion(ArrayValue):
+    """One finger's way before a step, in the object's frame; others stand still meanwhile.
+
+    step: the step before which it moves; the number of steps for what follows the last. finger: its number.
+    origin, target: contacts between which it goes, the same for one that lifts off or touches down only.
+    way: of the tip's centre. duration: [s]. start: when it begins, on the clock of ``Motions`` [s].
+    to_object, to_tips: how far the tip's surface keeps from the object away from its own contacts, and from
+    other tips, exact for the rounded way or less; infinite where there is nothing [m].
+    """
+
+    step: int
+    finger: int
+    origin: str
+    target: str
+    way: RoundedWay
+    duration: float
+    start: float
+    to_object: float
+    to_tips: float
+
+
+@dataclass(frozen=True, eq=False)
+class Motions(ArrayValue):
+    """A plan with the ways of its free fingers: the clock stands for a step while fingers move before it.
+
+    plan, motions: in order. tips: (steps + 1, k, 2) where the tips' centres are during each step, and at last
+    [m]. contacts: (steps + 1, k) whether each finger is at its contact then.
+    tip_radius, clearance: as asked for [m].
+    """
+
+    plan: Transition | RegraspPlan
+    motions: tuple[Motion, ...]
+    tips: Array
+    contacts: NDArray[np.bool_]
+    tip_radius: float
+    clearance: float
+
+    @property
+    def steps(self) -> tuple[Transition, ...]:
+        """Those of the plan."""
+        return (self.plan,) if isinstance(self.plan, Transition) else self.plan.steps
+
+    @cached_property
+    def starts(self) -> Array:
+        """(steps + 1,) when each step begins on this clock, and when everything has ended [s]."""
+        pauses = np.zeros(len(self.steps) + 1)
+        for motion in self.motions:
+            pauses[motion.step] += motion.duration
+        lengths = np.array([0.0, *(step.duration for step in self.steps)])
+        result: Array = np.cumsum(pauses + lengths)
+        return result
+
+    def pause(self, step: int) -> float:
+        """How long fingers move before a step, or after the last [s]."""
+        return sum(motion.duration for motion in self.motions if motion.step == step)
+
+    @property
+    def duration(self) -> float:
+        """Of steps and motions together [s]."""
+        return float(self.starts[-1])
+
+    def positions(self, t: ArrayLike) -> Array:
+        """(m, k, 2) the tips' centres in the object's frame at times (m,) in [0, duration] [m]."""
+        return self._over_time(t)[0]
+
+    def velocities(self, t: ArrayLike) -> Array:
+        """(m, k, 2) their velocities in the object's frame [m/s]."""
+        return self._over_time(t)[1]
+
+    def touching(self, t: ArrayLike) -> NDArray[np.bool_]:
+        """(m, k) whether each finger is at a contact; one that moves is not."""
+        return self._over_time(t)[2]
+
+    def plan_time(self, t: ArrayLike) -> Array:
+        """(m,) the plan's own time, which stands while fingers move [s]."""
+        times, k = self._places(t)
+        ends = np.cumsum([0.0, *(step.duration for step in self.steps)])
+        begun = np.array([*self.starts[:-1], self.duration])
+        last = np.array([*(step.duration for step in self.steps), 0.0])
+        result: Array = ends[k] + np.clip(times - begun[k], 0.0, last[k])
+        return result
+
+    def _places(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        """Times and the step that each belongs to, the pause before it included."""
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        if not ((times >= 0) & (times <= self.duration * (1 + 1e-12))).all():
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+        over = np.array([s + step.duration for s, step in zip(self.starts, self.steps, strict=False)])
+        return times, np.searchsorted(over, times, side="left")
+
+    def _over_time(self, t: ArrayLike) -> tuple[Array, Array, NDArray[np.bool_]]:
+        times, k = self._places(t)
+        positions, velocities = self.tips[k], np.zeros((times.size, *self.tips.shape[1:]))
+        touching = self.contacts[k]
+        for motion in self.motions:
+            x = (times - motion.start) / motion.duration
+            before, during = (k == motion.step) & (x <= 0), (x > 0) & (x < 1)
+            positions[before, motion.finger] = motion.way.points[0]
+            touching[before, motion.finger] = (
+                self.contacts[motion.step - 1][motion.finger] if motion.step else False
+            )
+            place, velocity = motion.way.over_time(x[during], motion.duration)
+            positions[during, motion.finger], velocities[during, motion.finger] = place, velocity
+            touching[during, motion.finger] = False
+        return positions, velocities, touching
+
+    def __str__(self) -> str:
+        lines = [f"{len(self.motions)} motions, {self.duration:.4g} s with the plan's steps"]
+        for m in self.motions:
+            what = f"from {m.origin} to {m.target}" if m.origin != m.target else f"at {m.origin}"
+            lines.append(
+                f"before step {m.step + 1}: finger {m.finger + 1} {what}, {m.way.length:.4g} m in "
+                f"{m.duration:.4g} s, clear of the object by {m.to_object:.4g} m, "
+                f"of tips by {m.to_tips:.4g} m"
+            )
+        return "\n".join(lines)
