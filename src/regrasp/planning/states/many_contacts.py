@@ -27,6 +27,7 @@ from regrasp.planning.states.solving import LOOSE, Chooser, Found
 _SAME = 1e-6  # of a margin [rad, N or -]
 _BESIDE = 1e4  # forces so many times a load are beside it in one program
 _FAR = 1e3  # forces so much larger than the load are the better unit
+_OTHER_SCALES = (1e3, 10.0)  # limits in units of programs, where those of LOOSE are not solved
 VANISHING = 1e-9
 """A load below this fraction of the force limits changes no margin: the best squeeze is that without."""
 
@@ -51,8 +52,9 @@ def solved_forces(
         reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
         if reason is None or reason.certificate is None:
             if criteria.unbounded and min(criteria.limits(grasp)) < inf:
-                with suppress(Infeasible, SolverFailed):  # forces as large as the limits are the unit
-                    return _solved(grasp, load, criteria, backend, facets, loose=1.0)
+                for loose in _OTHER_SCALES:
+                    with suppress(Infeasible, SolverFailed):
+                        return _solved(grasp, load, criteria, backend, facets, loose=loose)
             anyway = _by_newton(grasp, load, criteria, backend, facets)
             if anyway is not None:
                 return anyway
