@@ -41,11 +41,14 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+    from regrasp.quality.closure import Closure, closure
 
 __version__ = "0.1.0"
 
 # Loaded when they are asked for, so that `import regrasp` stays fast: whole regrasps, shapes and surveys.
 _LATER = {
+    "Closure": "regrasp.quality.closure",
+    "closure": "regrasp.quality.closure",
     "Mesh": "regrasp.mesh.mesh",
     "Outline": "regrasp.outline.outline",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
@@ -72,6 +75,7 @@ _LATER = {
 __all__ = [
     "Bottleneck",
     "ChosenState",
+    "Closure",
     "Contact",
     "Criteria",
     "EquilibriumLocus",
@@ -109,6 +113,7 @@ __all__ = [
     "best_squeezes",
     "bottleneck",
     "choose_state",
+    "closure",
     "held_directions",
     "held_sphere",
     "locus_intervals",
