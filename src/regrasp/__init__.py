@@ -26,6 +26,8 @@ from regrasp.plans.turning import TurningPath
 from regrasp.verification import Verification, verify
 
 if TYPE_CHECKING:
+    from regrasp.measures.closure import Closure, closure
+    from regrasp.measures.wrench_ball import WrenchBall, wrench_ball
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
@@ -41,14 +43,14 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
-    from regrasp.quality.closure import Closure, closure
-
 __version__ = "0.1.0"
 
 # Loaded when they are asked for, so that `import regrasp` stays fast: whole regrasps, shapes and surveys.
 _LATER = {
-    "Closure": "regrasp.quality.closure",
-    "closure": "regrasp.quality.closure",
+    "Closure": "regrasp.measures.closure",
+    "closure": "regrasp.measures.closure",
+    "WrenchBall": "regrasp.measures.wrench_ball",
+    "wrench_ball": "regrasp.measures.wrench_ball",
     "Mesh": "regrasp.mesh.mesh",
     "Outline": "regrasp.outline.outline",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
@@ -110,6 +112,7 @@ __all__ = [
     "TurningPath",
     "Verification",
     "Wrench",
+    "WrenchBall",
     "best_squeezes",
     "bottleneck",
     "choose_state",
@@ -126,6 +129,7 @@ __all__ = [
     "pyramid_losses",
     "sensitivity",
     "verify",
+    "wrench_ball",
 ]
 
 

@@ -32,7 +32,16 @@ FLOORS: dict[str, Set[str]] = {
         "plans",
         "planning",
     },
-    "quality": {"errors", "display", "mechanics", "closed_form", "programs", "plans", "planning", "quality"},
+    "measures": {
+        "errors",
+        "display",
+        "mechanics",
+        "closed_form",
+        "programs",
+        "plans",
+        "planning",
+        "measures",
+    },
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
@@ -74,7 +83,7 @@ FLOORS: dict[str, Set[str]] = {
         "bench",
     },
     # regrasp/__init__.py: the public names
-    "": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "quality", "verification"},
+    "": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "measures", "verification"},
     "__main__": {"cli"},
 }
 # Room -> rooms of its floor that it may import besides its own; rooms side by side never import each other.

@@ -9,14 +9,14 @@ from typing import Literal
 import numpy as np
 
 from regrasp.errors import InvalidInput
+from regrasp.measures.rationals import Vector, neutral, vanishing
+from regrasp.measures.rays import is_inside, rays, wrench
+from regrasp.measures.separating import Family, clearest, cuts, deepest, least_opposed, opposition
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp, touching
 from regrasp.mechanics.opposition import dot
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.quality.rationals import Vector, neutral, vanishing
-from regrasp.quality.rays import is_inside, rays, wrench
-from regrasp.quality.separating import Family, clearest, cuts, deepest, least_opposed, opposition
 
 Kind = Literal["form", "force", "none"]
 
@@ -170,8 +170,9 @@ def _decided(grasp: Grasp, shown: Grasp, kind: Kind) -> "Closure | Vector":
 def _room(grasp: Grasp, columns: list[Vector], weights: list[Fraction]) -> float:
     """How far the wrench of every unit force may move: l sigma_min(W (1 - 1 1' / N)), l the least weight.
 
-    The weights, of sum 1, make the mean of the u . w_j zero, for any unit u; so the largest of them is at least
-    l times the length of W'u less its plain mean. A change by less than that leaves it positive.
+    With weights of sum 1 and b_j = max_k u . w_k - u . w_j >= 0 for a unit u, the largest u . w_k is the
+    weighted mean of the b_j, at least l |b| and so at least l |(1 - 11'/N) W'u|. A change of less leaves it
+    positive.
     """
     w = _scaled(grasp, columns)
     lengths = np.linalg.norm(w[: grasp.dimension], axis=0)

@@ -181,7 +181,7 @@ def test_form_closure_in_space_needs_seven() -> None:
 @pytest.mark.parametrize("change", [-1e-3, -1e-9, 0.0, 1e-9, 1e-3])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_edge_of_a_cone_along_the_line_of_two_fingers(turn: float, change: float, dimension: int) -> None:
-    """Closure exactly where both cones hold the line strictly inside, whatever rounding says (Nguyen 1988)."""
+    """Closure exactly where both cones hold the line strictly inside, however rounded (Nguyen 1988)."""
     turned = np.array([[cos(turn), -sin(turn), 0], [sin(turn), cos(turn), 0], [0, 0, 1]])[
         :dimension, :dimension
     ]

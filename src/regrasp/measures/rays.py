@@ -10,10 +10,10 @@ from math import cos, frexp, pi, sin
 
 import numpy as np
 
+from regrasp.measures.rationals import Vector
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.opposition import dot, exact
-from regrasp.quality.rationals import Vector
 
 BITS = 48
 """Bits of the tangential part of a force; 2^-44 of the friction is kept back for rounding."""

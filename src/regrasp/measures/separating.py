@@ -7,12 +7,12 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import SolverFailed
+from regrasp.measures.rationals import Vector
+from regrasp.measures.rays import ray, wrench
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.opposition import exact, oppositions
 from regrasp.planning.states.separation import cleared
-from regrasp.quality.rationals import Vector
-from regrasp.quality.rays import ray, wrench
 
 Family = list[tuple[int, Vector]]
 
@@ -92,8 +92,8 @@ def clearest(grasp: Grasp) -> Vector | None:
 def deepest(grasp: Grasp, wrenches: Array) -> list[Vector]:
     """Of wrenches (m, k), torques by the grasp's size, the twists that each side of a cube opposes least.
 
-    They minimise max_j u . w_j over |u|_inf = 1: the least is negative or zero without closure, and where it is
-    rounding, its direction separates but for rounding.
+    They minimise max_j u . w_j over |u|_inf = 1: the least is negative or zero without closure, and where it
+    is rounding, its direction separates but for rounding.
     """
     from scipy.optimize import linprog
 
