@@ -27,6 +27,8 @@ from regrasp.verification import Verification, verify
 
 if TYPE_CHECKING:
     from regrasp.measures.closure import Closure, closure
+    from regrasp.measures.measure import Measure, Quality
+    from regrasp.measures.quality import quality
     from regrasp.measures.wrench_ball import WrenchBall, wrench_ball
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
@@ -49,6 +51,9 @@ __version__ = "0.1.0"
 _LATER = {
     "Closure": "regrasp.measures.closure",
     "closure": "regrasp.measures.closure",
+    "Measure": "regrasp.measures.measure",
+    "Quality": "regrasp.measures.measure",
+    "quality": "regrasp.measures.quality",
     "WrenchBall": "regrasp.measures.wrench_ball",
     "wrench_ball": "regrasp.measures.wrench_ball",
     "Mesh": "regrasp.mesh.mesh",
@@ -91,9 +96,11 @@ __all__ = [
     "InvalidInput",
     "LoadSeries",
     "Margins",
+    "Measure",
     "Mesh",
     "Outline",
     "PyramidLosses",
+    "Quality",
     "RegraspError",
     "RegraspObstacle",
     "RegraspPlan",
@@ -127,6 +134,7 @@ __all__ = [
     "plan_removal",
     "plan_rotation",
     "pyramid_losses",
+    "quality",
     "sensitivity",
     "verify",
     "wrench_ball",

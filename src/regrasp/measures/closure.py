@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -117,7 +117,11 @@ def closure(grasp: Grasp | Iterable[Contact]) -> Closure:
     friction cone along the line of two fingers) is none. Source: Roa and Suarez, Autonomous Robots 38
     (2015), section 2; Lynch and Park, Modern Robotics, chapter 12.
     """
-    grasp = taken(grasp)
+    return _verdict(taken(grasp))
+
+
+@lru_cache(maxsize=64)
+def _verdict(grasp: Grasp) -> Closure:
     found = _decided(frictionless(grasp), grasp, "form")
     if not isinstance(found, Closure) and grasp.frictions.any():
         found = _decided(grasp, grasp, "force")

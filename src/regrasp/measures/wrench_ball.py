@@ -25,6 +25,7 @@ _STARTS, _STEPS = 60, 200
 _CONES = 4_000_000  # some seconds
 _LOOSER = (0.05, 0.2, 0.5)
 _ROUNDING = 1e-12
+_FLAT = 1e-9
 _SURELY = 1e-6  # of the fingers' wrenches: an upper bound that no search stops at without closure
 
 
@@ -100,7 +101,7 @@ def wrench_ball(
     """
     grasp = taken(grasp)
     total = choice(norm, "norm", NORMS) == "L1"
-    limits = _limits(limit, len(grasp), total)
+    limits = normal_limits(limit, len(grasp), total=total)
     length = (grasp.size or 1.0) if length is None else number(length, "length", above=0)
     if gap != inf:
         number(gap, "gap", above=0)
@@ -111,25 +112,28 @@ def wrench_ball(
 def radius(
     grasp: Grasp, wrenches: WrenchSet, length: float, gap: float, metric: Array | None = None
 ) -> tuple[float, float, Array]:
-    """(lower, upper, direction) of min h(u) / |D u|; ``metric``: (m,) ones and zeros of D, all ones if None."""
+    """(lower, upper, direction) of min h(u) / |D u|; ``metric``: (m,) ones and zeros of D, or None."""
     m = wrenches.axes.shape[1]
     d = np.ones(m) if metric is None else metric
-    found = _searched(wrenches, d, gap) if m == 6 else None  # a lower bound above 0 proves closure, too
-    if found is not None and (
-        found[0] > 0 or (gap >= 1 and found[1] > _SURELY * np.abs(wrenches.axes).max())
-    ):
-        return found
+    if m == 6 and metric is None:
+        found = _searched(wrenches, d, gap)  # a lower bound above 0 proves closure, too
+        if found[0] > 0 or (gap >= 1 and found[1] > _SURELY * np.abs(wrenches.axes).max()):
+            return found
     if (twist := closure(grasp).escape) is not None:
         u = twist * np.where(np.arange(m) < grasp.dimension, 1.0, length)
-        return 0.0, 0.0, u / np.linalg.norm(u)
-    if m == 3:
-        facets = wrenches.facets
-        sizes = np.linalg.norm(d * facets, axis=1)
-        values = np.full(len(facets), inf)
-        np.divide(wrenches.support(facets), sizes, out=values, where=sizes > 1e-9)
-        least = int(values.argmin())
-        return float(values[least]), float(values[least]), -facets[least]
-    return _searched(wrenches, d, gap)
+        u = u / np.linalg.norm(u)
+        if np.linalg.norm(d * u) > _FLAT:
+            return 0.0, 0.0, u
+        if m == 6:  # what is not resisted does not count, and no search closes in on it
+            return 0.0, *_searched(wrenches, d, inf)[1:]
+    if m == 6:
+        return _searched(wrenches, d, gap)
+    facets = wrenches.facets
+    sizes = np.linalg.norm(d * facets, axis=1)
+    values = np.full(len(facets), inf)
+    np.divide(wrenches.support(facets), sizes, out=values, where=sizes > _FLAT)
+    least = int(values.argmin())
+    return float(values[least]), float(values[least]), -facets[least]
 
 
 def _searched(wrenches: WrenchSet, metric: Array, gap: float) -> tuple[float, float, Array]:
@@ -150,7 +154,8 @@ def _searched(wrenches: WrenchSet, metric: Array, gap: float) -> tuple[float, fl
     return unit * lower, unit * float(upper), -u
 
 
-def _limits(limit: ArrayLike, count: int, total: bool) -> Array:
+def normal_limits(limit: ArrayLike, count: int, *, total: bool) -> Array:
+    """(n,) checked limits of normal forces [N]; of a ``total`` the same number for all."""
     if np.ndim(limit) == 0:
         return np.full(count, number(limit, "limit", above=0))
     if total:

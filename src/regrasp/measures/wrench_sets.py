@@ -17,6 +17,8 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 
+_NOISE = 1e-14
+
 
 @dataclass(frozen=True, eq=False)
 class WrenchSet:
@@ -64,6 +66,10 @@ class WrenchSet:
             sides = np.vstack([sides, self.edges[:, 1] - self.edges[:, 0]])
             a, b = sides[np.array(list(combinations(range(len(sides)), 2)))].transpose(1, 0, 2)
             normals = np.cross(a, b)
+        # of a flat set its plane, and the normals of its sides within it; harmless of others
+        plane = np.linalg.svd(sides)[2][-1]
+        normals = np.vstack([normals, plane, np.cross(sides, plane)])
         lengths = np.linalg.norm(normals, axis=1)
-        kept = normals[lengths > 1e-14 * lengths.max()] / lengths[lengths > 1e-14 * lengths.max(), None]
+        kept = normals[lengths > _NOISE * lengths.max()]
+        kept = kept / np.linalg.norm(kept, axis=1)[:, None]
         return np.vstack([kept, -kept])

@@ -1,0 +1,63 @@
+"""How good a grasp is, by every measure of the literature that needs nothing but the grasp."""
+
+from collections.abc import Iterable, Sequence
+from math import inf
+
+from numpy.typing import ArrayLike
+
+from regrasp.errors import InvalidInput
+from regrasp.measures.closure import taken
+from regrasp.measures.geometry_measures import geometry_measures
+from regrasp.measures.limit_measures import FACETS, limit_measures
+from regrasp.measures.matrix_measures import hand_measures, matrix_measures
+from regrasp.measures.measure import Quality
+from regrasp.measures.wrench_ball import GAP, normal_limits
+from regrasp.mechanics.checks import array, number
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import check_load
+from regrasp.mechanics.wrench import Wrench
+
+
+def quality(
+    grasp: Grasp | Iterable[Contact],
+    *,
+    limit: ArrayLike = 1.0,
+    length: float | None = None,
+    load: Wrench | None = None,
+    jacobians: Sequence[ArrayLike] | None = None,
+    gap: float = GAP,
+    facets: int = FACETS,
+) -> Quality:
+    """A table of the measures of Roa and Suarez (2015), each with unit, range and which way is better.
+
+    limit: each finger's largest normal force [N], a number or (n,); where the sum is limited, their mean.
+    length: by which torques are divided [m], the grasp's size if not given. load: adds the least sum of
+    normal forces that balances it. jacobians: of each finger, (d, q_i) its tip's velocity per joint speed, in the
+    object's frame: adds the measures of the hand. gap: of what is searched for in space. facets: edges of the
+    pyramids of the wrench volume and min-weight in space; everything else has round cones.
+
+    A polygon's measures are of three contacts or more in one plane. Raises ``InvalidInput`` for bad input.
+    """
+    grasp = taken(grasp)
+    limits = normal_limits(limit, len(grasp), total=False)
+    length = (grasp.size or 1.0) if length is None else number(length, "length", above=0)
+    if gap != inf:
+        number(gap, "gap", above=0)
+    if not isinstance(facets, int) or isinstance(facets, bool) or facets < 3:
+        raise InvalidInput(f"facets must be a whole number of at least 3, got {facets!r}")
+    if load is not None:
+        check_load(grasp, load)
+    measures = [
+        *matrix_measures(grasp, length),
+        *geometry_measures(grasp),
+        *limit_measures(grasp, limits, length, gap, facets, load),
+    ]
+    if jacobians is not None:
+        if len(jacobians) != len(grasp):
+            raise InvalidInput(
+                f"jacobians must be one for each of {len(grasp)} fingers, got {len(jacobians)}"
+            )
+        given = [array(j, "jacobian", (grasp.dimension, None)) for j in jacobians]
+        measures += hand_measures(grasp, length, given)
+    return Quality(grasp, length, tuple(measures))
