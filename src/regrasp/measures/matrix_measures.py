@@ -82,7 +82,7 @@ def hand_measures(grasp: Grasp, length: float, jacobians: list[Array]) -> Iterat
         column += jacobian.shape[1]
     hand: Array = np.asarray(np.linalg.pinv((point * weight[:, None]).T) @ joints, dtype=np.float64)
     s = singular_values(hand)
-    unit, power, roa = "of the jacobians", f"jacobian^{len(s)}", ROA
+    unit, power = "of the jacobians", f"jacobian^{len(s)}"
     yield Measure(
         "hand_least_singular_value",
         float(s[-1]),

@@ -33,7 +33,7 @@ def quality(
 
     limit: each finger's largest normal force [N], a number or (n,); where the sum is limited, their mean.
     length: by which torques are divided [m], the grasp's size if not given. load: adds the least sum of
-    normal forces that balances it. jacobians: of each finger, (d, q_i) its tip's velocity per joint speed, in the
+    normal forces that balances it. jacobians: of each finger, (d, q_i) its velocity per joint speed, in the
     object's frame: adds the measures of the hand. gap: of what is searched for in space. facets: edges of the
     pyramids of the wrench volume and min-weight in space; everything else has round cones.
 
