@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
-    from regrasp.planning.surveys.held_centres import HeldCentres, held_centres
+    from regrasp.planning.surveys.extremes.held_centres import HeldCentres, held_centres
+    from regrasp.planning.surveys.extremes.largest_load import LargestLoad, largest_load
+    from regrasp.planning.surveys.extremes.least_friction import LeastFriction, least_friction
     from regrasp.planning.surveys.held_directions import HeldDirections, held_directions
     from regrasp.planning.surveys.held_sphere import HeldSphere, held_sphere
-    from regrasp.planning.surveys.largest_load import LargestLoad, largest_load
-    from regrasp.planning.surveys.least_friction import LeastFriction, least_friction
     from regrasp.planning.surveys.pyramid_loss import PyramidLosses, pyramid_losses
     from regrasp.planning.surveys.sensitivity import Sensitivity, sensitivity
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
@@ -63,12 +63,12 @@ _LATER = {
     "Outline": "regrasp.outline.outline",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
     "bottleneck": "regrasp.planning.holds.bottleneck",
-    "HeldCentres": "regrasp.planning.surveys.held_centres",
-    "held_centres": "regrasp.planning.surveys.held_centres",
-    "LargestLoad": "regrasp.planning.surveys.largest_load",
-    "largest_load": "regrasp.planning.surveys.largest_load",
-    "LeastFriction": "regrasp.planning.surveys.least_friction",
-    "least_friction": "regrasp.planning.surveys.least_friction",
+    "HeldCentres": "regrasp.planning.surveys.extremes.held_centres",
+    "held_centres": "regrasp.planning.surveys.extremes.held_centres",
+    "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
+    "largest_load": "regrasp.planning.surveys.extremes.largest_load",
+    "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
+    "least_friction": "regrasp.planning.surveys.extremes.least_friction",
     "HeldDirections": "regrasp.planning.surveys.held_directions",
     "held_directions": "regrasp.planning.surveys.held_directions",
     "HeldSphere": "regrasp.planning.surveys.held_sphere",

@@ -18,7 +18,7 @@ from regrasp.planning.states.criteria import ChosenState, Criteria
 from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.separation import cleared
 from regrasp.planning.states.solving import force_unit
-from regrasp.planning.surveys.load_reach import largest_share
+from regrasp.planning.surveys.extremes.load_reach import largest_share
 
 SQUEEZE = 1e6
 """Forces are at most this multiple of the load where nothing else limits them."""

@@ -16,7 +16,7 @@ from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.escape import infeasible
 from regrasp.planning.states.separation import cleared
 from regrasp.planning.states.solving import force_unit
-from regrasp.planning.surveys.load_reach import Reached, farthest, half_plane, held_state
+from regrasp.planning.surveys.extremes.load_reach import Reached, farthest, half_plane, held_state
 
 _NOTHING = 1e-9
 _ABOVE = (1e-12, 1e-9, 1e-7, 1e-5)
@@ -84,15 +84,16 @@ def largest_load(
         ray = Reached(np.ones(1), found.forces / float(found.k[0]), found.twist)
         if (held := held_state(grasp, 0 * start, along, ray, np.ones(1), scaled, unit)) is not None:
             return LargestLoad(grasp, direction, base, inf, (inf, inf), held[1], None)
-    if found.k is None or found.is_unbounded:
+    k = found.k
+    if k is None or found.is_unbounded:
         raise infeasible(
             grasp, direction if base is None else base, Criteria("effort", max_force, reserve=0.0)
         )
-    if abs(found.k[0]) < _NOTHING:
+    if abs(k[0]) < _NOTHING:
         found = found._replace(k=np.zeros(1))
     held = held_state(grasp, start, along, found, np.zeros(1), scaled, unit)
     if held is None:
-        raise SolverFailed(f"no forces were found for the largest factor, about {float(found.k[0]):.6g}")
+        raise SolverFailed(f"no forces were found for the largest factor, about {float(k[0]):.6g}")
     factor = float(held[0][0])
     normal, upper = half_plane(grasp, start, along, found.twist, scaled)
     upper = max(upper, factor) if normal[0] > 0 else inf

@@ -21,8 +21,8 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench, torque
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.escape import infeasible
-from regrasp.planning.surveys import convex_regions as regions
-from regrasp.planning.surveys.load_reach import farthest, half_plane, held_state
+from regrasp.planning.surveys.extremes import convex_regions as regions
+from regrasp.planning.surveys.extremes.load_reach import farthest, half_plane, held_state
 
 GAP = 1e-3
 REACH = 100.0
