@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from regrasp.measures.measure import Measure, Quality
     from regrasp.measures.quality import quality
     from regrasp.measures.wrench_ball import WrenchBall, wrench_ball
+    from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
@@ -54,6 +55,7 @@ __version__ = "0.1.0"
 _LATER = {
     "Closure": "regrasp.measures.closure",
     "closure": "regrasp.measures.closure",
+    "LoadSet": "regrasp.mechanics.loads.load_set",
     "Measure": "regrasp.measures.measure",
     "Quality": "regrasp.measures.measure",
     "quality": "regrasp.measures.quality",
@@ -107,6 +109,7 @@ __all__ = [
     "LargestLoad",
     "LeastFriction",
     "LoadSeries",
+    "LoadSet",
     "Margins",
     "Measure",
     "Mesh",

@@ -200,6 +200,38 @@ def test_least_sum_of_normals() -> None:
     assert rg.quality(hopeless, load=rg.Wrench([0, -1]))["least_normal_sum"].value == inf
 
 
+def test_task_factor() -> None:
+    """The largest k for which every corner of a hull is held, by a program over all k at once for each."""
+    grasp = rg.Grasp(c.changed(max_force=None) for c in ring(1, 3).subset([0, 1]))
+    center = rg.Wrench([0.0, 0.0])
+    held = rg.Wrench.from_vector(-edges(grasp, 1.0) @ np.array([1.0, 1.3, 0.9, 1.1]))
+    corners = [
+        held + rg.Wrench([0.1, 0.2], 0.1),
+        held + rg.Wrench([-0.2, 0.1]),
+        held - rg.Wrench([0.1, 0.1], 0.2),
+    ]
+    loads = rg.LoadSet.hull(corners, center=held)
+    table = rg.quality(grasp, loads=loads)
+    e = edges(grasp, 1.0)
+    expected = inf
+    for corner in corners:
+        away = (corner - held).vector
+        found = linprog([0] * 4 + [-1], A_eq=np.c_[e, away], b_eq=-held.vector)
+        expected = min(expected, inf if found.status == 3 else -found.fun)
+    assert 0 < expected < inf
+    assert table["task_factor"].value == pytest.approx(expected, rel=1e-6)
+    lower, upper = table["task_factor"].bounds
+    assert lower <= expected * (1 + 1e-9)
+    assert upper >= expected * (1 - 1e-9)
+    lifted = rg.Grasp([rg.Contact([0, 1], [0, -1], 0.1), rg.Contact([0.1, 1], [0, -1], 0.1)])
+    away = rg.LoadSet.hull([rg.Wrench([0, -1]), rg.Wrench([1, -1])])
+    assert rg.quality(lifted, loads=away)["task_factor"].value == 0
+    with pytest.raises(rg.InvalidInput, match="round sets have no corners"):
+        rg.quality(grasp, loads=rg.LoadSet.turned(center + rg.Wrench([0, -1])))
+    with pytest.raises(rg.InvalidInput, match="LoadSet of the grasp's dimension"):
+        rg.quality(grasp, loads=rg.Wrench([0, -1]))
+
+
 def test_hand_measures() -> None:
     """Fingertips moved one to one: H is the pseudo-inverse of G', so its values are those of G inverted."""
     grasp = ring(2, 3)

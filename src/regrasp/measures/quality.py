@@ -8,13 +8,14 @@ from numpy.typing import ArrayLike
 from regrasp.errors import InvalidInput
 from regrasp.measures.closure import taken
 from regrasp.measures.geometry_measures import geometry_measures
-from regrasp.measures.limit_measures import FACETS, limit_measures
+from regrasp.measures.limit_measures import FACETS, limit_measures, task_measure
 from regrasp.measures.matrix_measures import hand_measures, matrix_measures
 from regrasp.measures.measure import Quality
 from regrasp.measures.wrench_ball import GAP, normal_limits
 from regrasp.mechanics.checks import array, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
 
@@ -25,6 +26,7 @@ def quality(
     limit: ArrayLike = 1.0,
     length: float | None = None,
     load: Wrench | None = None,
+    loads: LoadSet | None = None,
     jacobians: Sequence[ArrayLike] | None = None,
     gap: float = GAP,
     facets: int = FACETS,
@@ -33,9 +35,11 @@ def quality(
 
     limit: each finger's largest normal force [N], a number or (n,); where the sum is limited, their mean.
     length: by which torques are divided [m], the grasp's size if not given. load: adds the least sum of
-    normal forces that balances it. jacobians: of each finger, (d, q_i) its velocity per joint speed, in the
-    object's frame: adds the measures of the hand. gap: of what is searched for in space. facets: edges of the
-    pyramids of the wrench volume and min-weight in space; everything else has round cones.
+    normal forces that balances it. loads: a hull; adds the largest factor by which it may be scaled (the
+    contacts' own ``max_force`` count there, ``limit`` does not). jacobians: of each finger, (d, q_i) its
+    velocity per joint speed, in the object's frame: adds the measures of the hand. gap: of what is searched
+    for in space. facets: edges of the pyramids of the wrench volume and min-weight in space; everything else
+    has round cones.
 
     A polygon's measures are of three contacts or more in one plane. Raises ``InvalidInput`` for bad input.
     """
@@ -53,6 +57,10 @@ def quality(
         *geometry_measures(grasp),
         *limit_measures(grasp, limits, length, gap, facets, load),
     ]
+    if loads is not None:
+        if not isinstance(loads, LoadSet) or loads.dimension != grasp.dimension:
+            raise InvalidInput(f"loads must be a LoadSet of the grasp's dimension, got {loads!r}")
+        measures.append(task_measure(grasp, loads))
     if jacobians is not None:
         if len(jacobians) != len(grasp):
             raise InvalidInput(
