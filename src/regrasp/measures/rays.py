@@ -16,7 +16,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.opposition import dot, exact
 
 BITS = 48
-"""Bits of the tangential part of a force; 2^-44 of the friction is kept back for rounding."""
+"""Bits of the tangential part of a force; mostly 2^-44 of the friction is kept back for rounding."""
 
 
 def normal_of(contact: Contact) -> Vector:
@@ -32,10 +32,14 @@ def ray(contact: Contact, direction: Sequence[float]) -> Vector:
         return [n[0] - side * mu * n[1], n[1] + side * mu * n[0]]
     t = [Fraction(float(value)) for value in direction]
     along = dot(t, n)
-    kept = mu * (1 - Fraction(16, 2**BITS))
-    _, exponent = frexp(contact.friction)
+    _, exponent = frexp(min(contact.friction, 1.0))
     grid = Fraction(2) ** (exponent - BITS)  # few bits, all of one denominator: small whole numbers
-    return [a + round(kept * (b - along * a) / grid) * grid for a, b in zip(n, t, strict=True)]
+    for kept in (4, 20, 36):  # a large coefficient makes more of the rounding
+        share = mu * (1 - Fraction(2**kept, 2**BITS))
+        force = [a + round(share * (b - along * a) / grid) * grid for a, b in zip(n, t, strict=True)]
+        if is_inside(contact, force):
+            return force
+    return n
 
 
 def rays(contact: Contact, tangents: Array, facets: int) -> list[Vector]:

@@ -27,7 +27,8 @@ from regrasp.planning.surveys.extremes.load_reach import farthest, half_plane, h
 GAP = 1e-3
 REACH = 100.0
 """The region is sought within this many sizes of the grasp, where nothing bounds it."""
-_SIDES = 400
+_SIDES = 200
+_STALLED = 6  # asks that add nothing to what is known
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -153,10 +154,14 @@ class _Region:
             self.ask(direction)
         if p == 1 or not self.points:
             return
+        least, stalled = inf, 0
         for _ in range(_SIDES):
             inner, outer = self.inner, self.outer
             total = regions.size(outer)
-            if total - regions.size(inner) <= gap * total:
+            undecided = total - regions.size(inner)
+            stalled = 0 if undecided < least * (1 - 1e-6) else stalled + 1
+            least = min(least, undecided)
+            if undecided <= gap * total or stalled > _STALLED:
                 return
             direction = regions.widest_gap(inner, outer, self.asked)
             if direction is None:

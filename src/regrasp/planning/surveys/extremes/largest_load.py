@@ -66,7 +66,7 @@ def largest_load(
 
     max_force: limits every force besides the contacts' own limits [N]. Friction counts in full.
     By one conic program; its forces prove the factor from below and its dual the bound from above, both
-    checked. Raises ``Infeasible`` where no factor is held (0 is, where the base is), ``InvalidInput`` for
+    checked. Raises ``Infeasible`` where no factor above 0 is held and the base is not, ``InvalidInput`` for
     bad input.
     """
     check_load(grasp, direction)
@@ -85,15 +85,17 @@ def largest_load(
         if (held := held_state(grasp, 0 * start, along, ray, np.ones(1), scaled, unit)) is not None:
             return LargestLoad(grasp, direction, base, inf, (inf, inf), held[1], None)
     k = found.k
-    if k is None or found.is_unbounded:
-        raise infeasible(
+    held = None
+    if k is not None and not found.is_unbounded:
+        found = found._replace(k=np.zeros(1)) if abs(k[0]) < _NOTHING else found
+        held = held_state(grasp, start, along, found, np.zeros(1), scaled, unit)
+    if held is None:  # there may still be one factor, where base and direction cancel
+        reason = infeasible(
             grasp, direction if base is None else base, Criteria("effort", max_force, reserve=0.0)
         )
-    if abs(k[0]) < _NOTHING:
-        found = found._replace(k=np.zeros(1))
-    held = held_state(grasp, start, along, found, np.zeros(1), scaled, unit)
-    if held is None:
-        raise SolverFailed(f"no forces were found for the largest factor, about {float(k[0]):.6g}")
+        if reason.certificate is None and k is not None:
+            raise SolverFailed(f"no forces were found for the largest factor, about {float(k[0]):.6g}")
+        raise reason
     factor = float(held[0][0])
     normal, upper = half_plane(grasp, start, along, found.twist, scaled)
     upper = max(upper, factor) if normal[0] > 0 else inf

@@ -174,6 +174,8 @@ def held_state(
     for share in _SHARES:
         k = found.k + share * (inside - found.k)
         load = base + directions @ k
+        if not load.any():
+            return k, GraspState(grasp, Wrench.from_vector(load), np.zeros_like(found.forces))
         chooser = Chooser(grasp, Wrench.from_vector(load), "clarabel", None, limits)
         forces = chooser.settled(found.forces, grasp.frictions.tolist(), limits)
         if forces is not None:
