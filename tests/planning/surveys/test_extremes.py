@@ -132,6 +132,7 @@ def test_least_friction_of_degenerate_loads() -> None:
     lifted = rg.least_friction(table(), rg.Wrench([0, 2]))
     assert (lifted.value, lifted.state) == (inf, None)
     assert lifted.escape.is_proof
+    assert str(lifted).startswith("no friction coefficient up to 10000 lets P1, P2 hold")
     # facing fingers need the less friction the more they squeeze: half the load over a million loads
     assert rg.least_friction(facing(), rg.Wrench([0, -3])).value == pytest.approx(0.5e-6, rel=1e-5)
     assert rg.least_friction(facing(), rg.Wrench([0, -1]), max_force=2).value == pytest.approx(1 / sqrt(15))
@@ -179,7 +180,11 @@ def test_yaw_of_a_foot() -> None:
     assert tipped.factor == pytest.approx(100 * 0.065, rel=1e-7)
 
 
-@given(held_pairs(), st.floats(-3, 3), st.floats(-1, 1))
+rough = st.sampled_from([0.1, 0.25, 0.5, 1.0, 2.0])
+"""HiGHS drops entries below 1e-9 and is right to 1e-7: an oracle for friction that is not tiny."""
+
+
+@given(held_pairs(rough), st.floats(-3, 3), st.floats(-1, 1))
 @settings(max_examples=25, deadline=None)
 def test_largest_load_against_linear_programs(pair, angle: float, turn: float) -> None:
     direction = rg.Wrench([cos(angle), sin(angle)], turn)
@@ -201,7 +206,7 @@ def test_largest_load_against_linear_programs(pair, angle: float, turn: float) -
     assert lower <= -answer.fun * (1 + 1e-7)
     assert upper >= -answer.fun * (1 - 1e-7)
     assert found.state.is_balanced(reserve=0.0)
-    assert found.state.load == found.load or np.allclose(found.state.load.vector, found.load.vector)
+    np.testing.assert_allclose(found.state.load.vector, found.load.vector, rtol=1e-9, atol=1e-9)
 
 
 def test_largest_load_against_cone_programs() -> None:

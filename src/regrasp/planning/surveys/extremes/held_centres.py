@@ -35,10 +35,10 @@ _STALLED = 6  # asks that add nothing to what is known
 class HeldCentres(ArrayValue):
     """Where the centre of mass may lie, relative to the present one, under one weight.
 
-    axes: (d - 1, d) unit vectors across the weight. inner: (m, d) vertices of a region that is held, each by
-    one of ``states``; outer: (k, d) vertices of one that holds every centre that can be held: what lies
-    beyond is proven not to be. In the plane both are the two ends of an interval and equal but for rounding.
-    is_bounded: False where the region reaches as far as it was sought.
+    axes: (d - 1, d) unit vectors across the weight. inner: (m, d) vertices of a region that is held: their
+    hull is that of the loads that ``states`` balance; outer: (k, d) vertices of one that holds every centre
+    that can be held: what lies beyond is proven not to be. In the plane both are the two ends of an interval
+    and equal but for rounding. is_bounded: False where the region reaches as far as it was sought.
 
     The weight's direction adds nothing: each point stands for the line through it along the weight.
     """

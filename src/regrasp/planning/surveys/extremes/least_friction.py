@@ -23,7 +23,7 @@ from regrasp.planning.surveys.extremes.load_reach import largest_share
 SQUEEZE = 1e6
 """Forces are at most this multiple of the load where nothing else limits them."""
 MOST = 1e4
-"""A load that is not held with this coefficient is not held with any."""
+"""A load that is not held with this coefficient counts as held with none."""
 
 _FORMULA = 1e3
 _SETTLED = 1e-9
@@ -37,7 +37,7 @@ _BELOW = (2e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4)
 class LeastFriction(ArrayValue):
     """The least coefficient, one for all contacts, with which forces hold a load.
 
-    value: mu [-], proven by ``state``, whose contacts have it; infinite where no friction is enough.
+    value: mu [-], proven by ``state``, whose contacts have it; infinite where 1e4 is not enough.
     bounds: (lower, value): with any smaller coefficient than ``lower`` the object escapes by ``escape``,
     which is None where lower is 0, for want of a proof, too. Where less is needed the more fingers squeeze,
     value is what forces of 1e6 times the load reach.
@@ -55,9 +55,10 @@ class LeastFriction(ArrayValue):
 
     def __str__(self) -> str:
         names = ", ".join(self.grasp.names)
-        why = "" if self.escape is None else f"; with less the object escapes by {self.escape}"
+        less = "" if self.value == inf else "with less "
+        why = "" if self.escape is None else f"; {less}the object escapes by {self.escape}"
         if self.value == inf:
-            return f"{names} hold {self.load!r} with no friction coefficient{why.replace('with less', '')}"
+            return f"no friction coefficient up to {MOST:g} lets {names} hold {self.load!r}{why}"
         return f"{names} hold {self.load!r} with friction {self.value:.6g} or more{why}"
 
     def __repr__(self) -> str:
@@ -95,7 +96,7 @@ def least_friction(
     if state is None:
         most = _with(grasp, MOST, rough)
         escape = escape_twist(most, load, most.frictions.tolist(), criteria.limits(most))
-        return LeastFriction(grasp, load, inf, (inf if escape else 0.0, inf), None, escape)
+        return LeastFriction(grasp, load, inf, (MOST if escape else 0.0, inf), None, escape)
     lower = 0.0 if escape is None else _coefficient(escape.grasp)
     for share in _BELOW:
         if mu * (1 - share) <= lower:
