@@ -145,6 +145,7 @@ def rows() -> dict[str, Row]:
     sphere = rg.held_sphere(space_grasp(), count=12)
     outline, box = ellipse(), mesh()
     choosing = {"grasp": PAIR, "load": LOAD}
+    loads = rg.LoadSet.ball(LOAD, force=1.0, torque=0.1)
     transition, turn, whole = removal(), rotation(), regrasp()
     result = {
         "Contact": Row(rg.Contact, contact, planar),
@@ -232,6 +233,48 @@ def rows() -> dict[str, Row]:
         "held_sphere": Row(rg.held_sphere, {"grasp": space_grasp(), "count": 12}),
         "HeldSphere.state": Row(sphere.state, {"direction": [0, 0, -1]}, {"direction": "space vector"}),
         "HeldSphere.holds": Row(sphere.holds, {"direction": [0, 0, -1]}, {"direction": "space vector"}),
+        "closure": Row(rg.closure, {"grasp": GRASP}),
+        "wrench_ball": Row(
+            rg.wrench_ball,
+            {"grasp": GRASP, "limit": 1.0},
+            {"limit": "limits", "norm": "word", "length": "positive", "gap": "gap"},
+        ),
+        "quality": Row(
+            rg.quality,
+            {"grasp": GRASP},
+            {
+                "limit": "limits",
+                "length": "positive",
+                "loads": "value",
+                "jacobians": "jacobians",
+                "gap": "gap",
+            },
+        ),
+        "Quality.__getitem__": Row(rg.quality(GRASP).__getitem__, {"name": "isotropy"}, {"name": "key"}),
+        "least_friction": Row(rg.least_friction, choosing, {"contacts": "contact names"}),
+        "largest_load": Row(
+            rg.largest_load, {"grasp": PAIR, "direction": LOAD}, {"direction": "value", "base": "value"}
+        ),
+        "held_centres": Row(
+            rg.held_centres,
+            {"grasp": PAIR, "weight": rg.Wrench(LOAD.force), "max_force": 20.0},
+            {"weight": "value", "gap": "positive", "reach": "positive"},
+        ),
+        "LoadSet.hull": Row(rg.LoadSet.hull, {"loads": [LOAD]}, {"loads": "contacts", "center": "value"}),
+        "LoadSet.ball": Row(
+            rg.LoadSet.ball,
+            {"center": LOAD},
+            {"center": "value", "force": "not negative", "torque": "not negative"},
+        ),
+        "LoadSet.ellipsoid": Row(
+            rg.LoadSet.ellipsoid, {"center": LOAD, "axes": np.eye(3)}, {"center": "value", "axes": "axes"}
+        ),
+        "LoadSet.tilted": Row(rg.LoadSet.tilted, {"load": LOAD, "angle": 0.1}, {"angle": "angle to pi"}),
+        "LoadSet.turned": Row(rg.LoadSet.turned, {"load": LOAD}),
+        "LoadSet.scaled": Row(loads.scaled, {"factor": 2.0}, {"factor": "not negative"}),
+        "LoadSet.support": Row(loads.support, {"twist": [0, 0, 1]}, {"twist": "twists"}),
+        "LoadSet.extreme": Row(loads.extreme, {"twist": [0, 0, 1]}, {"twist": "space vector"}),
+        "LoadSet.contains": Row(loads.contains, {"load": LOAD}),
         "EquilibriumLocus": Row(rg.EquilibriumLocus, choosing),
         "EquilibriumLocus.given": Row(
             rg.EquilibriumLocus.given,
@@ -363,6 +406,11 @@ def file_rows() -> dict[str, Row]:
         "plan_scenario": Row(files.plan_scenario, {"scenario": scenario}),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
         "write_plan": Row(files.write_plan, {"plan": removal(), "path": os.devnull}),
+        "write_mcap": Row(
+            files.write_mcap,
+            {"plan": removal(), "path": "none.mcap"},
+            {"start": "number", "metres_per_newton": "positive"},
+        ),
         "write_setpoints": Row(files.write_setpoints, {"plan": removal(), "path": os.devnull}),
         "Outline.from_file": Row(rg.Outline.from_file, {"path": "none.svg"}),
         "Mesh.from_file": Row(rg.Mesh.from_file, {"path": "none.stl"}),
@@ -408,6 +456,14 @@ KINDS |= {
     "least normals": (
         *ANYTHING, "1.0", nan, inf, -inf, HUGE, True, -1.0, [], [nan, 1], [-1, 0], [1, 2, 3, 4, 5], [[1, 1]],
         np.array(["x", "y"]), [OBJECT, 1],
+    ),
+    "gap": [v for v in NOT_POSITIVE if not (isinstance(v, float) and v == inf)],
+    "twists": (*NOT_NUMBERS, 5, [], [1, 2], np.zeros((3, 2))),
+    "key": ("", "grasp", OBJECT, 3, nan, None),
+    "axes": (*NOT_NUMBERS, 5, [], [1, 2], np.zeros((2, 2)), np.zeros((3, 3, 3))),
+    "angle to pi": (*NOT_A_NUMBER, -1.0, 4.0),
+    "jacobians": (
+        *ANYTHING, 3, nan, HUGE, True, [], [np.eye(2)], [np.eye(3)] * 3, [[1, 2]] * 3, [OBJECT] * 3,
     ),
     "layers": (b"x", OBJECT, 1j, 3, nan, HUGE, True, [], [3], {}, [None]),
     "rising": (*NOT_NUMBERS, 5, [], [0], [0, 0], [1, 2], [0, -1]),

@@ -26,6 +26,11 @@ from regrasp.plans.turning import TurningPath
 from regrasp.verification import Verification, verify
 
 if TYPE_CHECKING:
+    from regrasp.measures.closure import Closure, closure
+    from regrasp.measures.measure import Measure, Quality
+    from regrasp.measures.quality import quality
+    from regrasp.measures.wrench_ball import WrenchBall, wrench_ball
+    from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
@@ -34,6 +39,9 @@ if TYPE_CHECKING:
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
+    from regrasp.planning.surveys.extremes.held_centres import HeldCentres, held_centres
+    from regrasp.planning.surveys.extremes.largest_load import LargestLoad, largest_load
+    from regrasp.planning.surveys.extremes.least_friction import LeastFriction, least_friction
     from regrasp.planning.surveys.held_directions import HeldDirections, held_directions
     from regrasp.planning.surveys.held_sphere import HeldSphere, held_sphere
     from regrasp.planning.surveys.pyramid_loss import PyramidLosses, pyramid_losses
@@ -41,15 +49,28 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
-
 __version__ = "0.1.0"
 
 # Loaded when they are asked for, so that `import regrasp` stays fast: whole regrasps, shapes and surveys.
 _LATER = {
+    "Closure": "regrasp.measures.closure",
+    "closure": "regrasp.measures.closure",
+    "LoadSet": "regrasp.mechanics.loads.load_set",
+    "Measure": "regrasp.measures.measure",
+    "Quality": "regrasp.measures.measure",
+    "quality": "regrasp.measures.quality",
+    "WrenchBall": "regrasp.measures.wrench_ball",
+    "wrench_ball": "regrasp.measures.wrench_ball",
     "Mesh": "regrasp.mesh.mesh",
     "Outline": "regrasp.outline.outline",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
     "bottleneck": "regrasp.planning.holds.bottleneck",
+    "HeldCentres": "regrasp.planning.surveys.extremes.held_centres",
+    "held_centres": "regrasp.planning.surveys.extremes.held_centres",
+    "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
+    "largest_load": "regrasp.planning.surveys.extremes.largest_load",
+    "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
+    "least_friction": "regrasp.planning.surveys.extremes.least_friction",
     "HeldDirections": "regrasp.planning.surveys.held_directions",
     "held_directions": "regrasp.planning.surveys.held_directions",
     "HeldSphere": "regrasp.planning.surveys.held_sphere",
@@ -72,6 +93,7 @@ _LATER = {
 __all__ = [
     "Bottleneck",
     "ChosenState",
+    "Closure",
     "Contact",
     "Criteria",
     "EquilibriumLocus",
@@ -79,15 +101,21 @@ __all__ = [
     "ForceCost",
     "Grasp",
     "GraspState",
+    "HeldCentres",
     "HeldDirections",
     "HeldSphere",
     "Infeasible",
     "InvalidInput",
+    "LargestLoad",
+    "LeastFriction",
     "LoadSeries",
+    "LoadSet",
     "Margins",
+    "Measure",
     "Mesh",
     "Outline",
     "PyramidLosses",
+    "Quality",
     "RegraspError",
     "RegraspObstacle",
     "RegraspPlan",
@@ -106,11 +134,16 @@ __all__ = [
     "TurningPath",
     "Verification",
     "Wrench",
+    "WrenchBall",
     "best_squeezes",
     "bottleneck",
     "choose_state",
+    "closure",
+    "held_centres",
     "held_directions",
     "held_sphere",
+    "largest_load",
+    "least_friction",
     "locus_intervals",
     "plan_addition",
     "plan_exchange",
@@ -119,8 +152,10 @@ __all__ = [
     "plan_removal",
     "plan_rotation",
     "pyramid_losses",
+    "quality",
     "sensitivity",
     "verify",
+    "wrench_ball",
 ]
 
 

@@ -40,6 +40,16 @@ FLOORS: dict[str, Set[str]] = {
     },
     "motions": {"errors", "mechanics", "outline", "plans", "motions"},
     "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "motions", "execution"},
+    "measures": {
+        "errors",
+        "display",
+        "mechanics",
+        "closed_form",
+        "programs",
+        "plans",
+        "planning",
+        "measures",
+    },
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
@@ -93,7 +103,7 @@ FLOORS: dict[str, Set[str]] = {
         "cli",
     },
     # regrasp/__init__.py: the public names
-    "": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "verification"},
+    "": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "measures", "verification"},
     "__main__": {"cli"},
 }
 # Room -> rooms of its floor that it may import besides its own; rooms side by side never import each other.

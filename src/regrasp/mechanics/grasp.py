@@ -298,6 +298,20 @@ class Grasp(ArrayValue):
         return f"Grasp([{inside}\n])"
 
 
+def touching(contacts: Iterable[Contact]) -> Grasp:
+    """A grasp whose contacts may coincide, as two at a corner do: for measures; planning takes none such."""
+    given = tuple(contacts)
+    if len(given) < 2 or not all(isinstance(contact, Contact) for contact in given):
+        return Grasp(given)
+    apart = Grasp(given[:1])
+    for contact in given[1:]:
+        if contact.dimension != apart.dimension:
+            return Grasp(given)  # which says what is wrong
+    named = _named(given)
+    _refuse_equal_names(named)
+    return apart._of(named)
+
+
 def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
     """Unnamed contacts get the name of their place, or the next P<k> that nobody has."""
     taken = {contact.name for contact in contacts}

@@ -211,6 +211,8 @@ class GraspState(ArrayValue):
 
 def check_load(grasp: Grasp, load: Wrench) -> None:
     """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension."""
+    if not isinstance(grasp, Grasp):
+        raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
     if not isinstance(load, Wrench):
         raise InvalidInput(f"load must be a Wrench, got {shown(load)}; write Wrench(force=[...])")
     if load.dimension != grasp.dimension:

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 from regrasp.mechanics.value import ArrayValue
 from regrasp.motions.rounded import RoundedWay
 from regrasp.plans.regrasp_plan import RegraspPlan

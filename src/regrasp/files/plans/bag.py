@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.setpoints import setpoint_blocks
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.mechanics.contact import Contact
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
@@ -51,7 +51,13 @@ def write_mcap(
         InvalidInput: For another ending than ``.mcap``.
         ImportError: Without rosbags.
     """
-    target = Path(path)
+    if not isinstance(plan, Transition | RegraspPlan):
+        raise InvalidInput(f"plan must be a Transition or a RegraspPlan, got {shown(plan)}")
+    target = Path(file_path(path))
+    number(rate, "rate", above=0)
+    number(start, "start")
+    if metres_per_newton is not None:
+        number(metres_per_newton, "metres_per_newton", above=0)
     if target.suffix != ".mcap":
         raise InvalidInput(f"path must end in .mcap, got {str(path)!r}")
     try:

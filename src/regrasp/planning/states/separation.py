@@ -14,6 +14,10 @@ from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 
+# A contact that opposes a motion by less than this fraction of its speed is meant not to oppose it at all.
+_TOUCHING = 1e-3
+_STEPS = 8
+
 
 def gap_left(
     grasp: Grasp, target: Array, weight: Array, frictions: list[float], limits: list[float]
@@ -42,6 +46,40 @@ def gap_left(
         answer = failed.solution
     gap: Array = answer.value[n:]
     return gap
+
+
+def cleared(grasp: Grasp, twist: Array, frictions: list[float], limits: list[float]) -> Array:
+    """The twist changed least so that contacts without a limit that hardly oppose it do not at all.
+
+    A solver's answer touches their cones to its tolerance; a contact that may push without limit would oppose
+    it enough. Newton's steps on v_n - mu |v_t| = 0, or on v = 0 where the contact stands still.
+    """
+    d, w, cones = grasp.dimension, grasp.width, grasp.cones
+    length = grasp.size or 1.0
+    weight = np.r_[np.ones(d), np.full(twist.size - d, length)]  # speeds at the size of the grasp
+    arms = cones.matrix.T / weight  # velocities of the contacts from the weighted twist
+    free = [i for i, limit in enumerate(limits) if limit == inf]
+    v = twist * weight
+    for _ in range(_STEPS):
+        rows, misses = [], []
+        speed = float(np.linalg.norm(v))
+        for i in free:
+            at, n, mu = arms[w * i : w * i + w], cones.normals[i], frictions[i]
+            moved = at @ v
+            normal = float(moved @ n)
+            tangent = moved - normal * n
+            tangential = float(np.linalg.norm(tangent))
+            if np.hypot(normal, tangential) < _TOUCHING * speed:
+                rows += list(at)
+                misses += moved.tolist()
+            elif 0 < mu * tangential - normal < _TOUCHING * speed:
+                rows.append(at.T @ (n - mu * tangent / tangential))
+                misses.append(normal - mu * tangential)
+        if not rows or np.abs(misses).max() <= 2.0**-52 * speed:
+            break
+        v = v - np.linalg.lstsq(np.array(rows), np.array(misses), rcond=1e-12)[0]
+    result: Array = v / weight
+    return result
 
 
 class Edge(NamedTuple):

@@ -1,0 +1,350 @@
+"""Least friction, largest loads, held centres: textbook answers, independent programs, both sides proven."""
+
+from itertools import pairwise
+from math import cos, hypot, inf, pi, sin, sqrt, tan
+
+import cvxpy as cp
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy.optimize import linprog
+
+import regrasp as rg
+from invariance import Frame, frames
+from space import random_grasp, random_rotation, rotated, soft_random
+from strategies import held_pairs, held_triples
+
+pytestmark = pytest.mark.oracle
+
+
+def facing(mu: float = 0.5) -> rg.Grasp:
+    return rg.Grasp([rg.Contact([-1, 0], [1, 0], mu), rg.Contact([1, 0], [-1, 0], mu)])
+
+
+def table(mu: float = 0.5) -> rg.Grasp:
+    """Two feet on the ground."""
+    return rg.Grasp([rg.Contact([-1, 0], [0, 1], mu), rg.Contact([1, 0], [0, 1], mu)])
+
+
+def edges(grasp: rg.Grasp) -> np.ndarray:
+    columns = []
+    for c in grasp:
+        t = np.array([-c.normal[1], c.normal[0]])
+        for f in (c.normal - c.friction * t, c.normal + c.friction * t):
+            columns.append([*f, c.position[0] * f[1] - c.position[1] * f[0]])
+    return np.array(columns).T
+
+
+# -- least friction ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("angle", [0.3, 0.6, 1.0, 1.3, 1.5])
+def test_ladders(angle: float) -> None:
+    """Textbook: smooth wall, 1 / (2 tan a); the same at both ends, tan a = (1 - mu^2) / (2 mu)."""
+    ladder = rg.Grasp(
+        [
+            rg.Contact([-cos(angle), -sin(angle)], [0, 1], 0.0, name="floor"),
+            rg.Contact([cos(angle), sin(angle)], [-1, 0], 0.7, name="wall"),
+        ]
+    )
+    weight = rg.Wrench([0, -9.81])
+    floor = rg.least_friction(ladder, weight, contacts=["floor"])
+    assert floor.value == pytest.approx(1 / (2 * tan(angle)), rel=1e-9)
+    both = rg.least_friction(ladder, weight)
+    assert (1 - both.value**2) / (2 * both.value) == pytest.approx(tan(angle), rel=1e-9)
+    for found in (floor, both):
+        lower, upper = found.bounds
+        assert upper * (1 - 1e-5) < lower <= upper == found.value
+        assert found.state.is_balanced(reserve=0.0)
+        assert found.escape.is_proof
+        assert max(found.escape.frictions) == pytest.approx(lower)
+
+
+def is_held(grasp: rg.Grasp, mu: float, load: rg.Wrench, limit: float | None) -> bool:
+    """Decided by a program of its own, with polygons of 64 sides around the discs of the limit."""
+    same = rg.Grasp(c.changed(friction=mu) for c in grasp)
+    e = edges(same)
+    n = e.shape[1]
+    rows, bounds = np.zeros((0, n)), np.zeros(0)
+    if limit is not None:
+        around = np.array([[cos(a), sin(a)] for a in 2 * pi * np.arange(64) / 64])
+        rows = np.zeros((64 * (n // 2), n))
+        for i in range(n // 2):
+            rows[64 * i : 64 * i + 64, 2 * i : 2 * i + 2] = around @ e[:2, 2 * i : 2 * i + 2]
+        bounds = np.full(len(rows), limit)
+    return linprog(np.zeros(n), A_ub=rows, b_ub=bounds, A_eq=e, b_eq=-load.vector).status == 0
+
+
+@pytest.mark.parametrize("limit", [None, 4.0])
+def test_least_friction_against_linear_programs(limit: float | None) -> None:
+    rng = np.random.default_rng(3)
+    finite = 0
+    for _ in range(8):
+        count = int(rng.integers(2, 6))
+        points, normals = rng.normal(size=(2, count, 2))
+        grasp = rg.Grasp(rg.Contact(p, n - p, 0.1) for p, n in zip(points, 0.7 * normals, strict=True))
+        load = rg.Wrench(rng.normal(size=2), 0.3 * rng.normal())
+        found = rg.least_friction(grasp, load, max_force=limit)
+        if found.value == inf:
+            assert not is_held(grasp, 100.0, load, limit)
+            continue
+        finite += 1
+        assert found.state.is_balanced(reserve=0.0)
+        if found.value > 1e-3:
+            assert is_held(grasp, found.value * 1.01, load, None if limit is None else limit * 1.002)
+            assert not is_held(grasp, found.value * 0.999, load, None if limit is None else limit * 0.998)
+    assert finite > 3
+
+
+def margin_in_space(grasp: rg.Grasp, mu: float, load: rg.Wrench) -> bool:
+    """Whether friction mu holds the load with forces up to 1e3, by cvxpy."""
+    f = cp.Variable((len(grasp), 3))
+    s = cp.Variable()
+    torques = [
+        np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ f[i] for i, (x, y, z) in enumerate(grasp.positions)
+    ]
+    rows = [sum(f[i] for i in range(len(grasp))) + s * load.force == 0, sum(torques) + s * load.torque == 0]
+    for i, c in enumerate(grasp):
+        rows += [cp.norm(f[i] - (c.normal @ f[i]) * c.normal) <= mu * (c.normal @ f[i]), cp.norm(f[i]) <= 1]
+    problem = cp.Problem(cp.Maximize(s), [*rows, s <= 1])
+    problem.solve(solver=cp.CLARABEL)
+    return float(problem.value) > 1e-3
+
+
+def test_least_friction_in_space_against_cone_programs() -> None:
+    rng = np.random.default_rng(6)
+    for count in (3, 4, 5):
+        grasp = random_grasp(rng, count)
+        load = rg.Wrench(rng.normal(size=3), 0.2 * rng.normal(size=3))
+        found = rg.least_friction(grasp, load, max_force=1e3 * float(np.linalg.norm(load.force)))
+        assert 1e-3 < found.value < inf
+        assert found.bounds[0] > 0.999 * found.value
+        assert found.escape.is_proof
+        assert margin_in_space(grasp, 1.02 * found.value, load)
+        assert not margin_in_space(grasp, 0.98 * found.value, load)
+    soft = rg.least_friction(soft_random(rng, 3), rg.Wrench([0, 0, -1]))
+    assert soft.value == inf or soft.state.is_balanced(reserve=0.0)
+
+
+def test_least_friction_of_degenerate_loads() -> None:
+    still = rg.least_friction(facing(), rg.Wrench([0, 0]))
+    assert (still.value, still.bounds, still.escape) == (0.0, (0.0, 0.0), None)
+    assert rg.least_friction(table(), rg.Wrench([0, -2])).value == 0.0
+    lifted = rg.least_friction(table(), rg.Wrench([0, 2]))
+    assert (lifted.value, lifted.state) == (inf, None)
+    assert lifted.escape.is_proof
+    assert str(lifted).startswith("no friction coefficient up to 10000 lets P1, P2 hold")
+    # facing fingers need the less friction the more they squeeze: half the load over a million loads
+    assert rg.least_friction(facing(), rg.Wrench([0, -3])).value == pytest.approx(0.5e-6, rel=1e-5)
+    assert rg.least_friction(facing(), rg.Wrench([0, -1]), max_force=2).value == pytest.approx(1 / sqrt(15))
+
+
+@given(held_triples(), frames)
+@settings(max_examples=4, deadline=None)
+def test_least_friction_does_not_depend_on_units(triple: tuple[rg.Grasp, rg.Wrench], frame: Frame) -> None:
+    grasp, load = triple
+    mine = rg.least_friction(grasp, load).value
+    moved = rg.least_friction(frame.grasp(grasp, [2, 0, 1]), frame.load(load)).value
+    assert moved == pytest.approx(mine, rel=1e-5, abs=1e-5)
+
+
+# -- largest load -----------------------------------------------------------------------------------------
+
+
+def test_a_box_pressed_against_a_wall() -> None:
+    """A box pressed with 20 N, mu 1 at the wall only: 20 / 9.81 kg (textbook)."""
+    grasp = rg.Grasp(
+        [rg.Contact([-1, y], [1, 0], 1.0) for y in (-2, 2)] + [rg.Contact([1, 0], [-1, 0], 0.0, max_force=20)]
+    )
+    found = rg.largest_load(grasp, rg.Wrench([0, -9.81]))
+    assert found.factor == pytest.approx(20 / 9.81)
+    assert found.bounds[1] == pytest.approx(20 / 9.81)
+
+
+def foot(mu: float = 0.5) -> rg.Grasp:
+    return rg.Grasp(rg.Contact([x, y, 0], [0, 0, 1], mu) for x in (-0.12, 0.12) for y in (-0.065, 0.065))
+
+
+def test_yaw_of_a_foot() -> None:
+    """Half-sizes X, Y, 100 N down: mu F hypot(X, Y) with round cones, each corner pushing across its lever.
+
+    With pyramids of |f_x|, |f_y| <= mu f_z it would be mu F (X + Y): Caron, Pham and Nakamura, ICRA 2015.
+    """
+    down = rg.Wrench([0, 0, -100.0])
+    for side in (-1, 1):
+        found = rg.largest_load(foot(), rg.Wrench([0, 0, 0], [0, 0, side]), down)
+        assert found.factor == pytest.approx(0.5 * 100 * hypot(0.12, 0.065), rel=1e-7)
+        assert found.factor < 0.5 * 100 * (0.12 + 0.065)
+        assert found.bounds[1] == pytest.approx(found.factor, rel=1e-6)
+        assert found.escape.is_proof
+    tipped = rg.largest_load(foot(), rg.Wrench([0, 0, 0], [1, 0, 0]), down)
+    assert tipped.factor == pytest.approx(100 * 0.065, rel=1e-7)
+
+
+rough = st.sampled_from([0.1, 0.25, 0.5, 1.0, 2.0])
+"""HiGHS drops entries below 1e-9 and is right to 1e-7: an oracle for friction that is not tiny."""
+
+
+@given(held_pairs(rough), st.floats(-3, 3), st.floats(-1, 1))
+@settings(max_examples=25, deadline=None)
+def test_largest_load_against_linear_programs(pair, angle: float, turn: float) -> None:
+    direction = rg.Wrench([cos(angle), sin(angle)], turn)
+    answer = linprog(
+        [0, 0, 0, 0, -1],
+        A_eq=np.c_[edges(pair.grasp), direction.vector],
+        b_eq=-pair.load.vector,
+        bounds=[(0, None)] * 4 + [(None, None)],
+    )
+    assume(answer.status == 3 or (answer.status == 0 and 1e-6 < -answer.fun < 1e6))
+    found = rg.largest_load(pair.grasp, direction, pair.load)
+    if answer.status == 3:
+        assert found.factor == inf
+        assert found.escape is None
+        assert found.state.is_balanced(reserve=0.0)
+        return
+    assert found.factor == pytest.approx(-answer.fun, rel=1e-5)
+    lower, upper = found.bounds
+    assert lower <= -answer.fun * (1 + 1e-7)
+    assert upper >= -answer.fun * (1 - 1e-7)
+    assert found.state.is_balanced(reserve=0.0)
+    np.testing.assert_allclose(found.state.load.vector, found.load.vector, rtol=1e-9, atol=1e-9)
+
+
+def test_largest_load_against_cone_programs() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(6):
+        grasp = random_grasp(rng, 4)
+        direction = rg.Wrench(rng.normal(size=3), rng.normal(size=3))
+        f, k = cp.Variable((4, 3)), cp.Variable()
+        levers = [
+            np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ f[i]
+            for i, (x, y, z) in enumerate(grasp.positions)
+        ]
+        rows = [
+            sum(f[i] for i in range(4)) + k * direction.force == 0,
+            sum(levers) + k * direction.torque == 0,
+        ]
+        for i, c in enumerate(grasp):
+            across = f[i] - (c.normal @ f[i]) * c.normal
+            rows += [cp.norm(across) <= c.friction * (c.normal @ f[i]), cp.norm(f[i]) <= 3]
+        problem = cp.Problem(cp.Maximize(k), rows)
+        problem.solve(solver=cp.CLARABEL)
+        found = rg.largest_load(grasp, direction, max_force=3)
+        assert found.factor == pytest.approx(float(problem.value), rel=1e-5, abs=1e-6)
+        assert found.bounds[1] >= float(problem.value) - 1e-6
+
+
+def test_largest_load_of_degenerate_directions() -> None:
+    assert rg.largest_load(table(), rg.Wrench([0, -1])).factor == inf
+    lifted = rg.largest_load(table(), rg.Wrench([0, 1]))
+    assert lifted.bounds == (0.0, pytest.approx(0.0, abs=1e-12))
+    assert lifted.escape.is_proof
+    assert rg.largest_load(table(), rg.Wrench([1, 0]), rg.Wrench([0, -2])).factor == pytest.approx(1.0)
+    with pytest.raises(rg.Infeasible, match="escapes by"):
+        rg.largest_load(table(), rg.Wrench([1, 0]), rg.Wrench([0, 2]))
+    with pytest.raises(rg.InvalidInput, match="direction must not be zero"):
+        rg.largest_load(table(), rg.Wrench([0, 0]))
+    with pytest.raises(rg.InvalidInput, match="no largest value"):
+        _ = rg.largest_load(table(), rg.Wrench([0, -1])).load
+
+
+@given(held_pairs(), frames)
+@settings(max_examples=12, deadline=None)
+def test_largest_load_does_not_depend_on_units(pair, frame: Frame) -> None:
+    direction = rg.Wrench([0.3, -1.0], 0.4)
+    mine = rg.largest_load(pair.grasp, direction, pair.load, max_force=50.0).factor
+    moved = rg.largest_load(
+        frame.grasp(pair.grasp, [1, 0]),
+        frame.load(direction),
+        frame.load(pair.load),
+        max_force=50 * frame.force,
+    ).factor
+    assert moved == pytest.approx(mine, rel=1e-5, abs=1e-6)
+
+
+# -- held centres -----------------------------------------------------------------------------------------
+
+
+def test_centres_over_a_table() -> None:
+    """Plane: between the feet. Space: over the rectangle of the feet, whatever the friction."""
+    found = rg.held_centres(table(), rg.Wrench([0, -3]))
+    np.testing.assert_allclose(np.sort(found.inner[:, 0]), [-1, 1], rtol=1e-8)
+    np.testing.assert_allclose(np.sort(found.outer[:, 0]), [-1, 1], rtol=1e-8)
+    assert found.contains([0.999, 5.0])  # along the weight nothing changes
+    assert found.contains([1.001, 0.0]) is False
+    feet = rg.held_centres(foot(), rg.Wrench([0, 0, -100.0]))
+    assert feet.size == pytest.approx(0.24 * 0.13, rel=1e-6)
+    assert feet.is_bounded
+    assert feet.gap < 1e-3
+    for centre in ([0.119, 0.064, 0], [-0.119, 0.064, 7.0], [0, 0, 0]):
+        assert feet.contains(centre)
+    for centre in ([0.121, 0, 0], [0, -0.066, 0]):
+        assert feet.contains(centre) is False
+    assert all(state.is_balanced(reserve=0.0) for state in feet.states)
+
+
+def test_centres_in_space_against_cone_programs() -> None:
+    """Just inside the inner polygon a load is held, just outside the outer one it is not."""
+    rng = np.random.default_rng(0)
+    random_grasp(rng, 3, 0.5)
+    grasp, weight = random_grasp(rng, 4, 0.5), rg.Wrench([0.2, 0, -1])
+    found = rg.held_centres(grasp, weight, max_force=5)
+    assert found.gap < 1e-3
+
+    def held(centre: np.ndarray) -> bool:
+        f = cp.Variable((4, 3))
+        levers = [
+            np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ f[i]
+            for i, (x, y, z) in enumerate(grasp.positions)
+        ]
+        torque = np.cross(centre, weight.force)
+        rows = [sum(f[i] for i in range(4)) + weight.force == 0, sum(levers) + torque == 0]
+        for i, c in enumerate(grasp):
+            across = f[i] - (c.normal @ f[i]) * c.normal
+            rows += [cp.norm(across) <= c.friction * (c.normal @ f[i]), cp.norm(f[i]) <= 5]
+        problem = cp.Problem(cp.Minimize(0), rows)
+        problem.solve(solver=cp.CLARABEL)
+        return problem.status == "optimal"
+
+    middle = found.inner.mean(axis=0)
+    for corner in found.inner[::6]:
+        assert held(middle + 0.999 * (corner - middle))
+    for corner in found.outer[::6]:
+        assert not held(middle + 1.02 * (corner - middle))
+    for a, b in pairwise(found.outer):
+        assert not held(middle + 1.01 * ((a + b) / 2 - middle))
+
+
+def test_centres_without_a_bound_reach_as_far_as_is_sought() -> None:
+    found = rg.held_centres(facing(), rg.Wrench([0, -1]), reach=20)
+    assert not found.is_bounded
+    np.testing.assert_allclose(np.sort(found.inner[:, 0]), [-20, 20], rtol=1e-6)
+    limited = rg.held_centres(facing(), rg.Wrench([0, -1]), max_force=2)
+    assert limited.is_bounded
+    ends = np.sort(limited.inner[:, 0])
+    reach = rg.largest_load(facing(), rg.Wrench([0, 0], 1.0), rg.Wrench([0, -1]), max_force=2).factor
+    np.testing.assert_allclose(ends, [-reach, reach], rtol=1e-6)
+
+
+def test_centres_in_another_frame() -> None:
+    rng = np.random.default_rng(1)
+    spin = random_rotation(rng)
+    found = rg.held_centres(rotated(foot(), spin, 1e3), rg.Wrench(spin @ np.array([0, 20.0, -100])))
+    mine = rg.held_centres(foot(), rg.Wrench([0, 20.0, -100]))
+    assert found.size == pytest.approx(1e6 * mine.size, rel=2e-3)
+
+
+def test_centres_of_bad_input() -> None:
+    with pytest.raises(rg.InvalidInput, match="weight must have a force"):
+        rg.held_centres(table(), rg.Wrench([0, 0], 1.0))
+    with pytest.raises(rg.Infeasible):
+        rg.held_centres(table(), rg.Wrench([0, 1]))
+
+
+def test_they_say_what_they_found() -> None:
+    assert "with friction 0.258199 or more" in str(
+        rg.least_friction(facing(), rg.Wrench([0, -1]), max_force=2)
+    )
+    assert "factors up to 1 of" in str(rg.largest_load(table(), rg.Wrench([1, 0]), rg.Wrench([0, -2])))
+    assert "a region of length 2, " in str(rg.held_centres(table(), rg.Wrench([0, -3])))
