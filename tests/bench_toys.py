@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from regrasp.bench.running.problem import BenchProblem, Known, Truth, Verdict
+from regrasp.bench.problems.problem import BenchProblem, Known, Truth, Verdict
 from regrasp.bench.running.result import TIMES, Row
 from regrasp.bench.running.solvers import Solver
 from regrasp.programs import Block, Cone, Program

@@ -11,7 +11,7 @@ from scipy import sparse
 
 from regrasp.bench.exchange import export, read_cbf, read_npz, write_cbf, write_npz
 from regrasp.bench.families import FAMILIES
-from regrasp.bench.running.problem import Verdict
+from regrasp.bench.problems.problem import Verdict
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program, Status, solve
 

@@ -7,7 +7,7 @@ import pytest
 
 from oracle import locus
 from regrasp.bench.families import FAMILIES
-from regrasp.bench.running.problem import Truth, Verdict
+from regrasp.bench.problems.problem import Truth, Verdict
 from regrasp.programs import Status, solve
 
 pytestmark = pytest.mark.oracle

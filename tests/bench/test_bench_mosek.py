@@ -9,7 +9,7 @@ from scipy import sparse
 
 from regrasp.bench.exchange import write_cbf
 from regrasp.bench.families import FAMILIES
-from regrasp.bench.running.problem import Verdict
+from regrasp.bench.problems.problem import Verdict
 from regrasp.programs import Block, Cone, Program, Status, solve
 
 pytestmark = pytest.mark.oracle

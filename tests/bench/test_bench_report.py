@@ -20,13 +20,13 @@ from hypothesis import strategies as st
 from documents import executed
 from places import ROOT
 from regrasp.bench.families import FAMILIES
-from regrasp.bench.judging.closeness import closeness
-from regrasp.bench.judging.outcomes import Kind, outcomes
+from regrasp.bench.reporting.closeness import closeness
 from regrasp.bench.reporting.contests import contests
 from regrasp.bench.reporting.document import Heading, Paragraph, Table, markdown
 from regrasp.bench.reporting.growth import growths
 from regrasp.bench.reporting.limitations import LIMITATIONS
 from regrasp.bench.reporting.means import SHIFT, shifted_geometric_mean
+from regrasp.bench.reporting.outcomes import Kind, outcomes
 from regrasp.bench.reporting.page import page
 from regrasp.bench.reporting.profiles import ratios, share_within
 from regrasp.bench.reporting.report import write_report
@@ -39,9 +39,9 @@ from regrasp.bench.reporting.tables import (
     percent,
     seconds,
 )
+from regrasp.bench.reporting.warmth import warmths
 from regrasp.bench.running.result import WARM, Row
 from regrasp.bench.running.store import read_rows
-from regrasp.bench.running.warmth import warmths
 from regrasp.errors import InvalidInput
 from regrasp.plots.surveys.solvers import plot_growth, solver_looks
 

@@ -15,7 +15,7 @@ import pytest
 from bench_toys import TOYS, fake, qp, stripped
 from places import TESTS
 from processes import hear_interrupts, is_running
-from regrasp.bench.running.problem import Family, Known, Truth, Verdict
+from regrasp.bench.problems.problem import Family, Known, Truth, Verdict
 from regrasp.bench.running.result import Key
 from regrasp.bench.running.runner import Limits, chosen_problems, planned, run
 from regrasp.bench.running.solvers import Solver

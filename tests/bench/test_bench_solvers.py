@@ -15,11 +15,11 @@ from bench_toys import CONE, TOYS, UNKNOWN, by_problem, fake, solvable
 from processes import is_running
 from regrasp.bench.judging.judgement import judged
 from regrasp.bench.judging.residual import row_residual
+from regrasp.bench.problems.answer import Answer, understood
+from regrasp.bench.problems.problem import BenchProblem, Known, Truth, Verdict
+from regrasp.bench.problems.settings import SETTINGS, options
 from regrasp.bench.reporting.report import write_report
-from regrasp.bench.running.answer import Answer, understood
-from regrasp.bench.running.problem import BenchProblem, Known, Truth, Verdict
 from regrasp.bench.running.runner import Limits, run
-from regrasp.bench.running.settings import SETTINGS, options
 from regrasp.bench.running.solvers import Solver, chosen_solvers, installed_solvers
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program

@@ -11,12 +11,12 @@ from test_bench_report import LIMIT, WRONG, row, written
 
 from regrasp.bench.families import FAMILIES
 from regrasp.bench.judging.judgement import CERTIFICATE, is_near, is_proof, judged
-from regrasp.bench.judging.outcomes import Kind, outcomes
 from regrasp.bench.judging.residual import row_residual
+from regrasp.bench.problems.answer import Answer
+from regrasp.bench.problems.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
 from regrasp.bench.reporting.contests import contests
+from regrasp.bench.reporting.outcomes import Kind, outcomes
 from regrasp.bench.reporting.tables import contest_table, summary_table
-from regrasp.bench.running.answer import Answer
-from regrasp.bench.running.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
 from regrasp.programs import Block, Cone, Program
 
 pytestmark = pytest.mark.oracle

@@ -126,8 +126,10 @@ ROOMS: dict[str, Set[str]] = {
     | {"plots.over_time", "plots.wrench_space", "plots.escapes", "plots.regrasps", "plots.surveys"},
     "files.plans": set(),
     "files.scenarios": set(),
-    "bench.judging": {"bench.running"},
-    "bench.reporting": {"bench.running", "bench.judging"},
+    "bench.problems": set(),
+    "bench.judging": {"bench.problems"},
+    "bench.running": {"bench.problems", "bench.judging"},
+    "bench.reporting": {"bench.problems", "bench.running", "bench.judging"},
 }
 SOLVERS = {
     "clarabel", "cvxpy", "qpsolvers", "osqp", "daqp", "quadprog", "piqp", "proxsuite", "scs", "ecos",

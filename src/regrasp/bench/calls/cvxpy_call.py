@@ -4,7 +4,7 @@ from typing import Any
 
 from cvxpy.reductions.solvers.defines import INSTALLED_SOLVERS, SOC, SOLVER_MAP_CONIC
 
-from regrasp.bench.running.answer import Answer
+from regrasp.bench.problems.answer import Answer
 from regrasp.programs import cvxpy_backend
 from regrasp.programs.program import Program
 

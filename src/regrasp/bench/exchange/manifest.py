@@ -9,7 +9,7 @@ from typing import Any
 
 from regrasp.bench.exchange.cbf import write_cbf
 from regrasp.bench.exchange.npz import write_npz
-from regrasp.bench.running.problem import BenchProblem, Family
+from regrasp.bench.problems.problem import BenchProblem, Family
 from regrasp.errors import InvalidInput
 from regrasp.files.staging import whole_folder
 

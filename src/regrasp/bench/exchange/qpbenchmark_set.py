@@ -11,7 +11,7 @@ import qpbenchmark
 
 from regrasp.bench.exchange.npz import split
 from regrasp.bench.families import FAMILIES
-from regrasp.bench.running.problem import BenchProblem, Verdict
+from regrasp.bench.problems.problem import BenchProblem, Verdict
 
 # As many unknowns as qpbenchmark's own dense subset of Maros and Meszaros has.
 _DENSE = 1000

@@ -7,7 +7,7 @@ from regrasp.bench.families.regrasps import REGRASPS
 from regrasp.bench.families.space import SPACE_CONES, SPACE_PYRAMIDS
 from regrasp.bench.families.states import STATES
 from regrasp.bench.families.warm import WARM
-from regrasp.bench.running.problem import Family
+from regrasp.bench.problems.problem import Family
 
 _ALL = (
     STATES,

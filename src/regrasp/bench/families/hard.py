@@ -10,7 +10,7 @@ from scipy import sparse
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.states import state_problem
 from regrasp.bench.families.truth import certified
-from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.problems.problem import BenchProblem, Family, Known, Truth, Verdict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench

@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 
 from regrasp.bench.families.grasps import planar
-from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.problems.problem import BenchProblem, Family, Known, Truth, Verdict
 from regrasp.planning.states.solving import force_unit
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.planning.surveys.locus_program import locus_program

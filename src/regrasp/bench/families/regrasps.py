@@ -6,7 +6,7 @@ import numpy as np
 
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.truth import certified
-from regrasp.bench.running.problem import BenchProblem, Family
+from regrasp.bench.problems.problem import BenchProblem, Family
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.regrasps.joint_states import SequenceState, sequence_program

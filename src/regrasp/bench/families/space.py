@@ -7,7 +7,7 @@ import numpy as np
 
 from regrasp.bench.families.grasps import in_space
 from regrasp.bench.families.truth import certified
-from regrasp.bench.running.problem import BenchProblem, Family, Known, Truth, Verdict
+from regrasp.bench.problems.problem import BenchProblem, Family, Known, Truth, Verdict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench

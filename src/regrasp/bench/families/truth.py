@@ -1,6 +1,6 @@
 """What is known where no formula tells: a reference solve whose duality gap certifies it."""
 
-from regrasp.bench.running.problem import Known, Truth, Verdict
+from regrasp.bench.problems.problem import Known, Truth, Verdict
 from regrasp.programs import Program, Status, solve
 
 # A reference is believed to its certified relative gap, and to this at the best.

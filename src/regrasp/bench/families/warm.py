@@ -8,7 +8,7 @@ import numpy as np
 
 from regrasp.bench.families.grasps import planar
 from regrasp.bench.families.states import state_problem
-from regrasp.bench.running.problem import BenchProblem, Family
+from regrasp.bench.problems.problem import BenchProblem, Family
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import force_unit

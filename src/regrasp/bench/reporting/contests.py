@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from statistics import fmean
 
-from regrasp.bench.judging.outcomes import Kind, Outcome, cold
+from regrasp.bench.problems.settings import SETTINGS
 from regrasp.bench.reporting.means import shifted_geometric_mean
-from regrasp.bench.running.settings import SETTINGS
+from regrasp.bench.reporting.outcomes import Kind, Outcome, cold
 
 
 @dataclass(frozen=True, eq=False)

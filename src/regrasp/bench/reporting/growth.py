@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import exp, log
 from statistics import fmean, linear_regression
 
-from regrasp.bench.judging.outcomes import Outcome, cold
+from regrasp.bench.reporting.outcomes import Outcome, cold
 
 SPAN = 10.0
 """Families whose largest problem has so many times the entries of the smallest have a growth to speak of."""

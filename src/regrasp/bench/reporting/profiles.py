@@ -11,8 +11,8 @@ from math import inf
 
 import numpy as np
 
-from regrasp.bench.judging.outcomes import Outcome
 from regrasp.bench.reporting.contests import Contest
+from regrasp.bench.reporting.outcomes import Outcome
 from regrasp.programs.program import Array
 
 

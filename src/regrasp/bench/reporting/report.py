@@ -5,14 +5,16 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from regrasp.bench.judging.closeness import closeness
 from regrasp.bench.judging.judgement import CERTIFICATE
-from regrasp.bench.judging.outcomes import Outcome, cold, outcomes
+from regrasp.bench.problems.problem import Verdict
+from regrasp.bench.problems.settings import SETTINGS, right_within
+from regrasp.bench.reporting.closeness import closeness
 from regrasp.bench.reporting.contests import Contest, contests
 from regrasp.bench.reporting.document import Block, Heading, Paragraph, Picture, Points, Table, markdown
 from regrasp.bench.reporting.growth import growths
 from regrasp.bench.reporting.limitations import LIMITATIONS
 from regrasp.bench.reporting.means import SHIFT
+from regrasp.bench.reporting.outcomes import Outcome, cold, outcomes
 from regrasp.bench.reporting.page import page
 from regrasp.bench.reporting.profiles import ratios
 from regrasp.bench.reporting.tables import (
@@ -28,10 +30,8 @@ from regrasp.bench.reporting.tables import (
     summary_table,
     warmth_table,
 )
-from regrasp.bench.running.problem import Verdict
-from regrasp.bench.running.settings import SETTINGS, right_within
+from regrasp.bench.reporting.warmth import warmths
 from regrasp.bench.running.store import read_rows, read_run
-from regrasp.bench.running.warmth import warmths
 from regrasp.errors import InvalidInput
 from regrasp.files.staging import whole_folder
 

@@ -5,16 +5,16 @@ from collections.abc import Iterable, Sequence
 from math import inf
 from statistics import median
 
-from regrasp.bench.judging.closeness import Closeness
 from regrasp.bench.judging.judgement import is_proof
-from regrasp.bench.judging.outcomes import PARTS, Kind, Outcome
+from regrasp.bench.problems.settings import SETTINGS
+from regrasp.bench.reporting.closeness import Closeness
 from regrasp.bench.reporting.contests import Contest
 from regrasp.bench.reporting.document import Table
 from regrasp.bench.reporting.growth import Growth
 from regrasp.bench.reporting.means import shifted_geometric_mean
+from regrasp.bench.reporting.outcomes import PARTS, Kind, Outcome
 from regrasp.bench.reporting.profiles import ratios, share_within
-from regrasp.bench.running.settings import SETTINGS
-from regrasp.bench.running.warmth import Warmth
+from regrasp.bench.reporting.warmth import Warmth
 
 NOTHING = "–"
 

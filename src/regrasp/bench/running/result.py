@@ -5,9 +5,9 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, NamedTuple
 
 from regrasp.bench.judging.judgement import Judgement, judged
-from regrasp.bench.running.answer import Answer, Claim
-from regrasp.bench.running.problem import BenchProblem
-from regrasp.bench.running.settings import SETTINGS, right_within
+from regrasp.bench.problems.answer import Answer, Claim
+from regrasp.bench.problems.problem import BenchProblem
+from regrasp.bench.problems.settings import SETTINGS, right_within
 from regrasp.bench.running.solvers import Solver
 
 # How a solve can end besides the words of ``Claim``.

@@ -10,12 +10,12 @@ from queue import Empty, SimpleQueue
 from threading import Event, Lock
 from typing import Any
 
+from regrasp.bench.problems.answer import Answer
+from regrasp.bench.problems.problem import BenchProblem, Family
+from regrasp.bench.problems.settings import check, options
 from regrasp.bench.running import machine
-from regrasp.bench.running.answer import Answer
-from regrasp.bench.running.problem import BenchProblem, Family
 from regrasp.bench.running.process import Worker, WorkerLost
 from regrasp.bench.running.result import COLD, ERROR, MEMORY, TIMEOUT, WARM, Key, Row, written
-from regrasp.bench.running.settings import check, options
 from regrasp.bench.running.solvers import Solver
 from regrasp.bench.running.store import Store
 from regrasp.errors import InvalidInput

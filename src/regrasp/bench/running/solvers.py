@@ -9,7 +9,7 @@ A package announces a solver by an entry point, whose name is the solver's::
 ``eps_abs`` and ``eps_rel``. If it has an attribute ``layout``, it gets ``layout(program)`` instead, made
 before the clock starts. It returns anything with the attributes ``status`` (``found``, ``infeasible``,
 ``unbounded``, ``failed`` or ``refused``), ``x`` (n,), and where it has them ``duals`` (m,), ``iterations``,
-``said``, ``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.running.answer.Answer`` is
+``said``, ``build_time``, ``setup_time`` and ``solve_time`` [s]; ``regrasp.bench.problems.answer.Answer`` is
 such a value. A solver of QPs is announced in the group ``regrasp.solvers``, one that takes second-order cones
 too in ``regrasp.solvers.conic``.
 """
@@ -22,8 +22,8 @@ from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, v
 from importlib.util import find_spec
 from typing import Any
 
-from regrasp.bench.running.answer import Answer
-from regrasp.bench.running.settings import is_known
+from regrasp.bench.problems.answer import Answer
+from regrasp.bench.problems.settings import is_known
 from regrasp.errors import InvalidInput
 from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program

@@ -25,7 +25,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from regrasp.bench.running.answer import Answer, printable, understood
+from regrasp.bench.problems.answer import Answer, printable, understood
 from regrasp.bench.running.machine import can_limit_memory
 from regrasp.bench.running.solvers import Solver
 from regrasp.programs.calls.form import Call

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from statistics import median
 
-from regrasp.bench.judging.outcomes import Outcome
+from regrasp.bench.reporting.outcomes import Outcome
 from regrasp.bench.running.result import COLD, WARM
 
 

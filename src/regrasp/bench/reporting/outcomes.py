@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from statistics import median
 
-from regrasp.bench.running.answer import Claim
-from regrasp.bench.running.problem import Truth, Verdict
+from regrasp.bench.problems.answer import Claim
+from regrasp.bench.problems.problem import Truth, Verdict
 from regrasp.bench.running.result import COLD, Row
 
 PARTS = ("build_time", "setup_time", "solve_time")

@@ -1,0 +1,1 @@
+"""What a solver is asked, with which settings, and what it answers."""
