@@ -188,7 +188,7 @@ def test_output_to_a_full_device_is_a_message(tmp_path: Path) -> None:
             stdout=full, stderr=subprocess.PIPE, text=True, env=os.environ, check=False,
         )  # fmt: skip
     assert done.returncode == 2
-    assert done.stderr == "Error: the output cannot be written: No space left on device\n"
+    assert done.stderr == "Error: output cannot be written: No space left on device\n"
 
 
 def test_letters_that_a_terminal_does_not_know_are_escaped(tmp_path: Path) -> None:

@@ -264,7 +264,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         2,
         [
             "task.time: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, contact, rate_limit, min_normal, "
+            "max_force, peak_ratio, reserve, balance_tolerance, min_normal, contact, rate_limit, "
             "path_objective, instants, facets, whole_objective, idle_time, kind"
         ],
     ),
@@ -359,7 +359,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "contacts[0].friction: expected a number of at least 0, got -1",
             "task.rate: expected a number greater than 0, got 0",
             "task.kin: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, contact, rate_limit, min_normal, "
+            "max_force, peak_ratio, reserve, balance_tolerance, min_normal, contact, rate_limit, "
             "path_objective, instants, facets, whole_objective, idle_time, kind",
         ],
     ),

@@ -151,6 +151,7 @@ def numbers_of(text: str) -> Iterator[tuple[int, int]]:
         at += len(line)
 
 
+@pytest.mark.filterwarnings("ignore:the (point|contact) :UserWarning")  # some are between two walls, or far
 @pytest.mark.parametrize("name", NAMES)
 def test_any_number_may_be_huge(name: str) -> None:
     """Each number of a scenario in turn is replaced; reading ends in time, well or in words."""

@@ -475,7 +475,7 @@ def check_bad(text: str, lines: list[str], capsys: pytest.CaptureFixture[str], t
 
 ROTATION_KEYS = (
     "objective, method, duration, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, "
-    "degrees, axis, kind"
+    "min_normal, degrees, axis, kind"
 )
 
 

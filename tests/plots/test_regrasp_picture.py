@@ -149,5 +149,5 @@ def test_the_trade_off_is_a_staircase_of_plans():
     assert ax.get_ylabel() == "worst angle margin [deg]"
     ax.figure.canvas.draw()
     for bad in ([], [STATE], plans[0]):
-        with pytest.raises(rg.InvalidInput, match="plans must be RegraspPlans"):
+        with pytest.raises(rg.InvalidInput, match=r"plans must be (RegraspPlans|a list)"):
             plot_trade_off(bad)

@@ -296,7 +296,7 @@ FAILURES = {
         "'effort' would jump at both ends; give rate_limit as well"
     ),
     "weak end": (
-        {"min_normal": 1.3}, rg.InvalidInput,
+        {"min_normal": 1.3, "end": rg.choose_state(GRASP.without("P3"), STATE.load)}, rg.InvalidInput,
         r"end: P2 pushes with a normal force of 1\.\d+, below min_normal 1.3; give another state"
     ),
     "idle after the end": (

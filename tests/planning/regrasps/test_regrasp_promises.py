@@ -88,7 +88,7 @@ def test_queries_of_a_hold_graph():
     expected = labels == labels[i]
     assert (graph.reachable((i, j)) == expected).all()
     assert not graph.reachable(()).any()
-    with pytest.raises(rg.InvalidInput, match="start must be three contacts by their places"):
+    with pytest.raises(rg.InvalidInput, match="start must be a whole number of at least 0, got Contact"):
         rg.bottleneck(graph, FIRST, LAST)
     with pytest.raises(rg.InvalidInput, match="goal must be three contacts by their places"):
         rg.bottleneck(graph, (0, 1, 2), (0, 1, 99))

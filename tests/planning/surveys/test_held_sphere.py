@@ -165,7 +165,6 @@ def test_is_drawn():
         (lambda: rg.held_sphere(NOSE, 0.0), "magnitude must be greater than 0"),
         (lambda: rg.held_sphere(NOSE, count=0), "count must be a whole number of at least 1"),
         (lambda: rg.held_sphere(NOSE, objective="best"), "objective must be one of"),
-        (lambda: rg.held_sphere(NOSE.subset([0])), "two contacts or more"),
         (lambda: SAMPLED.holds([0, 0, 0]), "direction must not be zero"),
         (lambda: SAMPLED.holds([0, 1]), r"direction must have shape \(3,\)"),
     ],
@@ -173,3 +172,10 @@ def test_is_drawn():
 def test_bad_input_is_named(call, said):
     with pytest.raises(rg.InvalidInput, match=said):
         call()
+
+
+def test_one_finger_holds_what_points_at_it_alone() -> None:
+    one = rg.Grasp([rg.Contact([0.1, 0, 0], [-1, 0, 0], 0.8)])
+    sphere = rg.held_sphere(one, count=40)
+    assert not np.isfinite(sphere.values).any()
+    assert rg.choose_state(one, rg.Wrench([1.0, 0, 0])).value == pytest.approx(np.arctan(0.8))

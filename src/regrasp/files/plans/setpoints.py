@@ -15,6 +15,7 @@ from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_spacing,
 from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import Array, file_path, number
+from regrasp.mechanics.value import one_line
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition, setpoint_columns
 from regrasp.verification import Verification, verify_setpoints
@@ -147,7 +148,7 @@ def _shown(columns: list[str]) -> str:
     """A header as one line of a message."""
     with StringIO() as line:
         csv.writer(line, lineterminator="").writerow(columns)
-        return line.getvalue().replace("\n", "\\n").replace("\r", "\\r")[:200]
+        return one_line(line.getvalue())[:200]
 
 
 def _check_plan(plan: object) -> None:

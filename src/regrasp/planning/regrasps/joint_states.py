@@ -67,7 +67,7 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
         q = np.zeros(width + 1)
         q[-1] = -1.0
         whole = sparse.hstack([forces, distances], format="csc")
-        return Program(sparse.csc_matrix((width + 1, width + 1)), q, whole, b, blocks)
+        return Program(sparse.csc_matrix((width + 1, width + 1)), q, whole, b, blocks, size=1.0)
     change = _changes(states, width)
     shifted = b - distances.toarray()[:, 0] * (margin / unit)
     return Program(

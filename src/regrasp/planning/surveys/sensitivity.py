@@ -197,6 +197,8 @@ def sensitivity(
     check_load(grasp, load)
     if grasp.dimension != 2:
         raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
+    if len(grasp) < 2:
+        raise InvalidInput("a sensitivity needs two contacts or more: one holds a load along its line alone")
     criteria = criteria_of(objective, options)
     criteria.refuse_pressing("a sensitivity")
     if criteria.peak_ratio == 1:

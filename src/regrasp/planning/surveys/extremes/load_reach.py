@@ -25,6 +25,7 @@ from regrasp.programs import Program, Rows, Solution, Status, solve
 ROUNDING = 1e-12
 LOOSE = 1e6
 """Forces this many times the load count as none."""
+_NOTHING = 1e-30  # of a load beside one: solvers take the exponents of numbers for their sizes
 _SHARES = (0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 
 
@@ -49,7 +50,9 @@ def farthest(
     t = n * w
     weight = 1 / grasp.lengths
     rows = Rows(t + p)
-    rows.equal(np.hstack([grasp.scaled_matrix, directions * weight[:, None]]), base * weight)
+    along, start = directions * weight[:, None], base * weight
+    along, start = np.where(abs(along) < _NOTHING, 0.0, along), np.where(abs(start) < _NOTHING, 0.0, start)
+    rows.equal(np.hstack([grasp.scaled_matrix, along]), start)
     _inside_cones(rows, grasp, t + p)
     for i, limit in enumerate(limits):
         if limit < inf:
