@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from multiprocessing import Pipe
 from typing import Any
 
@@ -22,6 +23,7 @@ _PINNED = (
     "RAYON_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
+_LOOK = 0.1  # seconds between looks whether a silent process lives
 _CODE = """
 import json, sys
 path, channel, parent, memory = json.loads(sys.argv[1])
@@ -56,13 +58,27 @@ class Worker:
             self._start()
         try:
             self._connection.send(message)
-            if not self._connection.poll(within):
+            if not self._answers(within):
                 self.kill()
                 raise WorkerLost(TIMEOUT, f"no answer within {within:g} s")
             reply: tuple[Any, ...] = self._connection.recv()
         except (EOFError, OSError) as error:
             raise WorkerLost(CRASHED, self._ended()) from error
         return reply
+
+    def _answers(self, within: float) -> bool:
+        """Whether there is something to read; raises ``EOFError`` once the process has ended without.
+
+        What a solver started holds the pipe open, so that its end says nothing of the solver's.
+        """
+        assert self._process is not None
+        end = time.monotonic() + within
+        while not self._connection.poll(min(_LOOK, max(end - time.monotonic(), 0.0))):
+            if self._process.poll() is not None and not self._connection.poll(0):
+                raise EOFError
+            if time.monotonic() >= end:
+                return False
+        return True
 
     def kill(self) -> None:
         """End the process, whatever it is doing."""
