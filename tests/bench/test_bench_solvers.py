@@ -191,8 +191,10 @@ def test_every_call_gets_a_program_of_its_own(fakes: Path, tmp_path: Path) -> No
 
 
 def test_what_a_solver_started_ends_with_it(fakes: Path, tmp_path: Path) -> None:
+    started = time.monotonic()
     (row,) = run(tmp_path / "out", TOYS[:1], [fake("breeds")])
     assert row.status == "crashed"
+    assert time.monotonic() - started < 50  # its child sleeps for a minute
     child = int((tmp_path / "pid").read_text())
     for _ in range(100):
         if not is_running(child):

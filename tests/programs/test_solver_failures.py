@@ -1,6 +1,7 @@
 """What a solver does besides answering: errors of its own, crashes, endless work. Programs in files."""
 
 import sys
+import time
 import types
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
+from processes import is_running
 from regrasp.errors import InvalidInput, SolverFailed
 from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
 from regrasp.programs import backends as table
@@ -35,6 +37,13 @@ def solve(program, name, **options):
         os.kill(os.getpid(), signal.SIGSEGV)
     if name == "leaves":
         os._exit(3)
+    if name == "breeds":
+        child = os.fork()
+        if child == 0:
+            time.sleep(600)
+        with open(__file__ + ".pid", "w") as file:
+            file.write(str(child))
+        os._exit(4)
     time.sleep(600)
 """
 
@@ -44,12 +53,12 @@ def odd(tmp_path, monkeypatch):
     """Back ends that fail, each in its way, in this process and in others."""
     (tmp_path / "odd_backend.py").write_text(MODULE)
     monkeypatch.syspath_prepend(str(tmp_path))
-    for name in ("raises", "panics", "crashes", "leaves", "hangs"):
+    for name in ("raises", "panics", "crashes", "leaves", "breeds", "hangs"):
         monkeypatch.setitem(BACKENDS, name, Backend("numpy", "odd_backend", True, 1e-7))
     # Another process knows the back ends of the house only: it gets these by a module that adds them.
     lines = "from regrasp.programs.facts import BACKENDS, Backend\n" + "".join(
         f'BACKENDS["{name}"] = Backend("numpy", "odd_backend", True, 1e-7)\n'
-        for name in ("raises", "crashes", "leaves", "hangs")
+        for name in ("raises", "crashes", "leaves", "breeds", "hangs")
     )
     (tmp_path / "sitecustomize.py").write_text(lines)
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{':'.join(sys.path)}")
@@ -89,6 +98,19 @@ def test_a_crash_apart_is_an_error_like_others(odd, name, words):
     with pytest.raises(SolverFailed, match=words) as failed:
         solve(least_square(), name, isolated=True)
     assert failed.value.solution.status is Status.FAILED
+
+
+def test_what_a_solver_started_ends_with_it(odd, tmp_path):
+    started = time.monotonic()
+    with pytest.raises(SolverFailed, match="exit status 4"):
+        solve(least_square(), "breeds", isolated=True)
+    assert time.monotonic() - started < 60  # its child sleeps for ten minutes
+    child = int((tmp_path / "odd_backend.py.pid").read_text())
+    for _ in range(100):
+        if not is_running(child):
+            return
+        time.sleep(0.05)
+    pytest.fail("its child lives on")
 
 
 def test_a_solver_without_a_limit_of_its_own_is_ended(odd):
