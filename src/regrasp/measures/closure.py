@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.measures.rationals import Vector, neutral, vanishing
 from regrasp.measures.rays import is_inside, rays, wrench
 from regrasp.measures.separating import Family, clearest, cuts, deepest, least_opposed, opposition
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array, items, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp, touching
 from regrasp.mechanics.opposition import dot
@@ -140,9 +140,9 @@ def taken(grasp: Grasp | Iterable[Contact]) -> Grasp:
     """A grasp, or the grasp of contacts that may coincide."""
     if isinstance(grasp, Grasp):
         return grasp
-    if isinstance(grasp, Contact) or not isinstance(grasp, Iterable):
-        raise InvalidInput(f"grasp must be a Grasp or contacts, got {grasp!r}")
-    return touching(grasp)
+    if isinstance(grasp, Contact):
+        raise InvalidInput(f"grasp must be a Grasp or several contacts, got {shown(grasp)}")
+    return touching(items(grasp, "grasp"))
 
 
 def frictionless(grasp: Grasp) -> Grasp:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from errno import ENAMETOOLONG
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -149,6 +150,11 @@ def file_path(path: Any) -> Path:
         named = False
     if not named:
         raise InvalidInput(f"a path must be text or a Path that names a file, got {shown(path)}")
+    try:
+        os.lstat(str(found))
+    except OSError as error:
+        if error.errno == ENAMETOOLONG:
+            raise InvalidInput(f"a path must not be too long for a file, got {shown(path)}") from None
     return Path(str(found))
 
 

@@ -41,7 +41,7 @@ class ArrayValue(Frozen):
 
     def _key(self) -> tuple[Hashable, ...]:
         compared = (getattr(self, f.name) for f in fields(self) if f.compare)  # type: ignore[arg-type]
-        return tuple(_hashable(value) for value in compared)
+        return tuple(hashable(value) for value in compared)
 
     def __eq__(self, other: object) -> bool:
         if self is other:
@@ -54,13 +54,14 @@ class ArrayValue(Frozen):
         return hash(self._key())
 
 
-def _hashable(value: Any) -> Hashable:
+def hashable(value: Any) -> Hashable:
+    """What a value compares by: arrays entry by entry."""
     if isinstance(value, np.ndarray):
         return value.shape, (value + 0.0).tobytes()  # + 0.0: -0.0 equals 0.0
     if isinstance(value, (tuple, list)):
-        return tuple(map(_hashable, value))
+        return tuple(map(hashable, value))
     if isinstance(value, Mapping):
-        return tuple((key, _hashable(entry)) for key, entry in value.items())
+        return tuple((key, hashable(entry)) for key, entry in value.items())
     if isinstance(value, float) and value != value:
         return _NAN
     return value  # type: ignore[no-any-return]

@@ -18,10 +18,7 @@ _MOST_NEAR = 30  # vertices in the cell of one, of two tolerances a side, on ave
 
 def checked_vertices(vertices: ArrayLike) -> Array:
     """(k, 3) finite floats, a new array."""
-    try:
-        result = np.array(vertices, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidInput("vertices must be numbers of shape (any, 3)") from None
+    result = numbers_in(vertices, "vertices must be numbers of shape (any, 3)")
     if result.ndim != 2 or result.shape[1] != 3:
         raise InvalidInput(f"vertices must have shape (any, 3), got {result.shape}")
     bad = np.flatnonzero(~np.isfinite(result).all(axis=1))

@@ -71,6 +71,8 @@ class Mesh(ArrayValue):
     def __init__(
         self, vertices: ArrayLike, faces: ArrayLike, *, smooth: bool = False, crease: float = CREASE
     ) -> None:
+        if not isinstance(smooth, bool | np.bool_):
+            raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
         points = checked_vertices(vertices)
         if len(points):
             checked_size(points, "the mesh")

@@ -4,7 +4,8 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import items
 from regrasp.outline.flatten import Curve
 
 MOST_PIECES, _MOST_POINTS = 40_000, 1_000_000
@@ -87,11 +88,9 @@ def checked_layers(layers: object) -> tuple[str, ...] | None:
     if layers is None:
         return None
     names = (layers,) if isinstance(layers, str) else layers
-    if not isinstance(names, Iterable) or isinstance(names, (bytes, dict)):
-        raise InvalidInput(f"layers must be a name or names of layers, got {layers!r}")
-    result = tuple(names)
+    result = () if isinstance(names, dict) else items(names, "layers")
     if not result or not all(isinstance(name, str) for name in result):
-        raise InvalidInput(f"layers must be a name or names of layers, got {layers!r}")
+        raise InvalidInput(f"layers must be a name or names of layers, got {shown(layers)}")
     return result
 
 

@@ -135,3 +135,36 @@ def test_what_cannot_press_so_hard_is_refused() -> None:
 def test_where_it_is_not_kept_it_is_refused(call, words) -> None:
     with pytest.raises(rg.InvalidInput, match=words):
         call()
+
+
+ROUND = rg.Grasp(
+    [
+        rg.Contact([-0.05, 0], [1, 0], 0.6),
+        rg.Contact([0.05, 0.01], [-1, 0], 0.6),
+        rg.Contact([0.0, -0.04], [0, 1], 0.6),
+    ]
+)
+
+
+@pytest.mark.parametrize(("objective", "best"), [("angle", 0.507953), ("friction_use", 0.05413)])
+def test_a_looser_force_limit_is_no_worse(objective: str, best: float) -> None:
+    for limit in (50.0, 1e3, 1e5, 3e5):
+        state = rg.choose_state(ROUND, rg.Wrench([0, -5.0]), objective, max_force=limit, min_normal=1.0)
+        assert state.value == pytest.approx(best, abs=2e-4)
+
+
+def test_a_squeeze_without_a_load_presses() -> None:
+    pair, none = ROUND.without(2), rg.Wrench([0, 0])
+    free = rg.choose_state(pair, none, max_force=5.0).value
+    for least in (0.001, 0.1, 1.0):
+        state = rg.choose_state(pair, none, max_force=5.0, min_normal=least)
+        assert state.value == pytest.approx(free, abs=1e-6)
+
+
+def test_forces_whose_rounding_is_the_load_are_refused() -> None:
+    assert rg.choose_state(ROUND, rg.Wrench([0, -5.0]), "effort", min_normal=4.9e9).is_balanced()
+    for least in (5.1e9, 1e99):
+        with pytest.raises(rg.InvalidInput, match="at most 1e\\+09 times the load"):
+            rg.choose_state(ROUND, rg.Wrench([0, -5.0]), "effort", min_normal=least)
+    with pytest.raises(rg.InvalidInput, match="at most 1e\\+100 N"):
+        rg.Criteria(min_normal=1e101)

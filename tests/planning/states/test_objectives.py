@@ -232,3 +232,42 @@ def test_costs_have_no_closed_form() -> None:
         rg.EquilibriumLocus(two, LOAD).best(rg.ForceCost())
     with pytest.raises(rg.InvalidInput, match="has no closed form, so it has no batch"):
         rg.best_squeezes([0, 0], [0, 1], 0.5, [1, 0], [0, 1], 0.5, [0, -1], objective=rg.ForceCost())
+
+
+class Weighed(ConvexObjective):
+    """A cost that is no dataclass."""
+
+    def __init__(self, weights: list[float]) -> None:
+        super().__init__("weighed", "least cost", "cost", "sum", "-")
+        object.__setattr__(self, "weights", weights)
+
+    def of_contacts(self, forces, grasp):
+        return np.array(self.weights) * (forces**2).sum(axis=-1)
+
+    def squares(self, grasp):
+        return np.array(self.weights, dtype=float)
+
+    def scale(self, unit):
+        return unit**2
+
+
+def test_objectives_that_differ_by_what_they_keep_are_two() -> None:
+    assert Weighed([1, 1, 1]) != Weighed([1, 1, 9])
+    assert Weighed([1, 1, 9]) == Weighed([1, 1, 9])
+    for weights in ([1, 1, 1], [1, 1, 9]):
+        own, known = Weighed(weights), rg.ForceCost("known", weights)
+        found, expected = (rg.choose_state(GRASP, LOAD, cost) for cost in (own, known))
+        np.testing.assert_allclose(found.forces, expected.forces, atol=1e-6)
+
+
+def test_a_cost_that_falls_without_end_is_refused() -> None:
+    pair = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.6), rg.Contact([1, 0], [-1, 0], 0.6)])
+    four = rg.Grasp(
+        [
+            *pair, rg.Contact([0, -1], [0, 1], 0.6), rg.Contact([0, 1], [0, -1], 0.6),
+        ]
+    )  # fmt: skip
+    paid = rg.ForceCost(weights=[0, 0, 1, 1], prices=[[-1, 0], [0, 0], [0, 0], [0, 0]])
+    with pytest.raises(rg.InvalidInput, match="falls without bound"):
+        rg.choose_state(four, rg.Wrench([0, -1.0]), paid)
+    assert rg.choose_state(four, rg.Wrench([0, -1.0]), paid, max_force=9.0).value < 0

@@ -47,7 +47,9 @@ class End(NamedTuple):
     def _pressing(self, grasp: Grasp, moving: set[int]) -> Criteria:
         """The criteria, with which the fingers that leave or arrive need not push."""
         least = self.criteria.min_normal
-        if not least or isinstance(least, tuple):
+        if isinstance(least, tuple):
+            raise InvalidInput("a plan takes one min_normal for all fingers that stay, not one for each")
+        if not least:
             return self.criteria
         at_work = (i for i in range(len(grasp)) if i not in self.idle)
         return replace(self.criteria, min_normal=tuple(0.0 if i in moving else least for i in at_work))
@@ -88,7 +90,7 @@ class Change(NamedTuple):
             last.idle,
             first.idle,
             Record(
-                reserve=first.criteria.reserve,
+                reserve=min(first.criteria.reserve, last.criteria.reserve),
                 choices=tuple(c for end in ends if (c := found[end.label][1]) is not None),
                 balancing=max(change for _, _, change in found.values()),
             ),

@@ -41,6 +41,8 @@ STEP = pi / 3
 _HALVINGS = 4
 # A step this near to pi lets forces grow without bound.
 _NEARLY_PI = 0.95 * pi
+MOST_TURN = 1000.0
+"""[rad]: each piece of a turn is planned, so that time grows with it."""
 
 
 @takes(PlanOptions)
@@ -152,6 +154,8 @@ def _turn_asked(angle: float | None, degrees: float | None) -> float:
             )
     if turn == 0:
         raise InvalidInput("angle must not be 0: there is nothing to turn")
+    if abs(turn) > MOST_TURN:
+        raise InvalidInput(f"a turn must be at most {MOST_TURN:g} rad to either side, got {turn:.6g} rad")
     return turn
 
 

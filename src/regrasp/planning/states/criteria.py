@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
@@ -18,6 +18,9 @@ from regrasp.planning.states.objectives import ANGLE, Objective, objective_of
 
 PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least peak force that holds the load."""
+
+
+_LARGEST = 1e100  # whose square is a number
 
 
 @dataclass(frozen=True)
@@ -136,7 +139,9 @@ class Criteria:
 def _least_normal(given: float | Sequence[float] | Array | None) -> float | tuple[float, ...]:
     if given is None:
         return 0.0
-    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str | bytes):
+    if isinstance(given, float | int) and given > _LARGEST:
+        raise InvalidInput(f"min_normal must be at most {_LARGEST:g} N, got {shown(given)}")
+    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str | bytes) or np.ndim(given) == 0:
         return number(given, "min_normal", least=0)
     several = [number(value, "each min_normal", least=0) for value in given]
     if not several:
@@ -173,7 +178,8 @@ class ChosenState(GraspState):
     """How much better the best value can be at most, by duality; None for the closed form, which is exact.
 
     For ``angle`` [rad] and ``friction_use`` mostly 1e-7, and never more than 1e-5 unless rounding hides what
-    is between; infinite where a solver failed next to the edge and forces were found without one.
+    is between; infinite where a solver failed next to the edge and forces were found without one. With
+    ``min_normal`` it is a bound, too, and often far above what is left: no twist proves more.
     """
 
     def __init__(

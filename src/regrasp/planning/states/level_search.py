@@ -53,7 +53,7 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
             gained, held, forces = reached - held, reached, found.forces
     if proven > lost:
         proven = _lowest_proof(chooser, narrowing, limits, lost, proven)
-    if min(sure, proven) - held > _UNSURE:
+    if min(sure, proven) - held > _UNSURE and chooser.least is None:  # of least normal forces the gap tells
         raise SolverFailed(
             f"{chooser.backend} cannot tell the best {narrowing.objective}: a level of {held:.9g} is "
             f"reached, one of {min(sure, proven):.9g} is not, and its answers between are not sound"
@@ -142,7 +142,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
             forces = _of_those_that_push(used, used.wanted(answer), frictions, bounds)
         if forces is not None:
             return _Level(_whole(grasp, cones, forces))
-        if answer.status is Status.SOLVED and answer.value[-1] > _CLEAR:
+        if answer.status is Status.SOLVED and answer.value[-1] > _CLEAR and chooser.least is None:
             return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
     twist = used.twist_of(answer)
     is_twist = bool(np.isfinite(twist).all() and twist.any())

@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import Infeasible, SolverFailed
+from regrasp.errors import Infeasible, InvalidInput, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import NEVER
 from regrasp.mechanics.exact.membership import vertex_forces
@@ -21,6 +21,7 @@ from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
 from regrasp.planning.states.objectives import EFFORT, FORCE, PEAK, ConvexObjective, LevelObjective
+from regrasp.planning.states.pressing import LARGE
 from regrasp.planning.states.separation import edge_of
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
 
@@ -28,6 +29,7 @@ _SAME = 1e-6  # of a margin [rad, N or -]
 _BESIDE = 1e4  # forces so many times a load are beside it in one program
 _FAR = 1e3  # forces so much larger than the load are the better unit
 _OTHER_SCALES = (1e3, 10.0)  # limits in units of programs, where those of LOOSE are not solved
+_BALANCED = 1e9
 VANISHING = 1e-9
 """A load below this fraction of the force limits changes no margin: the best squeeze is that without."""
 
@@ -70,8 +72,17 @@ def _pressed(
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     least = np.array(criteria.least_normals(grasp))
     chooser = Chooser(grasp, load, backend, facets, limits, least)
+    if any(load.plain) and least.max() > _BALANCED * chooser.load_size:
+        raise InvalidInput(
+            f"min_normal must be at most {_BALANCED:g} times the load of {chooser.load_size:.6g} N, got "
+            f"{least.max():g}: rounding of such forces is as large as the load"
+        )
     chooser.rescale(max(chooser.load_size, float(least.max())))
     objective = criteria.objective
+    if not criteria.unbounded:
+        chooser.loose = LOOSE * chooser.unit
+    elif min(limits) < inf:  # forces will be as large as these limits let them
+        chooser.rescale(max(chooser.unit, min(limits) / LARGE))
     if criteria.unbounded and inf in limits:
         smallest = chooser.best(PEAK, frictions, limits)
         if smallest is None:

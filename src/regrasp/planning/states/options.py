@@ -184,23 +184,23 @@ _LIMITS = (*LimitOptions.__annotations__, "min_normal")
 
 def criteria_of(objective: "str | Objective | Criteria", options: Mapping[str, Any]) -> Criteria:
     """The criteria of a call: as they were given, or of a word or an objective and the limits given."""
-    given = tuple((name, options[name]) for name in _LIMITS if name in options)
+    given = tuple((name, options[name], type(options[name])) for name in _LIMITS if name in options)
     if isinstance(objective, Criteria):
         if given:
             raise InvalidInput(
-                f"the Criteria given hold every limit; leave out {', '.join(name for name, _ in given)}"
+                f"the Criteria given hold every limit; leave out {', '.join(name for name, *_ in given)}"
             )
         return objective
     try:
         return _known(objective, given)
     except TypeError:  # not hashable: the check says what is wrong
-        return Criteria(objective, **dict(given))
+        return Criteria(objective, **{name: value for name, value, _ in given})
 
 
 @lru_cache(maxsize=256, typed=True)
-def _known(objective: "str | Objective", limits: tuple[tuple[str, Any], ...]) -> Criteria:
-    """Checked once for the same arguments: planning takes microseconds."""
-    return Criteria(objective, **dict(limits))
+def _known(objective: "str | Objective", limits: tuple[tuple[str, Any, type], ...]) -> Criteria:
+    """Checked once for the same arguments, types included: planning takes microseconds."""
+    return Criteria(objective, **{name: value for name, value, _ in limits})
 
 
 def with_objective(criteria: Criteria, objective: "str | Objective | Criteria") -> Criteria:

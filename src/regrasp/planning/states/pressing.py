@@ -13,14 +13,17 @@ from regrasp.programs import Block, Cone, Program
 
 _SPARE = 1e-8
 """Fraction by which programs ask for more, so that exact equilibrium moves no force below its least."""
+LARGE = 1e3
+"""Forces of programs count up to so many units."""
 
 
-def pressing(program: Program, grasp: Grasp, least: Array, unit: float) -> Program:
+def pressing(program: Program, grasp: Grasp, least: Array, unit: float, size: float) -> Program:
     """A state program whose fingers push with ``least`` (n,) or more along their normals [N].
 
-    unit: of the program's forces [N].
+    unit: of the program's forces [N]. size: how large its forces may be [N].
     """
     pressed = np.flatnonzero(least > 0)
+    asked = least[pressed] + _SPARE * np.maximum(least[pressed], min(size, LARGE * unit))
     width = grasp.width
     columns = (pressed[:, None] * width + np.arange(width)).ravel()
     rows = np.repeat(np.arange(pressed.size), width)
@@ -30,7 +33,7 @@ def pressing(program: Program, grasp: Grasp, least: Array, unit: float) -> Progr
         program.P,
         program.q,
         sparse.vstack([program.A, more], format="csc"),
-        np.append(program.b, -(1 + _SPARE) * least[pressed] / unit),
+        np.append(program.b, -asked / unit),
         (*program.blocks, Block(Cone.NONNEGATIVE, 1, int(pressed.size))),
         size=program.size,
     )

@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.errors import SolverFailed
+from regrasp.errors import InvalidInput, SolverFailed
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.escape import escape_twist
-from regrasp.planning.states.objectives import Bound, ConvexObjective
+from regrasp.planning.states.objectives import Bound, ConvexObjective, recorded
 from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Solution, Status, solve
@@ -121,7 +121,10 @@ class Chooser:
             self.facets,
             weights,
         )
-        return program if self.least is None else pressing(program, self.grasp, self.least, self.unit)
+        if self.least is None:
+            return program
+        ends = (limit for limit in limits if limit < inf) if self.loose == inf else ()
+        return pressing(program, self.grasp, self.least, self.unit, max(ends, default=self.unit))
 
     def best(self, objective: ConvexObjective, frictions: list[float], limits: list[float]) -> Found | None:
         """The best forces for a convex objective; None where the back end says there are none."""
@@ -131,6 +134,11 @@ class Chooser:
         if answer.status is Status.INFEASIBLE:
             return None
         if answer.status is Status.UNBOUNDED:
+            if recorded(objective) != objective.name:
+                raise InvalidInput(
+                    f"objective {objective.name!r} falls without bound: some squeeze costs ever less; give "
+                    f"max_force, or every finger a weight above 0"
+                )
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
         if objective.bound is Bound.MARGIN and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside

@@ -5,8 +5,8 @@ A ``ConvexObjective`` is one convex program, a ``LevelObjective`` a level that n
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from enum import Enum
 from typing import Any, ClassVar, Literal
 
@@ -16,7 +16,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins
 from regrasp.mechanics.state import GraspState
-from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.value import ArrayValue, hashable
 
 _TOGETHER: Mapping[str, Callable[..., Any]] = {
     "least": np.fmin.reduce,
@@ -56,6 +56,12 @@ class Objective(ArrayValue, ABC):
         """The objective at a state, in ``unit``; torques of soft fingers count as mu m / torsion [N]."""
         measured = state.grasp.cones.measured(state.forces)
         return float(_TOGETHER[self.together](self.of_contacts(measured, state.grasp)))
+
+    def _key(self) -> tuple[Hashable, ...]:
+        """Fields, and whatever else an objective of a user's own keeps."""
+        compared = {f.name for f in fields(self)}
+        more = (value for name, value in sorted(vars(self).items()) if name not in compared)
+        return (*super()._key(), *(hashable(value) for value in more))
 
     def __hash__(self) -> int:
         return hash(self.name)
