@@ -153,7 +153,7 @@ class Rotation(Task):
     """The object turns in the hold of all its fingers."""
 
     degrees: Annotated[float, AfterValidator(_turned)] = Field(
-        description="turn of the object, counter-clockwise or right-handed about the axis, of any size"
+        description="turn of the object, counter-clockwise or right-handed about the axis, up to 1000 rad"
     )
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = Field(
         None, description="in space: the axis of the turn, through the centre of mass"

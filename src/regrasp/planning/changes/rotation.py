@@ -69,7 +69,7 @@ def plan_rotation(
 
     Args:
         start: the state to start from; or a grasp, whose state is then chosen under ``load``.
-        angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; any size, with a
+        angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; up to 1000, with a
             warning beyond a whole turn.
         degrees: the same in degrees, in the place of ``angle``, without a warning.
         axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in
