@@ -69,8 +69,8 @@ def plan_rotation(
 
     Args:
         start: the state to start from; or a grasp, whose state is then chosen under ``load``.
-        angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; up to 1000, with a
-            warning beyond a whole turn.
+        angle: of the object [rad], counter-clockwise, in space right-handed about ``axis``; up to 1000, with
+            a warning beyond a whole turn.
         degrees: the same in degrees, in the place of ``angle``, without a warning.
         axis: (3,) through the centre of mass, of any length, the same in the object and in the world; in
             space only. The load is fixed in the world, such as a weight; in the object frame it turns the
