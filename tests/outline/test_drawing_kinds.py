@@ -177,7 +177,7 @@ def test_layers_of_svg(tmp_path: Path) -> None:
         path, layers="parts"
     )
     for wrong in ([], 3, [3], b"Part"):
-        with pytest.raises(rg.InvalidInput, match="layers must be a name or names of layers"):
+        with pytest.raises(rg.InvalidInput, match="layers must be a"):
             rg.Outline.from_file(path, layers=wrong)
 
 
