@@ -19,7 +19,7 @@ test: $(VENV)/installed-dev
 	$(BIN)/regrasp bench --quick -o $(VENV)/bench
 	$(BIN)/regrasp bench report $(VENV)/bench
 
-# The inner loop: what a change most often breaks, in under a minute.
+# The inner loop: what a change most often breaks, in about two minutes on two cores.
 quick: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
