@@ -47,10 +47,10 @@ def solved_apart(
     theirs.close()
     try:
         ours.send_bytes(pickle.dumps((program, backend, options)))
-        if not _answers(ours, process, _START):
+        if not answers(ours, process, _START):
             return failed(program, backend, f"its process did not start within {_START:g} s")
         ours.recv_bytes()
-        if not _answers(ours, process, inf if time_limit is None else time_limit):
+        if not answers(ours, process, inf if time_limit is None else time_limit):
             return failed(program, backend, f"no answer within {time_limit:g} s")
         answer = pickle.loads(ours.recv_bytes())
     except (EOFError, OSError):
@@ -68,7 +68,7 @@ def solved_apart(
     return Solution(program, backend, given.status, *(getattr(given, name) for name in _REST))
 
 
-def _answers(ours: "Connection[Any, Any]", process: subprocess.Popen[bytes], within: float) -> bool:
+def answers(ours: "Connection[Any, Any]", process: subprocess.Popen[bytes], within: float) -> bool:
     """Whether something can be read within so many seconds; ``EOFError`` once the process ended without.
 
     What a solver started holds the pipe open, so that its end says nothing of the solver's.

@@ -6,12 +6,12 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from multiprocessing import Pipe
 from typing import Any
 
 from regrasp.bench.running.result import CRASHED, TIMEOUT
 from regrasp.errors import InvalidInput
+from regrasp.programs.child import answers
 
 # Libraries that would use every core are held to one.
 _PINNED = (
@@ -23,7 +23,6 @@ _PINNED = (
     "RAYON_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
-_LOOK = 0.1  # seconds between looks whether a silent process lives
 _CODE = """
 import json, sys
 path, channel, parent, memory = json.loads(sys.argv[1])
@@ -56,29 +55,16 @@ class Worker:
         """The reply to a message. Raises ``WorkerLost`` if there is none ``within`` so many seconds."""
         if self._process is None:
             self._start()
+        assert self._process is not None
         try:
             self._connection.send(message)
-            if not self._answers(within):
+            if not answers(self._connection, self._process, within):
                 self.kill()
                 raise WorkerLost(TIMEOUT, f"no answer within {within:g} s")
             reply: tuple[Any, ...] = self._connection.recv()
         except (EOFError, OSError) as error:
             raise WorkerLost(CRASHED, self._ended()) from error
         return reply
-
-    def _answers(self, within: float) -> bool:
-        """Whether there is something to read; raises ``EOFError`` once the process has ended without.
-
-        What a solver started holds the pipe open, so that its end says nothing of the solver's.
-        """
-        assert self._process is not None
-        end = time.monotonic() + within
-        while not self._connection.poll(min(_LOOK, max(end - time.monotonic(), 0.0))):
-            if self._process.poll() is not None and not self._connection.poll(0):
-                raise EOFError
-            if time.monotonic() >= end:
-                return False
-        return True
 
     def kill(self) -> None:
         """End the process, whatever it is doing."""
