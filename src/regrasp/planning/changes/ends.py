@@ -46,9 +46,7 @@ class End(NamedTuple):
 
     def _pressing(self, grasp: Grasp, moving: set[int]) -> Criteria:
         """The criteria, with which the fingers that leave or arrive need not push."""
-        least = self.criteria.min_normal
-        if isinstance(least, tuple):
-            raise InvalidInput("a plan takes one min_normal for all fingers that stay, not one for each")
+        least = self.criteria.least_normal
         if not least:
             return self.criteria
         at_work = (i for i in range(len(grasp)) if i not in self.idle)

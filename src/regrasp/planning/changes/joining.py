@@ -100,9 +100,7 @@ def joined(
     scaling: None for the shortest one under the rate limit. load: None where it is constant.
     """
     if criteria.presses and demands.min_normal is None:
-        if isinstance(criteria.min_normal, tuple):
-            raise InvalidInput("a plan takes one min_normal for all fingers that stay, not one for each")
-        demands = replace(demands, min_normal=criteria.min_normal)
+        demands = replace(demands, min_normal=criteria.least_normal)
     start, end, record = change.start, change.end, change.record
     grasp = start.grasp
     leaving = tuple(grasp.names[i] for i in change.leaving)

@@ -113,6 +113,13 @@ class Criteria:
             )
         return list(self.min_normal)
 
+    @property
+    def least_normal(self) -> float:
+        """Least normal force of all fingers [N]; raises ``InvalidInput`` where each has its own."""
+        if isinstance(self.min_normal, tuple):
+            raise InvalidInput("a plan takes one min_normal for all fingers that stay, not one for each")
+        return self.min_normal
+
     def refuse_pressing(self, what: str) -> None:
         """Raise ``InvalidInput`` where least normal forces are asked for and not kept.
 
