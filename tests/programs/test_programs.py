@@ -7,6 +7,7 @@ from cones import distance_to_cones
 from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
 from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
 from regrasp.programs import backends as table
+from regrasp.programs.cones import Cones
 
 pytestmark = pytest.mark.oracle
 
@@ -306,6 +307,15 @@ def test_distance_to_cones_measures_each_kind():
     assert moved(2, -0.25) == 0.25
     assert moved(3, -1) == 1
     assert moved([7, 8], [3, 4]) == 5
+
+
+@pytest.mark.parametrize("size", [1.0, 1e100, 1e160, 1e300])
+def test_points_of_any_size_have_a_nearest_one_in_the_dual_cone(size):
+    """A solver that diverges hands out duals of 1e200: their squares are no numbers."""
+    cones = Cones((Block(Cone.ZERO, 1, 1), Block(Cone.NONNEGATIVE, 1, 2), Block(Cone.SECOND_ORDER, 3, 2)))
+    z = np.array([-1.0, -2.0, 3.0, 1.0, 3.0, 4.0, 5.0, 3.0, 4.0])
+    nearest = cones.dual(size * z)
+    assert nearest == pytest.approx(size * np.array([-1.0, 0.0, 3.0, 3.0, 1.8, 2.4, 5.0, 3.0, 4.0]), rel=1e-12)
 
 
 def test_what_programs_share_cannot_be_written_to():

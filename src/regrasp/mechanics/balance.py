@@ -21,6 +21,10 @@ EQUILIBRIUM = 1e-13
 _ENOUGH = EQUILIBRIUM / 2
 # The dual function of what cannot be balanced rises for ever. At a y this large f(y) is mostly rounding.
 _UNBOUNDED = 1e6
+# Residuals of two steps that differ by less than this fraction.
+_RAY = 0.05
+# Steps damped by so much move nothing.
+_STUCK = 1e14
 # A rise of the dual function below this fraction of its value is lost in rounding.
 _ROUNDING = 1e-11
 
@@ -41,7 +45,7 @@ def nearest_equilibrium(
     if scale == 0:
         return np.zeros_like(forces)
 
-    y, damping = np.zeros(w.size), 0.0
+    y, damping, stride = np.zeros(w.size), 0.0, 1.0
     f, derivative = _project(forces, normals, frictions, limits)
     residual = g @ f.ravel() + w
     for _ in range(_STEPS):
@@ -54,7 +58,7 @@ def nearest_equilibrium(
             start=np.zeros((w.size, w.size)),
         )
         # A contact that pushes nothing adds no curvature; the shift keeps the step finite there.
-        step = np.linalg.solve(curvature + (1e-12 * n + damping) * np.eye(w.size), residual)
+        step = stride * np.linalg.solve(curvature + (1e-12 * n + damping) * np.eye(w.size), residual)
         trial = y + step
         f_trial, derivative_trial = _project(forces - (g.T @ trial).reshape(n, d), normals, frictions, limits)
         residual_trial = g @ f_trial.ravel() + w
@@ -65,7 +69,13 @@ def nearest_equilibrium(
         else:
             better = rise >= 1e-4 * expected
         # The dual is concave and smooth, so that a step that is damped enough always rises.
-        damping = damping / 16 if better else max(16 * damping, 1e-4)
+        if better or stride == 1:
+            damping = damping / 16 if better else max(16 * damping, 1e-4)
+        # What cannot be balanced is missed by the same all along a ray of y: follow it in growing strides.
+        is_ray = better and abs(residual_trial - residual).max() <= _RAY * abs(residual).max()
+        stride = 4 * stride if is_ray else 1.0
+        if damping > _STUCK:
+            return None
         if better:
             y, f, derivative, residual = trial, f_trial, derivative_trial, residual_trial
             if abs(y).max() > _UNBOUNDED * scale:

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from regrasp.programs.blocks import Array, Block, Cone
 
+# Squares of larger numbers may overflow.
+_HUGE = 1e150
+
 
 class Cones:
     """The product of the cones of ``blocks``, over (m,) rows."""
@@ -75,6 +78,8 @@ class Cones:
 
     def dual(self, z: Array) -> Array:
         """The point of the dual cone nearest to z (m,); the zero cone's dual is everything."""
+        if self.has_round and _HUGE < (size := float(np.abs(z).max())) < np.inf:
+            return size * self.dual(z / size)
         nearest: Array = np.where(self.nonnegative & (z > -np.inf), np.maximum(z, 0.0), z)
         for rows, size in self._round:
             each = nearest[rows].reshape(-1, size)
