@@ -482,6 +482,10 @@ KINDS |= {
 }  # fmt: skip
 
 
+LONG = ("x" * 100_000, "two\nlines " * 10_000, list(range(10_000)), ["word"] * 10_000, {"k" * 9_999: 10**999})
+"""What a message must not repeat in full."""
+
+
 class Case(NamedTuple):
     """One wrong call."""
 
@@ -503,6 +507,22 @@ def cases(row_name: str, row: Row) -> Iterator[Case]:
     for name in set(row.right) - inspect.signature(row.call).parameters.keys():  # options of a verb
         for wrong in KINDS[NAMES[name]]:
             yield Case(row_name, name, wrong)
+
+
+def long_cases(row_name: str, row: Row) -> Iterator[Case]:
+    """Every parameter of a row with text and lists that are long; some may be right."""
+    parameters = inspect.signature(row.call).parameters
+    names = (parameters.keys() | row.right.keys()) - {*row.free, "options"}
+    needed = {
+        name
+        for name in parameters.keys() - {"options"}
+        if parameters[name].default is inspect.Parameter.empty
+    }
+    for name in sorted(names):
+        if row.kinds.get(name, NAMES.get(name)) not in ("name", "own word") and needed <= row.right.keys() | {
+            name
+        }:
+            yield from (Case(row_name, name, wrong) for wrong in LONG)
 
 
 def called_wrongly(row: Row, case: Case) -> Any:

@@ -3,8 +3,9 @@
 import re
 from typing import Any
 
-# A value in a message is a reminder, not a listing.
+# A value in a message is a reminder, not a listing; a message is one to read: what is long is in the middle.
 _SHOWN = 120
+_HEAD, _TAIL = 330, 160
 
 
 def shown(value: Any) -> str:
@@ -15,6 +16,12 @@ def shown(value: Any) -> str:
         text = f"a value of type {type(value).__name__}"
     text = re.sub(r"\s+", " ", text)
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
+
+
+def _readable(message: str) -> str:
+    """A message on one line; of a long one, as of a grasp of a thousand names, both ends."""
+    line = re.sub(r"\s*\n\s*", " ", str(message))
+    return line if len(line) <= _HEAD + _TAIL + 5 else f"{line[:_HEAD]} ... {line[-_TAIL:]}"
 
 
 class RegraspError(Exception):
@@ -31,14 +38,14 @@ class InvalidInput(RegraspError, ValueError):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__(re.sub(r"\s*\n\s*", " ", message))
+        super().__init__(_readable(message))
 
 
 class InvalidFile(InvalidInput):
     """A file with any number of problems, a line each."""
 
     def __init__(self, message: str) -> None:
-        super(InvalidInput, self).__init__(message)
+        super(InvalidInput, self).__init__("\n".join(map(_readable, message.splitlines())))
 
 
 class Infeasible(RegraspError):
@@ -53,7 +60,7 @@ class Infeasible(RegraspError):
     """
 
     def __init__(self, message: str, certificate: Any = None) -> None:
-        super().__init__(message)
+        super().__init__(_readable(message))
         self.certificate = certificate
 
 

@@ -1,7 +1,9 @@
 """Wrong calls of every public name: one line that says what was expected and what came, and nothing else."""
 
 import inspect
+import re
 import warnings
+from typing import Any
 
 import matplotlib.pyplot as plt
 import pytest
@@ -9,8 +11,9 @@ import pytest
 import regrasp as rg
 import regrasp.files
 import regrasp.plots
+from paper import GRASP, LOAD
 from refusals import refusal
-from wrong_calls import called_wrongly, cases, rows
+from wrong_calls import Case, called_wrongly, cases, long_cases, rows
 
 pytestmark = pytest.mark.contract
 
@@ -34,11 +37,56 @@ def test_wrong_arguments_are_refused_in_one_line(name: str) -> None:
             assert said is not None, f"{case} was taken"
             assert said.strip(), case
             assert "\n" not in said, case
-            assert len(said) < 700, case
+            assert len(said) < 500, case
             tried += 1
     finally:
         plt.close("all")
     assert tried > 0 or not inspect.signature(row.call).parameters
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_what_is_long_is_not_repeated(name: str) -> None:
+    for case in long_cases(name, ROWS[name]):
+        try:
+            called_wrongly(ROWS[name], case)
+        except rg.RegraspError as error:
+            said = str(error)
+            assert len(said) < 500, (case.parameter, said[:600])
+            assert "\n" not in said
+
+
+@pytest.mark.parametrize(
+    "name", ["plan_removal", "plan_addition", "plan_exchange", "verify", "LoadSeries.sampled"]
+)
+@pytest.mark.parametrize("load", [lambda: LOAD, lambda a, b: LOAD, lambda *, t: LOAD])
+def test_functions_of_other_arguments_are_refused(name: str, load: Any) -> None:
+    said = refusal(lambda: called_wrongly(ROWS[name], Case(name, "load", load)))
+    assert said is not None
+    assert re.match("load must be (a|the) function of time", said)
+
+
+@pytest.mark.parametrize("shape", ["RegraspProblem", "SpaceRegraspProblem"])
+def test_filters_of_other_arguments_or_answers_are_refused(shape: str) -> None:
+    for keep, words in ((lambda: True, "keep must be a function of first"), (len, "keep must be")):
+        said = refusal(lambda keep=keep: called_wrongly(ROWS[shape], Case(shape, "keep", keep)))
+        assert said is not None
+        assert words in said
+    with pytest.raises(rg.InvalidInput, match="keep must return which of"):
+        called_wrongly(ROWS[shape], Case(shape, "keep", lambda a, b, c: [True])).plans()
+
+
+def test_names_that_are_long_or_many_leave_the_ends_of_a_message() -> None:
+    long = rg.Grasp([GRASP["P1"].named("n" * 100_000), GRASP["P2"].named("m" * 100_000)])
+    many = rg.Grasp([rg.Contact([k, 0], [0, 1], 0.5, name=f"finger number {k}") for k in range(2000)])
+    for grasp in (long, many):
+        for wrong in ("Q", None):
+            said = refusal(lambda grasp=grasp, wrong=wrong: grasp[wrong])
+            assert said is not None
+            assert len(said) < 500
+    with pytest.raises(rg.Infeasible) as caught:
+        rg.choose_state(long, rg.Wrench([0, 100]), "effort", max_force=1)
+    assert len(str(caught.value)) < 500
+    assert str(caught.value).startswith("no forces of nnn")
 
 
 def test_thousands_are_tried() -> None:

@@ -189,7 +189,7 @@ def test_devices_and_pipes_are_no_files(tmp_path: Path, read, kind: str) -> None
 @pytest.mark.parametrize(("read", "kind"), READERS)
 def test_names_that_are_no_files(tmp_path: Path, read, kind: str) -> None:
     for wrong in (None, 3, b"part.svg", 1.5, [], object()):
-        assert "path must be the name of a file, got" in refusal(read, wrong)
+        assert "a path must be text or a Path that names a file, got" in refusal(read, wrong)
     for name in (
         "",
         "a\0b" + kind,

@@ -8,7 +8,7 @@ from click.core import ParameterSource
 
 from regrasp.cli.speech import called, json_option, say
 from regrasp.cli.verdicts import progress_bar
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 
 # Problems that all solvers here work through in a minute or so.
 _QUICK_UNKNOWNS = 60
@@ -153,7 +153,7 @@ def bench_export(context: click.Context, folder: Path, families: tuple[str, ...]
     families = tuple(dict.fromkeys((*before, *families)))
     unknown = [name for name in families if name not in FAMILIES]
     if unknown:
-        raise InvalidInput(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
+        raise InvalidInput(f"no family {shown(unknown[0])}; there are {', '.join(FAMILIES)}")
     written = export([FAMILIES[name] for name in families or FAMILIES], folder)
     say(f"wrote {written}")
     return {"status": "done", "exit": 0, "wrote": [written]}

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.execution.engine import engine
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -51,7 +51,7 @@ def grasp_from_mujoco(model: Any, data: Any, body: str | int) -> GraspState:
         # The torque about the normal has one sign on both bodies: axis and torque turn over together.
         forces.append([*(R.T @ force).tolist(), *([six[3] if torsion else 0.0] if soft else [])])
     if not contacts:
-        raise InvalidInput(f"nothing touches body {body!r} at this instant")
+        raise InvalidInput(f"nothing touches body {shown(body)} at this instant")
     weight = model.body_mass[number] * model.opt.gravity
     applied = data.xfrc_applied[number]
     load = Wrench(R.T @ (weight + applied[:3]), R.T @ applied[3:])
@@ -63,10 +63,10 @@ def _number(mujoco: Any, model: Any, body: str | int) -> int:
         found = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, body))
         if found < 0:
             names = [model.body(i).name for i in range(1, model.nbody) if model.body(i).name]
-            raise InvalidInput(f"no body {body!r} in this model; it has {', '.join(names)}")
+            raise InvalidInput(f"no body {shown(body)} in this model; it has {', '.join(names)}")
         return found
     if isinstance(body, bool) or not isinstance(body, (int, np.integer)) or not 0 < body < model.nbody:
-        raise InvalidInput(f"body must be a name or a number from 1 to {model.nbody - 1}, got {body!r}")
+        raise InvalidInput(f"body must be a name or a number from 1 to {model.nbody - 1}, got {shown(body)}")
     return int(body)
 
 

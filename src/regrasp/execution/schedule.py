@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.execution.setup import Setup
 from regrasp.execution.units import Units, steps_of
 from regrasp.mechanics.checks import Array
@@ -74,7 +74,7 @@ def contacts_of(plan: Transition | RegraspPlan) -> tuple[Contact, ...]:
         for name, contact in zip(step.grasp.names, step.grasp, strict=True):
             if not found.setdefault(name, contact).position.tolist() == contact.position.tolist():
                 raise InvalidInput(
-                    f"two contacts of this plan are called {name!r}: give them different names"
+                    f"two contacts of this plan are called {shown(name)}: give them different names"
                 )
     return tuple(found.values())
 

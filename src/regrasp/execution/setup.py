@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, number
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, array, function, number
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
@@ -73,20 +73,29 @@ class Setup(ArrayValue):
             raise InvalidInput(
                 "motions say where tips touch and their radius: leave contact_errors and tip_radius out"
             )
-        if self.disturbance is not None and not callable(self.disturbance):
-            raise InvalidInput(
-                f"disturbance must be a function of time that returns a Wrench, got {self.disturbance!r}"
-            )
+        if self.disturbance is not None:
+            function(self.disturbance, "disturbance", "a function of time that returns a Wrench")
         if self.contact_errors is not None:
             errors = array(self.contact_errors, "contact_errors", (None, None))
             object.__setattr__(self, "contact_errors", errors)
         if self.delays is not None:
             delays = array(self.delays, "delays", (None,))
             if (delays < 0).any():
-                raise InvalidInput(f"delays must be at least 0, got {self.delays!r}")
+                raise InvalidInput(f"delays must be at least 0, got {shown(self.delays)}")
             object.__setattr__(self, "delays", delays)
         if self.friction is not None:
             object.__setattr__(self, "friction", _friction(self.friction))
+
+    def disturbed(self, t: float, dimension: int) -> Wrench:
+        """The disturbance at a time [s]."""
+        assert self.disturbance is not None
+        wrench = self.disturbance(t)
+        if not isinstance(wrench, Wrench) or wrench.dimension != dimension:
+            raise InvalidInput(
+                f"disturbance must return a Wrench of the plan's dimension, at t = {t:g} it returned "
+                f"{shown(wrench)}"
+            )
+        return wrench
 
     def inertia(self, mass: float, size: float, dimension: int) -> Array:
         """(3, 3) about the centre of mass; in the plane only the last number counts [N m s^2]."""
@@ -107,5 +116,5 @@ def _friction(value: Any) -> float | Array:
         return number(value, "friction", least=0)
     values = array(given, "friction", (None,))
     if (values < 0).any():
-        raise InvalidInput(f"friction must be at least 0, got {value!r}")
+        raise InvalidInput(f"friction must be at least 0, got {shown(value)}")
     return values

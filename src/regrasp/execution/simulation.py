@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.execution.engine import engine
 from regrasp.execution.measured import Execution
 from regrasp.execution.recorder import Recorder
@@ -54,7 +54,7 @@ def changed(setup: Setup | None, options: dict[str, Any]) -> Setup:
     known = set(Setup.__dataclass_fields__)
     for name in options:
         if name not in known:
-            raise InvalidInput(f"no option {name!r}; there are {', '.join(sorted(known))}")
+            raise InvalidInput(f"no option {shown(name)}; there are {', '.join(sorted(known))}")
     given = {} if setup is None else {name: getattr(setup, name) for name in known}
     return Setup(**(given | options))
 
@@ -66,7 +66,7 @@ def true_frictions(plan: Transition | RegraspPlan, setup: Setup) -> Array:
         return np.array([c.friction for c in contacts])
     if np.ndim(setup.friction) == 1 and np.shape(setup.friction) != (len(contacts),):
         raise InvalidInput(
-            f"friction must be a number or have shape ({len(contacts)},), got {setup.friction!r}"
+            f"friction must be a number or have shape ({len(contacts)},), got {shown(setup.friction)}"
         )
     return np.broadcast_to(np.asarray(setup.friction, dtype=float), len(contacts))
 
@@ -96,7 +96,7 @@ def _run(mujoco: Any, scene: Scene, wanted: Schedule, units: Units, setup: Setup
             turned.drive(data, j)
         data.xfrc_applied[scene.body] = loads[j]
         if setup.disturbance is not None and j >= wanted.gripping:
-            more = setup.disturbance((j - wanted.gripping) * units.timestep * units.time).vector
+            more = setup.disturbed((j - wanted.gripping) * units.timestep * units.time, d).vector
             data.xfrc_applied[scene.body] += _six(more[None] / units.force, d, units.length)[0]
         mujoco.mj_step(model, data)
         gone = not abs(recorder.place(data)).max() < _GONE

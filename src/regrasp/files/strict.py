@@ -63,7 +63,7 @@ def _in_words(model: type[BaseModel], problem: Mapping[str, Any]) -> str:
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         tags = [*(_tag(m) for m in models), *getattr(model, "other_kinds", ())]
         name = context["discriminator"].strip("'")
-        got = f", got {context['tag']!r}" if "tag" in context else ", found no such key"
+        got = f", got {_shown(context['tag'])}" if "tag" in context else ", found no such key"
         return f"{where.removesuffix(': ')}.{name}: expected {' or '.join(map(repr, tags))}{got}"
     if kind in _EXPECTED:
         return f"{where}expected {_EXPECTED[kind].format(**context)}, got {given}"

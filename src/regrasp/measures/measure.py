@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.value import ArrayValue
 
@@ -76,7 +76,7 @@ class Quality(ArrayValue):
         for measure in self.measures:
             if measure.name == name:
                 return measure
-        raise InvalidInput(f"no measure {name!r} of this grasp; it has {', '.join(self.names)}")
+        raise InvalidInput(f"no measure {shown(name)} of this grasp; it has {', '.join(self.names)}")
 
     def __contains__(self, name: object) -> bool:
         return name in self.names

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from math import inf
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.measures.closure import taken
 from regrasp.measures.geometry_measures import geometry_measures
 from regrasp.measures.limit_measures import FACETS, limit_measures, task_measure
@@ -67,7 +67,7 @@ def quality(
     ]
     if loads is not None:
         if not isinstance(loads, LoadSet) or loads.dimension != grasp.dimension:
-            raise InvalidInput(f"loads must be a LoadSet of the grasp's dimension, got {loads!r}")
+            raise InvalidInput(f"loads must be a LoadSet of the grasp's dimension, got {shown(loads)}")
         measures.append(task_measure(grasp, loads))
     if jacobians is not None:
         jacobians = items(jacobians, "jacobians")

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from errno import ENAMETOOLONG
+from inspect import signature
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -130,6 +131,21 @@ def items(value: Any, what: str) -> tuple[Any, ...]:
         return tuple(value)
     except TypeError:
         raise InvalidInput(f"{what} must be a list, got {shown(value)}") from None
+
+
+def function(value: Any, what: str, kind: str, arguments: int = 1) -> None:
+    """Raise ``InvalidInput`` unless a value can be called with so many arguments; ``kind`` in words."""
+    words = f"{what} must be {kind}, got {shown(value)}"
+    if not callable(value):
+        raise InvalidInput(words)
+    try:
+        given = signature(value)
+    except (TypeError, ValueError):  # compiled, and says nothing of its parameters
+        return
+    try:
+        given.bind(*[None] * arguments)
+    except TypeError as error:
+        raise InvalidInput(f"{words}: {error} when it is called with {arguments}") from None
 
 
 def whole(value: Any, what: str, *, least: int, most: int | None = None) -> int:

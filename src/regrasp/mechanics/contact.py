@@ -60,7 +60,7 @@ class Contact(ArrayValue):
             raise InvalidInput(
                 f"a contact's name must be Unicode text, got {shown(name)} with half a character"
             )
-        label = "contact" if name is None else f"contact {name!r}"
+        label = "contact" if name is None else f"contact {shown(name)}"
         where = point(position, f"{label}: position")
         direction = point(normal, f"{label}: normal")
         if where.size != direction.size:

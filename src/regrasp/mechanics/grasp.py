@@ -96,7 +96,7 @@ class Grasp(ArrayValue):
                 if known.name == contact:
                     return i
             names = ", ".join(map(one_line, self.names))
-            raise InvalidInput(f"no contact {contact!r} in this grasp; it has {names}")
+            raise InvalidInput(f"no contact {shown(contact)} in this grasp; it has {names}")
         if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
             raise InvalidInput(f"a contact is addressed by name or index, got {shown(contact)}")
         if not -len(self) <= contact < len(self):
@@ -133,7 +133,7 @@ class Grasp(ArrayValue):
         """
         gone = self.index(contact)
         if len(self) == 1:
-            raise InvalidInput(f"the last contact, {self.names[0]!r}, cannot be taken from a grasp")
+            raise InvalidInput(f"the last contact, {shown(self.names[0])}, cannot be taken from a grasp")
         return self._of(self.contacts[:gone] + self.contacts[gone + 1 :])
 
     def with_contact(self, contact: Contact) -> "Grasp":
@@ -329,7 +329,7 @@ def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:
     names = [contact.name for contact in contacts]
     for name in names:
         if names.count(name) > 1:
-            raise InvalidInput(f"contacts of one grasp must have different names, {name!r} came twice")
+            raise InvalidInput(f"contacts of one grasp must have different names, {shown(name)} came twice")
 
 
 def _refuse_coincident(contacts: tuple[Contact, ...]) -> None:
@@ -338,7 +338,7 @@ def _refuse_coincident(contacts: tuple[Contact, ...]) -> None:
         a, b = contacts[first], contacts[second]
         if abs(a.normal - b.normal).max() <= COINCIDENT:
             raise InvalidInput(
-                f"contacts {a.name!r} and {b.name!r} coincide at "
+                f"contacts {shown(a.name)} and {shown(b.name)} coincide at "
                 f"{a.position.tolist()}; place them at different points"
             )
 

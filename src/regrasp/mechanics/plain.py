@@ -19,7 +19,7 @@ def entries(
     for key in required:
         if key not in data:
             raise InvalidInput(
-                f"{what} must have the key {key!r}; it has {', '.join(map(str, data)) or 'none'}"
+                f"{what} must have the key {shown(key)}; it has {', '.join(map(str, data)) or 'none'}"
             )
     return dict(data)
 

@@ -195,7 +195,7 @@ class GraspState(ArrayValue):
         if forces is None:
             raise Infeasible(
                 f"no forces of {', '.join(grasp.names)} inside their friction cones and force limits "
-                f"balance {self.load!r}"
+                f"balance {shown(self.load)}"
             )
         return GraspState(grasp, self.load, grasp.cones.forces(forces))
 

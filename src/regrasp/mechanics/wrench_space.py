@@ -5,7 +5,7 @@ from math import hypot
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
@@ -49,7 +49,7 @@ class WrenchCone(WrenchPlane):
         super().__post_init__()
         object.__setattr__(self, "apex", array((0, 0, 0) if self.apex is None else self.apex, "apex", (3,)))
         if self.sign not in (1, -1):
-            raise InvalidInput(f"sign must be 1 or -1, got {self.sign!r}")
+            raise InvalidInput(f"sign must be 1 or -1, got {shown(self.sign)}")
 
     def inverse(self) -> "WrenchCone":
         """S Pi_i^-1, the inverse through the apex."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mesh.arrays import Indices, checked_vertices, merged
 from regrasp.mesh.encodings import check_count, prepared
@@ -25,7 +25,9 @@ def read(path: Path, bodies: str = "one", close_holes: float = 0.0) -> Mended:
     """Vertices, faces and words on what was mended, in the file's units; see ``Mesh.from_file``."""
     kind = path.suffix.lower()
     if kind not in _KINDS and path.is_file():
-        raise InvalidInput(f"the kind of file must be one of {', '.join(_KINDS)}; got {kind or 'none'!r}")
+        raise InvalidInput(
+            f"the kind of file must be one of {', '.join(_KINDS)}; got {shown(kind or 'none')}"
+        )
     data = read_bytes(path, "a mesh", _MOST)
     if not data:
         raise InvalidInput("the file is empty")

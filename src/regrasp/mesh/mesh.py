@@ -83,7 +83,7 @@ class Mesh(ArrayValue):
         triangles.setflags(write=False)
         limit = number(crease, "crease", above=0)
         if limit >= np.pi / 2:
-            raise InvalidInput(f"crease must be less than pi / 2, got {crease!r}; it is in radians")
+            raise InvalidInput(f"crease must be less than pi / 2, got {shown(crease)}; it is in radians")
         object.__setattr__(self, "vertices", read_only(points))
         object.__setattr__(self, "faces", triangles)
         object.__setattr__(self, "smooth", bool(smooth))
@@ -123,13 +123,13 @@ class Mesh(ArrayValue):
         """
         from regrasp.mesh.files import advice, read
         from regrasp.mesh.mending import BODIES
-        from regrasp.outline.opening import checked_path, naming
+        from regrasp.outline.opening import naming
 
         if not isinstance(smooth, bool):
             raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
         factor = 1.0 if scale is None else number(scale, "scale", above=0)
         how, widest = choice(bodies, "bodies", BODIES), number(close_holes, "close_holes", least=0)
-        file = checked_path(path)
+        file = file_path(path)
         with naming(file):
             vertices, faces, notes = read(file, how, widest)
             try:
@@ -201,7 +201,7 @@ class Mesh(ArrayValue):
         from regrasp.outline.polygon import PolygonBoundary
 
         if not isinstance(outline, Outline):
-            raise InvalidInput(f"outline must be an Outline, got {outline!r}")
+            raise InvalidInput(f"outline must be an Outline, got {shown(outline)}")
         rings = [ring + outline.centre_of_mass for ring in (outline.polygon(), *outline.hole_polygons())]
         straight = isinstance(outline.boundary, PolygonBoundary)
         return cls(*plate(rings, number(height, "height", above=0)), smooth=not straight)

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike
 from regrasp.mechanics.value import ArrayValue
 from regrasp.motions.rounded import RoundedWay
@@ -101,7 +101,7 @@ class Motions(ArrayValue):
         """Times and the step that each belongs to, the pause before it included."""
         times = np.atleast_1d(np.asarray(t, dtype=float))
         if not ((times >= 0) & (times <= self.duration * (1 + 1e-12))).all():
-            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {t!r}")
+            raise InvalidInput(f"t must lie in [0, {self.duration:.15g}] s, got {shown(t)}")
         over = np.array([s + step.duration for s, step in zip(self.starts, self.steps, strict=False)])
         return times, np.searchsorted(over, times, side="left")
 

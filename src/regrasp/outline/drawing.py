@@ -100,4 +100,4 @@ def check_known(layers: tuple[str, ...] | None, known: Iterable[str]) -> None:
     for name in layers or ():
         if name.casefold() not in {other.casefold() for other in names}:
             has = ", ".join(repr(other) for other in names[:20]) or "none"
-            raise InvalidInput(f"there is no layer {name!r}; the drawing has {has}")
+            raise InvalidInput(f"there is no layer {shown(name)}; the drawing has {has}")

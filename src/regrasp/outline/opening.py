@@ -23,13 +23,6 @@ def naming(file: Any) -> Iterator[None]:
         raise InvalidInput(f"{name if name.isprintable() else ascii(name)}: {error}") from None
 
 
-def checked_path(path: Any) -> Path:
-    """A file's name as a path."""
-    if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
-        raise InvalidInput(f"path must be the name of a file, got {ascii(path)[:_LONGEST]}")
-    return Path(path)
-
-
 def read_bytes(path: Path, what: str, most: int) -> bytes:
     """The bytes of a regular file of at most ``most`` of them, opened without waiting for a writer."""
     try:

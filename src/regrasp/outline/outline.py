@@ -9,7 +9,18 @@ from typing import Any, Union
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, choice, finite, items, number, read_only, whole
+from regrasp.mechanics.checks import (
+    Array,
+    ArrayLike,
+    array,
+    choice,
+    file_path,
+    finite,
+    items,
+    number,
+    read_only,
+    whole,
+)
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary
@@ -117,14 +128,14 @@ class Outline(ArrayValue):
             ImportError: Without the extra.
         """
         from regrasp.outline.drawing import UNITS, checked_layers
-        from regrasp.outline.opening import checked_path, naming
+        from regrasp.outline.opening import naming
         from regrasp.outline.readers import read_rings
 
         factor = number(scale, "scale", above=0)
         within = None if tolerance is None else number(tolerance, "tolerance", above=0)
         names = checked_layers(layers)
         wanted = None if unit is None else choice(unit, "unit", tuple(UNITS))
-        file = checked_path(path)
+        file = file_path(path)
         with naming(file):
             found = read_rings(file, within, names, wanted)
             outer, *holes = (factor * ring for ring in found.rings)

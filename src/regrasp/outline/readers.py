@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.outline.chains import chains, closed_ring
 from regrasp.outline.coordinates import coordinate_rings
@@ -41,7 +41,7 @@ def read_rings(
     kind = path.suffix.lower()
     known = (".svg", ".dxf", *_COORDINATES)
     if kind not in known and path.is_file():
-        raise InvalidInput(f"the kind of file must be one of {', '.join(known)}; got {kind or 'none'!r}")
+        raise InvalidInput(f"the kind of file must be one of {', '.join(known)}; got {shown(kind or 'none')}")
     data = read_bytes(path, "an outline", _MOST.get(kind, _MOST_TEXT))
     if kind in _COORDINATES:
         if layers is not None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, numbers_in, whole
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, function, number, numbers_in, whole
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
@@ -59,8 +59,7 @@ class LoadSeries(ArrayValue):
             instants: equal steps from 0 to ``duration``, both ends included.
             also: more times [s].
         """
-        if not callable(load):
-            raise InvalidInput(f"load must be a function of time that returns a Wrench, got {shown(load)}")
+        function(load, "load", "a function of time that returns a Wrench")
         count = whole(instants, "instants", least=2, most=MOST_INSTANTS)
         times = np.linspace(0, number(duration, "duration", above=0), count)
         inside = [t for t in finite(also, "times").ravel().tolist() if 0 < t < duration]
@@ -125,7 +124,7 @@ class LoadSeries(ArrayValue):
 def _wrench_at(load: Callable[[float], Wrench], t: float) -> Wrench:
     wrench = load(t)
     if not isinstance(wrench, Wrench):
-        raise InvalidInput(f"a load function must return a Wrench, at t = {t:g} it returned {wrench!r}")
+        raise InvalidInput(f"a load function must return a Wrench, at t = {t:g} it returned {shown(wrench)}")
     return wrench
 
 

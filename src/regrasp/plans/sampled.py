@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
@@ -56,7 +56,8 @@ class SampledPath(ArrayValue, Path):
             )
         if self.times[-1] != scaling.duration:
             raise InvalidInput(
-                f"a path through instants must last the duration {scaling.duration!r}, got {self.times[-1]!r}"
+                f"a path through instants must last the duration {shown(scaling.duration)}, got "
+                f"{shown(self.times[-1])}"
             )
 
     def forces_at(self, start: GraspState, end: GraspState, u: Array) -> Array:

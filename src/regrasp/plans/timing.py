@@ -61,7 +61,7 @@ class TimeScaling(ArrayValue):
         if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
         if not 1 <= whole(self.degree, "degree", least=0) < len(values):
-            raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {self.degree!r}")
+            raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {shown(self.degree)}")
         object.__setattr__(self, "degree", int(self.degree))
         object.__setattr__(self, "duration", duration)
         object.__setattr__(self, "control", values)

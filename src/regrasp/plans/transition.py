@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from regrasp.display import Pictured
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -62,7 +62,7 @@ class Transition(ArrayValue, Documented, Pictured):
             raise InvalidInput("both ends of a transition must have the same grasp")
         for label, names in (("leaving", self.leaving), ("arriving", self.arriving)):
             if not isinstance(names, tuple) or len(set(names)) != len(names):
-                raise InvalidInput(f"{label} must be a tuple of different contact names, got {names!r}")
+                raise InvalidInput(f"{label} must be a tuple of different contact names, got {shown(names)}")
             for name in names:
                 self.grasp.index(name)
         both = [name for name in self.leaving if name in self.arriving]
@@ -70,7 +70,7 @@ class Transition(ArrayValue, Documented, Pictured):
             raise InvalidInput(f"a finger leaves or arrives, not both: {', '.join(both)}")
         if not isinstance(self.path, Path):
             raise InvalidInput(
-                f"path must be a StraightPath, a SampledPath or a TurningPath, got {self.path!r}"
+                f"path must be a StraightPath, a SampledPath or a TurningPath, got {shown(self.path)}"
             )
         self.path.check(self.start, self.end, self.scaling)
 

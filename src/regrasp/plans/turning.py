@@ -15,7 +15,7 @@ from regrasp.closed_form.turning_path import (
     turning_peaks,
     turning_slope,
 )
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
@@ -59,7 +59,9 @@ class TurningPath(ArrayValue, Path):
         steps = np.diff(turned)
         one_way = bool((steps > 0).all() or (steps < 0).all())
         if turned.size < 2 or turned[0] != 0 or not one_way or abs(steps).max() >= pi:
-            raise InvalidInput(f"angles of a turn must go one way from 0 in steps below pi, got {angles!r}")
+            raise InvalidInput(
+                f"angles of a turn must go one way from 0 in steps below pi, got {shown(angles)}"
+            )
         held = array(forces, "forces of a turn", (turned.size, None, None))
         between = None if middles is None else (turned.size - 1, *held.shape[1:])
         object.__setattr__(self, "angles", turned)
@@ -90,7 +92,8 @@ class TurningPath(ArrayValue, Path):
         still = still_part(start.load, self.axis)
         if still is not None and self.middles is None:
             raise InvalidInput(
-                f"a part of the load, {still!r}, does not turn: middles are needed, states between angles"
+                f"a part of the load, {shown(still)}, does not turn: middles are needed, states "
+                "between angles"
             )
 
     def forces_at(self, start: GraspState, end: GraspState, u: Array) -> Array:

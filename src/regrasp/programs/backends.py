@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from math import inf
 from typing import Any
 
-from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable
+from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
 from regrasp.programs.facts import BACKENDS, Backend
 from regrasp.programs.judging.verdict import judged
 from regrasp.programs.program import Program
@@ -70,7 +70,9 @@ def solve(
             that is not convex.
     """
     if time_limit is not None and not 0 < time_limit < inf:
-        raise InvalidInput(f"time_limit must be a positive number of seconds or None, got {time_limit!r}")
+        raise InvalidInput(
+            f"time_limit must be a positive number of seconds or None, got {shown(time_limit)}"
+        )
     if program.why_not_convex:
         raise InvalidInput(f"{program.why_not_convex}; the objective must be convex")
     if backend == "auto":
@@ -79,7 +81,8 @@ def solve(
     if program.has_second_order and not entry.second_order:
         takers = ", ".join(name for name in available_backends() if BACKENDS[name].second_order)
         raise InvalidInput(
-            f"back end {backend!r} solves QPs only and the program has second-order cones; use linearised "
+            f"back end {shown(backend)} solves QPs only and the program has second-order "
+            "cones; use linearised "
             f"cones (facets=...), or one of {takers}"
         )
 
@@ -140,12 +143,12 @@ def _entry(backend: str) -> Backend:
     name = backend.partition(":")[0] if backend.startswith("cvxpy:") else backend
     if name not in BACKENDS:
         raise SolverUnavailable(
-            f"no back end {backend!r}; known: auto, {', '.join(BACKENDS)}, cvxpy:<SOLVER>"
+            f"no back end {shown(backend)}; known: auto, {', '.join(BACKENDS)}, cvxpy:<SOLVER>"
         )
     entry = BACKENDS[name]
     if not _is_installed(entry):
         raise SolverUnavailable(
-            f"back end {name!r} needs the package {entry.needs}: pip install 'regrasp[solvers]'"
+            f"back end {shown(name)} needs the package {entry.needs}: pip install 'regrasp[solvers]'"
         )
     return entry
 

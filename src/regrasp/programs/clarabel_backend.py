@@ -7,7 +7,7 @@ from typing import Any
 import clarabel
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.program import Block, Cone, Program
 from regrasp.programs.solution import Solution, Status
@@ -50,7 +50,7 @@ def _settings(**options: Any) -> Any:
     settings.verbose = False
     for key, value in {**BACKENDS["clarabel"].options, **options}.items():
         if not hasattr(settings, key):
-            raise InvalidInput(f"Clarabel has no setting {key!r}")
+            raise InvalidInput(f"Clarabel has no setting {shown(key)}")
         setattr(settings, key, value)
     return settings
 

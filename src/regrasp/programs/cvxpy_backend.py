@@ -8,7 +8,7 @@ import cvxpy as cp
 import numpy as np
 from scipy import sparse
 
-from regrasp.errors import SolverUnavailable
+from regrasp.errors import SolverUnavailable, shown
 from regrasp.programs.program import Cone, Program
 from regrasp.programs.solution import Solution, Status
 
@@ -31,7 +31,7 @@ def timed_solve(program: Program, name: str, **options: Any) -> tuple[Solution, 
     _, _, solver = name.partition(":")
     if solver and solver not in cp.installed_solvers():
         known = ", ".join(cp.installed_solvers())
-        raise SolverUnavailable(f"cvxpy has no solver {solver!r} here; it has {known}")
+        raise SolverUnavailable(f"cvxpy has no solver {shown(solver)} here; it has {known}")
     x = cp.Variable(program.q.size)
     s = program.b - program.A @ x
     constraints: list[Any] = []

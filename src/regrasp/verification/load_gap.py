@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION
@@ -75,7 +75,9 @@ def _at(load: Callable[[float], Wrench], times: Array, width: int) -> Array:
     found = [load(t) for t in times.tolist()]
     for wrench in found:
         if not isinstance(wrench, Wrench) or wrench.vector.size != width:
-            raise InvalidInput(f"load must return a Wrench of the plan's dimension, it returned {wrench!r}")
+            raise InvalidInput(
+                f"load must return a Wrench of the plan's dimension, it returned {shown(wrench)}"
+            )
     return np.array([wrench.vector for wrench in found])
 
 

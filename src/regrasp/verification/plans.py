@@ -14,8 +14,8 @@ from typing import cast
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import number
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import function, number
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import check_state, exact, least_angle, rounded
@@ -59,9 +59,9 @@ def verify(
     if not all(hasattr(plan, name) for name in _NEEDED) or not (
         isinstance(plan.start, GraspState) and isinstance(plan.end, GraspState)
     ):
-        raise InvalidInput(f"verify needs a plan, got {plan!r}")
-    if load is not None and not callable(load):
-        raise InvalidInput(f"load must be the function of time the plan was made for, got {load!r}")
+        raise InvalidInput(f"verify needs a plan, got {shown(plan)}")
+    if load is not None:
+        function(load, "load", "the function of time the plan was made for")
     if load is not None and plan.turn is not None:
         raise InvalidInput("a turning path holds the load that turns with it; leave load out")
     if curvature is not None:

@@ -5,6 +5,7 @@ from math import inf, isfinite
 
 import numpy as np
 
+from regrasp.errors import shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
 from regrasp.verification.exact import RESOLUTION, dot, exact, root, rounded
@@ -59,7 +60,9 @@ def _check_form(plan: Plan) -> list[str]:
     for choice in record.choices:
         limits = choice.force_limits
         if choice.end not in ("start", "end"):
-            broken.append(f"record: a state was chosen for {choice.end!r}, which is neither start nor end")
+            broken.append(
+                f"record: a state was chosen for {shown(choice.end)}, which is neither start nor end"
+            )
         if not all(limit > 0 for limit in limits):
             broken.append(f"record: force limits must be greater than 0, got {', '.join(map(str, limits))}")
     return broken

@@ -11,6 +11,7 @@ from math import inf
 
 import numpy as np
 
+from regrasp.errors import shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
@@ -46,7 +47,7 @@ def verify_setpoints(
     if times is None:
         times = np.linspace(0.0, duration, len(forces))
     if times.shape != (len(forces),) or not (np.diff(times) > 0).all() or not _within(times, duration):
-        return _refused(f"times of set-points must rise within [0, {duration!r}] s, one for each")
+        return _refused(f"times of set-points must rise within [0, {shown(duration)}] s, one for each")
     if not np.isfinite(forces).all():
         return _refused("forces of set-points must be finite numbers")
     if plan.turn is not None:

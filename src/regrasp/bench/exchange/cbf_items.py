@@ -9,7 +9,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.programs.program import Array
 
 _VERSIONS = ("1", "2", "3", "4")
@@ -159,4 +159,4 @@ class _Reader:
         return found
 
     def _refuse(self, expected: str, found: str) -> NoReturn:
-        raise InvalidInput(f"{self.path}, line {self.number}: expected {expected}, found {found!r}")
+        raise InvalidInput(f"{self.path}, line {self.number}: expected {expected}, found {shown(found)}")

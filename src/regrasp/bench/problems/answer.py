@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.programs.answer import Answer, Claim
 from regrasp.programs.program import Array, Program
 
@@ -20,7 +20,7 @@ def understood(given: Any, program: Program) -> Answer:
     words = [claim.value for claim in Claim]
     status = getattr(given, "status", None)
     if status not in words:
-        raise InvalidInput(f"a solver's answer needs a status among {', '.join(words)}, got {status!r}")
+        raise InvalidInput(f"a solver's answer needs a status among {', '.join(words)}, got {shown(status)}")
     status = Claim(status).value  # a plain word: the runner must not import what another kind of string is
     x = _array("x", getattr(given, "x", None), program.q.size)
     if x is None and status == Claim.FOUND.value:

@@ -8,7 +8,7 @@ where it is not by default. A solver without such options, quadprog for one, ans
 
 from typing import Any
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 
 SETTINGS = ("default", "low", "mid", "high")
 _ASKED = {"low": 1e-3, "mid": 1e-6, "high": 1e-9}
@@ -96,4 +96,4 @@ def right_within(settings: str) -> float:
 def check(settings: str) -> None:
     """Raises ``InvalidInput`` for settings that do not exist."""
     if settings not in SETTINGS:
-        raise InvalidInput(f"no settings {settings!r}; there are {', '.join(SETTINGS)}")
+        raise InvalidInput(f"no settings {shown(settings)}; there are {', '.join(SETTINGS)}")

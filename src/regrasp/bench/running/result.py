@@ -9,6 +9,7 @@ from regrasp.bench.problems.answer import Answer, Claim
 from regrasp.bench.problems.problem import BenchProblem
 from regrasp.bench.problems.settings import SETTINGS, right_within
 from regrasp.bench.running.solvers import Solver
+from regrasp.errors import shown
 
 # How a solve can end besides the words of ``Claim``.
 ERROR, TIMEOUT, CRASHED, MEMORY = "error", "timeout", "crashed", "out of memory"
@@ -106,7 +107,7 @@ def row_of(values: Any) -> Row:
         raise TypeError("not the fields of a row")
     for name, known in _WORDS.items():
         if values[name] not in known:
-            raise TypeError(f"{name} must be one of {', '.join(known)}, got {values[name]!r}")
+            raise TypeError(f"{name} must be one of {', '.join(known)}, got {shown(values[name])}")
     return Row(**values)
 
 

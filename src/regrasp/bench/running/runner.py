@@ -18,7 +18,7 @@ from regrasp.bench.running.process import Worker, WorkerLost
 from regrasp.bench.running.result import COLD, ERROR, MEMORY, TIMEOUT, WARM, Key, Row, written
 from regrasp.bench.running.solvers import Solver
 from regrasp.bench.running.store import Store
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 
 # A first call shorter than this warms up only; what a first call adds is lost in a longer one, which counts.
 WARM_UP = 1.0
@@ -103,7 +103,7 @@ def chosen_problems(
     names = list(dict.fromkeys(names))
     for name in names:
         if name not in families:
-            raise InvalidInput(f"no family {name!r}; there are {', '.join(families)}")
+            raise InvalidInput(f"no family {shown(name)}; there are {', '.join(families)}")
     problems = [p for name in names or families for p in families[name].problems()]
     small = [p for p in problems if most is None or p.size[0] <= most]
     if not small:

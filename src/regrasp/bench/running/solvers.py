@@ -24,7 +24,7 @@ from typing import Any
 
 from regrasp.bench.problems.answer import Answer
 from regrasp.bench.problems.settings import is_known
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
@@ -128,7 +128,7 @@ def installed_solvers() -> dict[str, Solver]:
         for point in entry_points(group=group):
             if point.name in found:
                 raise InvalidInput(
-                    f"the entry point {point.value} announces a solver {point.name!r}, "
+                    f"the entry point {point.value} announces a solver {shown(point.name)}, "
                     "but another has that name already; give it another"
                 )
             release = point.dist.version if point.dist else "unknown"
@@ -145,7 +145,7 @@ def chosen_solvers(names: Iterable[str]) -> list[Solver]:
     names = list(dict.fromkeys(names))
     for name in names:
         if name not in there:
-            raise InvalidInput(f"no solver {name!r} here; there are {', '.join(there)}")
+            raise InvalidInput(f"no solver {shown(name)} here; there are {', '.join(there)}")
     return [there[name] for name in names or there]
 
 

@@ -59,7 +59,7 @@ def write_mcap(
     if metres_per_newton is not None:
         number(metres_per_newton, "metres_per_newton", above=0)
     if target.suffix != ".mcap":
-        raise InvalidInput(f"path must end in .mcap, got {str(path)!r}")
+        raise InvalidInput(f"path must end in .mcap, got {shown(str(path))}")
     try:
         from rosbags.rosbag2 import StoragePlugin, Writer
         from rosbags.typesys import Stores, get_typestore

@@ -173,7 +173,7 @@ def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan:
         raise InvalidInput(f'{name}: expected a plan with "format": "{FORMAT}", found other JSON')
     if data.get("version") != VERSION or type(data["version"]) is not int:  # True == 1
         raise InvalidInput(
-            f"{name}: version: expected {VERSION}, got {data.get('version')!r}; "
+            f"{name}: version: expected {VERSION}, got {shown(data.get('version'))}; "
             f"a plan of a newer regrasp needs that regrasp to be read"
         )
     if data.get("kind") == "regrasp":
@@ -190,7 +190,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         keys = [key for key, _ in pairs]
-        raise InvalidInput(f"the key {max(keys, key=keys.count)!r} comes twice in one table")
+        raise InvalidInput(f"the key {shown(max(keys, key=keys.count))} comes twice in one table")
     return table
 
 
@@ -328,7 +328,8 @@ def _moving(stored: _Transition) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if wanted.get(stored.kind, (False, False)) != (bool(leaving), bool(arriving)):
         article = "an" if stored.kind[0] in "ae" else "a"
         raise InvalidInput(
-            f"{article} {stored.kind} names the wrong fingers: {stored.contact!r} and {stored.arrival!r}"
+            f"{article} {stored.kind} names the wrong fingers: "
+            f"{shown(stored.contact)} and {shown(stored.arrival)}"
         )
     return tuple(leaving), tuple(arriving)
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 
 # An angle, or a quaternion, in a file may differ by this much from the plan's at that time [rad].
@@ -30,7 +30,7 @@ class Rows(NamedTuple):
 def check_times(path: Path, times: Array, start: float, end: float) -> None:
     """Raise ``InvalidInput`` unless times (m,) rise from ``start`` to ``end`` [s]."""
     if times.size < 2 or times[0] != start or times[-1] != end or not (np.diff(times) > 0).all():
-        raise InvalidInput(f"{path}: times must rise from {start:g} to {end!r} s")
+        raise InvalidInput(f"{path}: times must rise from {start:g} to {shown(end)} s")
 
 
 def check_spacing(path: Path, steps: Sequence[tuple[Array, float]], rate: float | None = None) -> float:

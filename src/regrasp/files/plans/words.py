@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from regrasp.closed_form.choice import OBJECTIVES
+from regrasp.errors import shown
 from regrasp.planning.changes.joining import PATH_OBJECTIVES
 
 
@@ -20,7 +21,7 @@ def _path_objective(value: str) -> str:
 
 def _one_of(value: str, known: tuple[str, ...]) -> str:
     if value not in known:
-        raise ValueError(f"expected {', '.join(known[:-1])} or {known[-1]}, got {value!r}")
+        raise ValueError(f"expected {', '.join(known[:-1])} or {known[-1]}, got {shown(value)}")
     return value
 
 

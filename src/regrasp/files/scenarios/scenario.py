@@ -149,7 +149,7 @@ class Scenario(Strict):
             for key in ("contact", "arrival"):
                 finger = getattr(task, key, None)
                 if finger is not None and finger not in names:
-                    raise ValueError(f"task.{key}: expected one of {', '.join(names)}, got {finger!r}")
+                    raise ValueError(f"task.{key}: expected one of {', '.join(names)}, got {shown(finger)}")
         try:
             external = self.external
         except InvalidInput as error:

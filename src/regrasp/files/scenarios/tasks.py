@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
+from regrasp.errors import shown
 from regrasp.files.scenarios.keys import Control, Method, Name, PerFinger, Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.checks import Array
@@ -50,7 +51,7 @@ class Task(Strict):
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> "Task":
         if self.control is not None and self.scaling != "spline":
-            raise ValueError(f"control belongs to scaling 'spline', got scaling {self.scaling!r}")
+            raise ValueError(f"control belongs to scaling 'spline', got scaling {shown(self.scaling)}")
         return self
 
 
@@ -138,7 +139,7 @@ class Exchange(Change):
     def _is_an_exchange(self) -> "Exchange":
         if self.contact == self.arrival:
             raise ValueError(
-                f"arrival: expected another finger than the one that leaves, got {self.arrival!r}"
+                f"arrival: expected another finger than the one that leaves, got {shown(self.arrival)}"
             )
         return self
 

@@ -8,7 +8,7 @@ from warnings import warn
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import MOST_PIECES, UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.dxf.curves import CURVES, frame, mapped, piece, vector
@@ -155,7 +155,7 @@ class _Walk:
             self._left.append(f"INSERT of {name!r}, which is not in the file")
             return
         if name.casefold() in place.blocks:
-            raise InvalidInput(f"the block {name!r} inserts itself")
+            raise InvalidInput(f"the block {shown(name)} inserts itself")
         if len(place.blocks) >= _DEEPEST:
             raise InvalidInput(f"blocks are inserted more than {_DEEPEST} deep")
         linetype = self._layers.linetype(entity, layer, place.linetype)

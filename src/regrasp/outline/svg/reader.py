@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.opening import reason
@@ -249,7 +249,7 @@ def _own(style: dict[str, str], view: tuple[float, float]) -> Array:
     if "transform-origin" not in style:
         return matrix
     if style.get("transform-box", "view-box") != "view-box":
-        raise ValueError(f"transform-box {style['transform-box']!r} is not followed")
+        raise ValueError(f"transform-box {shown(style['transform-box'])} is not followed")
     return turned_about(origin_of(style["transform-origin"], *view), matrix)
 
 

@@ -6,6 +6,7 @@ from math import isfinite
 
 import numpy as np
 
+from regrasp.errors import shown
 from regrasp.mechanics.checks import Array
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -29,7 +30,7 @@ def length(text: str, whole: float = 0.0) -> float:
     if unit == "%":
         return value * whole / 100
     if unit not in PX:
-        raise ValueError(f"the unit of {text!r} is not known")
+        raise ValueError(f"the unit of {shown(text)} is not known")
     return value * PX[unit]
 
 
@@ -63,7 +64,7 @@ def transform(text: str) -> Array:
         read, least, most = _FUNCTIONS[found[1]]
         values = _values(found[2])
         if not least <= len(values) <= most:
-            raise ValueError(f"the transform {found[0].strip()!r} has {len(values)} values")
+            raise ValueError(f"the transform {shown(found[0].strip())} has {len(values)} values")
         result = result @ read(*values)
     return result
 
@@ -101,7 +102,7 @@ def _values(text: str) -> list[tuple[float, str]]:
     while at < len(text):
         found = _VALUE.match(text, at)
         if not found:
-            raise ValueError(f"the transform has {text!r} where numbers are expected")
+            raise ValueError(f"the transform has {shown(text)} where numbers are expected")
         values.append((number_of(found[1]), (found[2] or "").lower()))
         at = found.end()
     return values

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -114,7 +114,7 @@ def state_among(
     names = ", ".join(grasp.names[i] for i in gone)
     raise InvalidInput(
         f"{label} must be a GraspState of {', '.join(rest.names)}, or of the whole grasp with {names} idle, "
-        f"under the start's load; got {state!r}"
+        f"under the start's load; got {shown(state)}"
     )
 
 

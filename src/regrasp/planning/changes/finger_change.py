@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Unpack, cast
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import instance
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -116,7 +116,7 @@ def plan_addition(
     if end is not None and (end.grasp != grasp or end.load != last):
         raise InvalidInput(
             f"end must be a state of the start's contacts and the new one, in that order "
-            f"({', '.join(grasp.names)}), under the same load; got {end!r}"
+            f"({', '.join(grasp.names)}), under the same load; got {shown(end)}"
         )
     given_start = start if isinstance(start, GraspState) else None
     new = tuple(range(len(before), len(grasp)))
@@ -183,7 +183,9 @@ def _places(grasp: Grasp, contacts: str | int | Sequence[str | int]) -> tuple[in
     else:
         places = [grasp.index(contact) for contact in contacts]
     if not places or len(set(places)) < len(places):
-        raise InvalidInput(f"the fingers that leave must be one or more different ones, got {contacts!r}")
+        raise InvalidInput(
+            f"the fingers that leave must be one or more different ones, got {shown(contacts)}"
+        )
     if len(places) == len(grasp):
         last = ", ".join(map(repr, grasp.names))
         raise InvalidInput(f"the last contact{'s' * (len(grasp) > 1)}, {last}, cannot be taken from a grasp")
@@ -194,8 +196,8 @@ def _contacts(given: Contact | Sequence[Contact]) -> tuple[Contact, ...]:
     """The contacts that arrive."""
     contacts = (given,) if isinstance(given, Contact) else given
     if not isinstance(contacts, Sequence) or not contacts or isinstance(contacts, str):
-        raise InvalidInput(f"contact must be the Contact that arrives, got {given!r}")
+        raise InvalidInput(f"contact must be the Contact that arrives, got {shown(given)}")
     for contact in contacts:
         if not isinstance(contact, Contact):
-            raise InvalidInput(f"contact must be the Contact that arrives, got {contact!r}")
+            raise InvalidInput(f"contact must be the Contact that arrives, got {shown(contact)}")
     return tuple(contacts)

@@ -41,7 +41,7 @@ def grasp_and_load(start: GraspState | Grasp, load: Wrench | None) -> tuple[Gras
     if isinstance(start, GraspState):
         if load is not None and not (isinstance(load, Wrench) and load == start.load):
             raise InvalidInput(
-                f"the start state has the load {start.load!r}; leave load out, got {shown(load)}"
+                f"the start state has the load {shown(start.load)}; leave load out, got {shown(load)}"
             )
         return start.grasp, start.load
     if not isinstance(start, Grasp):
@@ -91,7 +91,7 @@ def scaling_of(duration: float | None, scaling: TimeScaling | None) -> TimeScali
     if duration is not None:
         raise InvalidInput("scaling has a duration of its own; give one of duration and scaling")
     if not isinstance(scaling, TimeScaling):
-        raise InvalidInput(f"scaling must be a TimeScaling, got {scaling!r}")
+        raise InvalidInput(f"scaling must be a TimeScaling, got {shown(scaling)}")
     return scaling
 
 

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, choice, limits, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -131,7 +131,9 @@ def joined(
         )
     objective = demands.path_objective or "change"
     if objective in ("effort", "peak") and not has_rates:
-        raise InvalidInput(f"path_objective {objective!r} would jump at both ends; give rate_limit as well")
+        raise InvalidInput(
+            f"path_objective {shown(objective)} would jump at both ends; give rate_limit as well"
+        )
     backend = DEFAULT_BACKEND if demands.method == "auto" else demands.method
     path = _path(change, scaling, load, rates, least, stays, criteria, demands, backend)
     record = replace(

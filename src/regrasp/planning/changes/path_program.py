@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.faces import cone_faces, round_faces
@@ -87,7 +87,9 @@ def path_program(
     in space from inside (``regrasp.planning.states.faces``), or None for second-order cones.
     """
     if objective not in OBJECTIVES:
-        raise InvalidInput(f"objective of a path must be one of {', '.join(OBJECTIVES)}; got {objective!r}")
+        raise InvalidInput(
+            f"objective of a path must be one of {', '.join(OBJECTIVES)}; got {shown(objective)}"
+        )
     return _Builder(task, objective, facets).program(least_margin)
 
 

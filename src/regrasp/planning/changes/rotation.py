@@ -10,7 +10,7 @@ from typing import NamedTuple, Unpack
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import unit_axis
@@ -163,8 +163,9 @@ def _refuse_other_end(end: GraspState, grasp: Grasp, load: Wrench) -> None:
     same = isinstance(end, GraspState) and end.grasp == grasp
     if not same or abs(end.load.vector - load.vector).max() > 1e-9 * abs(load.vector).max():
         raise InvalidInput(
-            f"end must be a state of the same contacts under the load seen from the turned object, {load!r}; "
-            f"got {end!r}"
+            "end must be a state of the same contacts under the load seen from the turned "
+            f"object, {shown(load)}; "
+            f"got {shown(end)}"
         )
 
 
@@ -247,7 +248,9 @@ def _axis(axis: ArrayLike | None, grasp: Grasp) -> Array | None:
     """The axis of a turn, checked: one in space, none in the plane."""
     if grasp.dimension == 2:
         if axis is not None:
-            raise InvalidInput(f"an object in the plane turns in the plane; leave axis out, got {axis!r}")
+            raise InvalidInput(
+                f"an object in the plane turns in the plane; leave axis out, got {shown(axis)}"
+            )
         return None
     if axis is None:
         raise InvalidInput("a turn in space needs the axis, such as axis=[1, 0, 0]")

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, array, whole
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, array, function, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.value import ArrayValue
@@ -65,13 +65,14 @@ class HoldGraph(ArrayValue):
         if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
             raise InvalidInput("a hold graph needs two planar contacts or more")
         if not isinstance(self.load, Wrench):
-            raise InvalidInput(f"load must be a Wrench, got {self.load!r}; write Wrench(force=[...])")
+            raise InvalidInput(f"load must be a Wrench, got {shown(self.load)}; write Wrench(force=[...])")
         if self.load.dimension != 2 or self.load.torque.any() or not self.load.force.any():
             raise InvalidInput(
-                f"the load of a hold graph is a force through the centre of mass, not zero, got {self.load!r}"
+                f"the load of a hold graph is a force through the centre of mass, not zero, "
+                f"got {shown(self.load)}"
             )
-        if self.keep is not None and not callable(self.keep):
-            raise InvalidInput(f"keep must be a function of points and the angle, got {self.keep!r}")
+        if self.keep is not None:
+            function(self.keep, "keep", "a function of first points, second points and the angle", 3)
 
     @cached_property
     def pairs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from regrasp.closed_form.pyramid import facet_angles
 from regrasp.closed_form.three_fingers import HOLDS, three_finger_hold
 from regrasp.closed_form.triple_program import Fingers
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -71,7 +71,7 @@ class TripleGraph(ArrayValue):
             raise InvalidInput("no load may be zero: it has no direction, and three idle fingers hold it")
         object.__setattr__(self, "loads", loads)
         if whole(self.facets, "facets", least=4, most=MOST_FACETS) % 2:
-            raise InvalidInput(f"facets must be an even whole number of at least 4, got {self.facets!r}")
+            raise InvalidInput(f"facets must be an even whole number of at least 4, got {shown(self.facets)}")
         number(self.peak_ratio, "peak_ratio", least=1)
         reserve_fraction(self.reserve)
         number(self.min_distance, "min_distance", least=0)
@@ -207,7 +207,14 @@ class TripleGraph(ArrayValue):
             for a, b in ((0, 1), (1, 2), (2, 0)):
                 allowed &= np.linalg.norm(corners[a] - corners[b], axis=1) >= self.min_distance
         if self.keep is not None:
-            allowed &= np.asarray(self.keep(*corners), dtype=np.bool_)
+            kept = self.keep(*corners)
+            if np.shape(kept) != allowed.shape:
+                raise InvalidInput(
+                    f"keep must return which of {allowed.size} triples are allowed, shape "
+                    f"{allowed.shape}; it "
+                    f"returned shape {np.shape(kept)}"
+                )
+            allowed &= np.asarray(kept, dtype=np.bool_)
         return allowed
 
 

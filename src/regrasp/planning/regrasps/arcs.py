@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.outline import Outline
 
@@ -23,7 +23,7 @@ def on_arcs(arcs: Arcs, places: Array, length: float) -> NDArray[np.bool_]:
     is the whole outline where hi - lo is its length or more. Raises ``InvalidInput`` for anything else.
     """
     if isinstance(arcs, (str, bytes)) or not isinstance(arcs, Sequence) or len(arcs) != 3:
-        raise InvalidInput(f"arcs must have an entry for each of three fingers, got {arcs!r}")
+        raise InvalidInput(f"arcs must have an entry for each of three fingers, got {shown(arcs)}")
     result = np.zeros((3, places.size), dtype=np.bool_)
     for finger, arc in enumerate(arcs):
         for lo, hi in _intervals(arc, finger, length):

@@ -5,7 +5,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -31,7 +31,7 @@ class Ends:
         wanted = "three planar contacts" if fingers == 3 else "four contacts in space"
         for what, grasp in (("start", start), ("goal", goal)):
             if not isinstance(grasp, Grasp) or len(grasp) != fingers or grasp.dimension != dimension:
-                raise InvalidInput(f"{what} must be a Grasp of {wanted}, got {grasp!r}")
+                raise InvalidInput(f"{what} must be a Grasp of {wanted}, got {shown(grasp)}")
         self._limit = max_force
         self.contacts: list[Contact] = []
         self.start = tuple(self._place(c, f"start {c.name}") for c in start)
@@ -76,11 +76,11 @@ class Ends:
             if not allowed[finger, place]:
                 raise InvalidInput(
                     f"{self.contacts[place].name} is not on the arc of finger {finger + 1}, "
-                    f"{arcs[finger]!r}, which touches it at the start"
+                    f"{shown(arcs[finger])}, which touches it at the start"
                 )
         for place in self.goal:
             if not allowed[:, place].any():
-                raise InvalidInput(f"{self.contacts[place].name} is on no finger's arc: {list(arcs)!r}")
+                raise InvalidInput(f"{self.contacts[place].name} is on no finger's arc: {shown(list(arcs))}")
         if not any(all(allowed[f, v] for f, v in enumerate(way)) for way in permutations(self.goal)):
             raise InvalidInput(
                 "three fingers cannot take the contacts of the goal: "

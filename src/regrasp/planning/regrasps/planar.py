@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -106,16 +106,16 @@ class RegraspProblem(ArrayValue):
 
     def __post_init__(self) -> None:
         if not isinstance(self.outline, Outline):
-            raise InvalidInput(f"outline must be an Outline, got {self.outline!r}")
+            raise InvalidInput(f"outline must be an Outline, got {shown(self.outline)}")
         _ = self.criteria
         check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
         number(self.goal_orientation, "goal_orientation")
         whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
         number(self.min_distance, "min_distance", least=0)
         if not isinstance(self.one_finger, bool):
-            raise InvalidInput(f"one_finger must be True or False, got {self.one_finger!r}")
+            raise InvalidInput(f"one_finger must be True or False, got {shown(self.one_finger)}")
         if self.weights is not None and not isinstance(self.weights, RegraspWeights):
-            raise InvalidInput(f"weights must be RegraspWeights, got {self.weights!r}")
+            raise InvalidInput(f"weights must be RegraspWeights, got {shown(self.weights)}")
         _ = self.graph, self.allowed
 
     @cached_property

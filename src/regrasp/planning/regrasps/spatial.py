@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, instance, rotation, whole
+from regrasp.mechanics.checks import Array, ArrayLike, function, instance, rotation, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import RESERVE
@@ -102,13 +102,13 @@ class SpaceRegraspProblem(ArrayValue):
         _ = self.criteria, self.rotation
         load = self.load
         if not isinstance(load, Wrench) or load.dimension != 3 or load.torque.any() or not load.force.any():
-            raise InvalidInput(f"load must be a force in space through the centre of mass, got {load!r}")
+            raise InvalidInput(f"load must be a force in space through the centre of mass, got {shown(load)}")
         check_steps(self.step_duration, self.states, self.max_turn, self.least_margin)
         whole(self.orientations, "orientations", least=0, most=MOST_ORIENTATIONS)
         whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
         whole(self.seed, "seed", least=0)
-        if self.keep is not None and not callable(self.keep):
-            raise InvalidInput(f"keep must be a function of points and the load, got {shown(self.keep)}")
+        if self.keep is not None:
+            function(self.keep, "keep", "a function of first, second and third points", 3)
         _ = self.directions, self.graph
 
     @cached_property

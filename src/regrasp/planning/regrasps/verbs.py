@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Unpack
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
@@ -84,12 +84,12 @@ def _problem(
     from regrasp.mesh.mesh import Mesh
 
     if not isinstance(shape, (Outline, Mesh)):
-        raise InvalidInput(f"a regrasp needs an Outline or a Mesh, got {shape!r}")
+        raise InvalidInput(f"a regrasp needs an Outline or a Mesh, got {shown(shape)}")
     kind = RegraspProblem if isinstance(shape, Outline) else SpaceRegraspProblem
     known = [field.name for field in fields(kind)][4:]
     unknown = [name for name in options if name not in known]
     if unknown or "friction" not in options:
-        wrong = f"unknown option {unknown[0]!r}" if unknown else "friction is missing"
+        wrong = f"unknown option {shown(unknown[0])}" if unknown else "friction is missing"
         where = "an outline" if kind is RegraspProblem else "a mesh"
         raise InvalidInput(f"{wrong}; a regrasp on {where} takes {', '.join(known)}")
     return kind(shape, start, goal, load, **options)  # type: ignore[arg-type, misc]

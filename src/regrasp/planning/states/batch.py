@@ -4,7 +4,7 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number, numbers_in
 from regrasp.planning.states.criteria import PEAK_RATIO
 from regrasp.planning.states.objectives import Objective, objective_of
@@ -91,7 +91,7 @@ def best_squeezes(
     """
     sought = objective_of(objective)
     if sought.closed_form is None:
-        raise InvalidInput(f"objective {sought.name!r} has no closed form, so it has no batch")
+        raise InvalidInput(f"objective {shown(sought.name)} has no closed form, so it has no batch")
     number(peak_ratio, "peak_ratio", least=1)
     limits: tuple[ArrayLike, ...] = max_force if isinstance(max_force, tuple) else (max_force, max_force)
     if len(limits) != 2:
@@ -163,7 +163,7 @@ def _refuse_bad_values(arrays: list[Array]) -> None:
 def _refuse_endless(objective: str, force: Array, torque: Array, limit1: Array, limit2: Array) -> None:
     idle = ~force.reshape(-1, 2).any(axis=-1) & (torque == 0)
     if (idle & (np.isinf(limit1) | np.isinf(limit2))).any():
-        raise InvalidInput(f"objective {objective!r} under a zero load needs max_force")
+        raise InvalidInput(f"objective {shown(objective)} under a zero load needs max_force")
 
 
 def _blocks(arrays: list[Array], size: int) -> list[Array]:

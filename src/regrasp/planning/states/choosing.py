@@ -2,7 +2,7 @@
 
 from typing import Unpack
 
-from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
 from regrasp.mechanics.checks import whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import check_load
@@ -46,7 +46,7 @@ def choose_state(
         InvalidInput: For arguments that are not what they must be.
     """
     if not isinstance(grasp, Grasp):
-        raise InvalidInput(f"grasp must be a Grasp, got {grasp!r}")
+        raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
     check_load(grasp, load)
     criteria = criteria_of(objective, options)
     method, facets = options.get("method", "auto"), options.get("facets")
@@ -65,7 +65,7 @@ def choose_forces(
     """``choose_state`` for checked criteria, before a state is made of the forces."""
     check_facets(facets)
     if not isinstance(method, str):
-        raise InvalidInput(f"method must be text, such as 'auto', got {method!r}")
+        raise InvalidInput(f"method must be text, such as 'auto', got {shown(method)}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     closed = planar_pair and criteria.objective.closed_form is not None
     if criteria.presses:
@@ -73,7 +73,9 @@ def choose_forces(
             raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")
         closed = False
     if method == "closed-form" and planar_pair and not closed:
-        raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use method='auto'")
+        raise InvalidInput(
+            f"objective {shown(criteria.objective.name)} has no closed form; use method='auto'"
+        )
     if method == "closed-form" and not planar_pair:
         raise InvalidInput(
             f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
@@ -102,7 +104,7 @@ def choose_forces(
 
     if method != "auto" and not is_available(method):
         known = ", ".join(("auto", "closed-form", *available_backends()))
-        raise InvalidInput(f"method must be one of {known}; got {method!r}")
+        raise InvalidInput(f"method must be one of {known}; got {shown(method)}")
     from regrasp.planning.states.many_contacts import solved_forces
 
     return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)

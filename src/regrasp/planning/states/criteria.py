@@ -138,7 +138,8 @@ class Criteria:
         """
         if self.unbounded and not any(load.plain) and inf in self.limits(grasp):
             raise InvalidInput(
-                f"objective {self.objective.name!r} under a zero load needs max_force: any squeeze holds it, "
+                f"objective {shown(self.objective.name)} under a zero load needs max_force: any "
+                "squeeze holds it, "
                 f"so no force follows from the load"
             )
 

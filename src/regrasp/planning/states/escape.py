@@ -9,7 +9,7 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import Infeasible
+from regrasp.errors import Infeasible, shown
 from regrasp.mechanics.balance import nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
@@ -36,7 +36,8 @@ def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     if reason is not None:
         return reason
     return Infeasible(
-        f"no forces of {', '.join(grasp.names)} that balance {load!r} were found with {criteria.reserve:g} "
+        f"no forces of {', '.join(grasp.names)} that balance {shown(load)} were found "
+        f"with {criteria.reserve:g} "
         f"of the friction kept in reserve, and no motion proves that there are none without it: the load "
         f"needs more friction than that leaves, or is at the limit of what they can hold; choose a smaller "
         f"reserve"
@@ -49,7 +50,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     loose = loose_twist(grasp, load)
     if loose is not None:
         return Infeasible(
-            f"no forces of {names} balance {load!r}: none resists {grasp.freedom}, about which the "
+            f"no forces of {names} balance {shown(load)}: none resists {grasp.freedom}, about which the "
             f"load has a torque; the object escapes by {loose}",
             loose,
         )
@@ -58,7 +59,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     twist = escape_twist(grasp, load, frictions, [inf] * len(grasp))
     if twist is not None:
         return Infeasible(
-            f"no forces of {names} inside their friction cones balance {load!r}: "
+            f"no forces of {names} inside their friction cones balance {shown(load)}: "
             f"the object escapes by {twist}",
             twist,
         )
@@ -66,7 +67,8 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     if twist is not None:
         bounds = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, limits, strict=True) if f < inf)
         return Infeasible(
-            f"no forces of {names} inside their friction cones and force limits ({bounds}) balance {load!r}: "
+            f"no forces of {names} inside their friction cones and force limits ({bounds}) "
+            f"balance {shown(load)}: "
             f"the object escapes by {twist}; the cones alone would hold it with larger forces",
             twist,
         )
@@ -75,7 +77,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     )
     if limit is not None:
         return Infeasible(
-            f"no forces of {names} inside their friction cones balance {load!r}, but only in the limit: "
+            f"no forces of {names} inside their friction cones balance {shown(load)}, but only in the limit: "
             f"forces of {_REACHES[0]:g} times the load miss it by {limit[0]:.2g} of the load, of "
             f"{_REACHES[1]:g} times by {limit[1]:.2g}, so no motion proves it; the contacts would "
             f"need a little more friction"
@@ -85,7 +87,8 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
         if any(load.plain) and _is_at_limit(grasp, load, mu, criteria.limits(grasp)):
             what = "" if mu is frictions else f" with {criteria.reserve:g} of the friction kept in reserve"
             return Infeasible(
-                f"{load!r} is at its limit for {names}{what}: within {AT_LIMIT:g} of the edge of what forces "
+                f"{shown(load)} is at its limit for {names}{what}: within {AT_LIMIT:g} of the "
+                "edge of what forces "
                 f"inside their friction cones and force limits balance, where rounding decides; none were "
                 f"found, and no motion proves that there are none"
             )

@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput, SolverFailed
+from regrasp.errors import Infeasible, InvalidInput, SolverFailed, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import NEVER
 from regrasp.mechanics.exact.membership import vertex_forces
@@ -104,7 +104,7 @@ def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
         return reason
     least = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, criteria.least_normals(grasp), strict=True))
     return Infeasible(
-        f"no forces of {', '.join(grasp.names)} that balance {load!r} and push along the normals with "
+        f"no forces of {', '.join(grasp.names)} that balance {shown(load)} and push along the normals with "
         f"{least} or more were found, within cones and force limits; without least normal forces no motion "
         f"proves that there are none: lower min_normal, or raise the force limits"
     )

@@ -13,7 +13,7 @@ from re import sub
 from textwrap import fill
 from typing import Annotated, Any, NamedTuple, ParamSpec, TypedDict, TypeVar, get_args, get_type_hints
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import ArrayLike
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
@@ -146,7 +146,7 @@ def takes(options: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
             if not known.issuperset(given):
                 unknown = next(name for name in given if name not in known)
                 raise TypeError(
-                    f"{verb.__name__}() got an unexpected keyword argument {unknown!r}; it takes "
+                    f"{verb.__name__}() got an unexpected keyword argument {shown(unknown)}; it takes "
                     f"{', '.join(more)}"
                 )
             return verb(*args, **given)

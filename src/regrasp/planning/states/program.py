@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import NEGLIGIBLE
@@ -58,7 +58,9 @@ def state_program(
     """
     sought = objective_of(objective)
     if not isinstance(sought, ConvexObjective):
-        raise InvalidInput(f"one program states a convex objective, such as 'effort'; got {sought.name!r}")
+        raise InvalidInput(
+            f"one program states a convex objective, such as 'effort'; got {shown(sought.name)}"
+        )
     if grasp.is_soft and facets is not None:
         raise InvalidInput("facets stand for the cones of point contacts; leave them out with soft fingers")
     asked = (

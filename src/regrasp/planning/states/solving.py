@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.errors import InvalidInput, SolverFailed
+from regrasp.errors import InvalidInput, SolverFailed, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
@@ -136,7 +136,8 @@ class Chooser:
         if answer.status is Status.UNBOUNDED:
             if recorded(objective) != objective.name:
                 raise InvalidInput(
-                    f"objective {objective.name!r} falls without bound: some squeeze costs ever less; give "
+                    f"objective {shown(objective.name)} falls without bound: some squeeze costs ever "
+                    "less; give "
                     f"max_force, or every finger a weight above 0"
                 )
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)

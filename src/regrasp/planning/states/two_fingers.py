@@ -9,7 +9,7 @@ import numpy as np
 
 from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -156,7 +156,7 @@ class EquilibriumLocus(ArrayValue):
         squeeze = number(squeeze, "squeeze")
         if not lo <= squeeze <= hi:
             where = "the locus is empty" if self.is_empty else f"the locus is [{lo:.9g}, {hi:.9g}]"
-            raise InvalidInput(f"squeeze {squeeze!r} is not on the locus; {where}")
+            raise InvalidInput(f"squeeze {shown(squeeze)} is not on the locus; {where}")
         return GraspState(self.grasp, self.load, self.forces(squeeze))
 
     def squeeze(self, state: GraspState) -> float:
@@ -207,7 +207,7 @@ def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     criteria.refuse_pressing("the closed form")
     code = criteria.objective.closed_form
     if code is None:
-        raise InvalidInput(f"objective {criteria.objective.name!r} has no closed form; use choose_state")
+        raise InvalidInput(f"objective {shown(criteria.objective.name)} has no closed form; use choose_state")
     mu1, mu2 = criteria.frictions(grasp)
     bound1, bound2 = criteria.limits(grasp)
     x, (f1x, f1y, f2x, f2y), limits = best_squeeze(

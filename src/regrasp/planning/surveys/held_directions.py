@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
@@ -54,7 +54,7 @@ class HeldDirections:
         if isinstance(direction, Wrench):
             if direction.dimension != 2 or direction.torque.any():
                 raise InvalidInput(
-                    f"the load must be a planar force through the centre of mass, got {direction!r}"
+                    f"the load must be a planar force through the centre of mass, got {shown(direction)}"
                 )
             direction = direction.force
         x, y = array(direction, "direction", (2,)).tolist()
@@ -91,7 +91,9 @@ def held_directions(grasp: Grasp) -> HeldDirections:
         InvalidInput: For a grasp in space.
     """
     if not isinstance(grasp, Grasp) or grasp.dimension != 2:
-        raise InvalidInput(f"held directions are of a planar Grasp; in space use held_sphere; got {grasp!r}")
+        raise InvalidInput(
+            f"held directions are of a planar Grasp; in space use held_sphere; got {shown(grasp)}"
+        )
     return _spanned(-_generators(grasp))
 
 

@@ -14,7 +14,7 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only, whole
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
@@ -101,7 +101,7 @@ class HeldSphere(ArrayValue):
             return state
         for known in self.twists:
             if (twist := _escapes(known, load)) is not None:
-                raise Infeasible(f"no forces balance {load!r}: the object escapes by {twist}", twist)
+                raise Infeasible(f"no forces balance {shown(load)}: the object escapes by {twist}", twist)
         chosen = choose_forces(self.grasp, load, self._plain)
         return ChosenState(self.grasp, load, self._plain, chosen)
 
@@ -183,7 +183,7 @@ def held_sphere(
     """
     if not isinstance(grasp, Grasp) or grasp.dimension != 3:
         raise InvalidInput(
-            f"a held sphere is of a Grasp in space; in the plane use held_directions; got {grasp!r}"
+            f"a held sphere is of a Grasp in space; in the plane use held_directions; got {shown(grasp)}"
         )
     number(magnitude, "magnitude", above=0)
     whole(count, "count", least=1, most=_MOST)

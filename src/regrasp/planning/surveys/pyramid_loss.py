@@ -6,7 +6,7 @@ from math import inf, isnan, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Unpack
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
@@ -98,7 +98,7 @@ def pyramid_losses(
         InvalidInput: As ``choose_state`` does.
     """
     if not isinstance(facets, Sequence) or isinstance(facets, (str, bytes)) or not facets:
-        raise InvalidInput(f"facets must be whole numbers, such as (4, 8, 16), got {facets!r}")
+        raise InvalidInput(f"facets must be whole numbers, such as (4, 8, 16), got {shown(facets)}")
     for m in facets:
         check_facets(m)
         if m is None:

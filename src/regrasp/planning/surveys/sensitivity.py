@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from regrasp.display import Pictured
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState, check_load
@@ -206,7 +206,8 @@ def sensitivity(
     state = choose_state(grasp, load, criteria)
     if not state.forces.any():
         raise InvalidInput(
-            f"no finger pushes in the state best for {criteria.objective.name!r}, so its value has no rates; "
+            f"no finger pushes in the state best for {shown(criteria.objective.name)}, so its "
+            "value has no rates; "
             f"give a load"
         )
     from regrasp.planning.surveys.value_rates import value_rates

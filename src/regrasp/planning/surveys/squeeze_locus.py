@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, read_only, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -52,7 +52,9 @@ class SqueezeLocus(ArrayValue):
 
     def __post_init__(self) -> None:
         if not isinstance(self.grasp, Grasp) or len(self.grasp) < 2:
-            raise InvalidInput(f"a squeeze locus needs a Grasp of two contacts or more, got {self.grasp!r}")
+            raise InvalidInput(
+                f"a squeeze locus needs a Grasp of two contacts or more, got {shown(self.grasp)}"
+            )
         if self.grasp.is_soft:
             raise InvalidInput(
                 "a squeeze locus is of point contacts, got soft fingers; leave their torsion out, or ask "

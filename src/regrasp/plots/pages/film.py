@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number
 from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import FingerMove, RegraspPlan
@@ -59,7 +59,7 @@ def animate(
     target = Path(path)
     ending = target.suffix.lower()
     if ending not in (".gif", ".html", ".mp4"):
-        raise InvalidInput(f"path must end in .gif, .html or .mp4, got {str(target)!r}")
+        raise InvalidInput(f"path must end in .gif, .html or .mp4, got {shown(str(target))}")
     if ending == ".mp4" and not FFMpegWriter.isAvailable():
         raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif or .html instead")
     rate = number(frames_per_second, "frames_per_second", above=0)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.execution.measured import Execution
 from regrasp.mechanics.checks import Array, instance, number
 from regrasp.mesh.mesh import Mesh
@@ -39,7 +39,7 @@ def animate_execution(
     instance(execution, "execution", Execution)
     target = Path(path)
     if target.suffix.lower() not in (".gif", ".mp4"):
-        raise InvalidInput(f"path must end in .gif or .mp4, got {str(target)!r}")
+        raise InvalidInput(f"path must end in .gif or .mp4, got {shown(str(target))}")
     if target.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
         raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif instead")
     rate = number(frames_per_second, "frames_per_second", above=0)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
@@ -47,7 +47,7 @@ def plot_hold_map(
     """
     instance(graph, "graph", HoldGraph)
     if o is not None and not -len(graph.angles) <= o < len(graph.angles):
-        raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {o!r}")
+        raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {shown(o)}")
     places = np.array([_place(outline, contact) for contact in graph.contacts])
     margins = graph.margins.max(axis=0) if o is None else graph.margins[o]
     edges, values = _cells(places, outline.length, _square(graph, margins))
@@ -74,10 +74,10 @@ def plot_hold_map(
     label_axis(ax.xaxis, "one finger at arc length", units.length, outline.length)
     label_axis(ax.yaxis, "the other at", units.length, outline.length)
     count = len(graph.angles)
-    shown = (
+    title = (
         f"best of {count} orientations" if o is None else f"object at {short(degrees(graph.angles[o]))} deg"
     )
-    ax.set_title(shown, fontsize=TEXT, loc="left")
+    ax.set_title(title, fontsize=TEXT, loc="left")
     return ax
 
 
@@ -85,7 +85,7 @@ def _place(outline: Outline, contact: Contact) -> float:
     """The arc length of a contact."""
     s = outline.nearest(contact.position + outline.centre_of_mass)
     if np.hypot(*(outline.points(s) - contact.position)) > _ON * outline.length:
-        raise InvalidInput(f"contact {contact.name!r} is not on the outline")
+        raise InvalidInput(f"contact {shown(contact.name)} is not on the outline")
     return s % outline.length
 
 

@@ -6,7 +6,7 @@ from math import degrees
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import items
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plots.look.style import INK, PALETTE, TEXT, axes_or_new, note, short
@@ -25,7 +25,7 @@ def plot_trade_off(plans: Sequence[RegraspPlan], ax: Axes | None = None) -> Axes
     plans = items(plans, "plans")
     given = () if isinstance(plans, RegraspPlan) else items(plans, "plans")
     if not given or not all(isinstance(plan, RegraspPlan) for plan in given):
-        raise InvalidInput(f"plans must be RegraspPlans, as plan_regrasps gives them, got {plans!r}")
+        raise InvalidInput(f"plans must be RegraspPlans, as plan_regrasps gives them, got {shown(plans)}")
     ordered = sorted(plans, key=lambda plan: (len(plan.moves), plan.margin))
     moves = [len(plan.moves) for plan in ordered]
     margins = [degrees(plan.margin) for plan in ordered]

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from regrasp.closed_form.locus import within_limit
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.criteria import ChosenState
 from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -25,7 +25,7 @@ def limits_of(locus: EquilibriumLocus, chosen: GraspState | None) -> Sequence[fl
 def limited_interval(locus: EquilibriumLocus, limits: Sequence[float]) -> tuple[float, float]:
     """(lo, hi) of the squeeze [N] where both forces keep their limits, cones left aside; empty as lo > hi."""
     if len(limits) != 2:
-        raise InvalidInput(f"force_limits must be two numbers, one per contact, got {limits!r}")
+        raise InvalidInput(f"force_limits must be two numbers, one per contact, got {shown(limits)}")
     along = locus.direction
     first, second = locus.forces(0.0)
     across = np.array([-along[1], along[0]])

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, numbers_in
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.objectives.known import OBJECTIVES
@@ -41,10 +41,10 @@ class ForceCost(ConvexObjective):
         several = numbers_in(weights, "weights must be a number or (n,)").ndim > 0
         given = array(weights, "weights", (None,) if several else ())
         if (given < 0).any() or not given.any():
-            raise InvalidInput(f"weights must be at least 0, and one of them above it, got {weights!r}")
+            raise InvalidInput(f"weights must be at least 0, and one of them above it, got {shown(weights)}")
         if not isinstance(name, str) or name in OBJECTIVES:
             raise InvalidInput(
-                f"name must be a word that is not one of {', '.join(OBJECTIVES)}, got {name!r}"
+                f"name must be a word that is not one of {', '.join(OBJECTIVES)}, got {shown(name)}"
             )
         super().__init__(name, f"least {name}", name, "sum", "-")
         object.__setattr__(self, "weights", given)

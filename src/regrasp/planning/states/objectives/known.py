@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from regrasp.closed_form import choice as closed
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
@@ -148,5 +148,5 @@ def objective_of(given: "str | Objective") -> Objective:
         return given
     found = OBJECTIVES.get(given) if isinstance(given, str) else None
     if found is None:
-        raise InvalidInput(f"objective must be one of {', '.join(OBJECTIVES)}; got {given!r}")
+        raise InvalidInput(f"objective must be one of {', '.join(OBJECTIVES)}; got {shown(given)}")
     return found
