@@ -8,9 +8,9 @@ import pytest
 
 import regrasp as rg
 from executed_plans import ellipse
+from motion_checks import moved
 from regrasp.motions import Motions, plan_motions
 from regrasp.outline import parts
-from regrasp.plans.record import Record
 
 pytestmark = pytest.mark.laws
 
@@ -43,22 +43,6 @@ def planned(name: str, least: int) -> tuple[tuple[rg.RegraspPlan, Motions], ...]
         if len(found) == least:
             return tuple(found)
     raise AssertionError
-
-
-def moved(contacts: list[rg.Contact]) -> rg.RegraspPlan:
-    """Three fingers go from the first three contacts to the last, one after the other.
-
-    Ways depend on places only, so no forces are planned: all are zero, and nothing of this plan is verified.
-    """
-    steps = []
-    for k in range(4):
-        grasp = rg.Grasp(contacts[k : k + 3])
-        state = rg.GraspState(grasp, rg.Wrench([0, -1]), np.zeros((3, 2)))
-        leaving = (str(grasp.names[0]),) if k < 3 else ()
-        arriving = (str(grasp.names[2]),) if k > 0 else ()
-        clock, record = rg.TimeScaling.spline(1.0), Record(reserve=0.0)
-        steps.append(rg.Transition(state, state, clock, record, leaving=leaving, arriving=arriving))
-    return rg.RegraspPlan(tuple(steps), (0.0,) * 5, 0.0)
 
 
 def to_boundary(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
@@ -106,6 +90,26 @@ def test_no_finger_passes_through_anything(name: str) -> None:
                 between = np.linalg.norm(at[:, i] - at[:, j], axis=1)
                 moves = ~(motions.touching(t)[:, i] & motions.touching(t)[:, j])
                 assert (between[moves] >= 2 * RADIUS + CLEARANCE - 1e-9).all()
+
+
+def test_no_capsule_passes_through_anything() -> None:
+    """Fingers 80 mm long, two from below, one from the right."""
+    bar = rg.Outline([[-0.05, -0.01], [0.05, -0.01], [0.05, 0.01], [-0.05, 0.01]])
+    places = ([-0.03, -0.01], [0.03, -0.01], [0.05, 0.0], [-0.05, 0.0], [-0.01, -0.01], [0.05, 0.004])
+    contacts = [bar.contact_at(bar.nearest(p), friction=0.8, name=f"C{k}") for k, p in enumerate(places)]
+    capsules = np.array([[0, -0.08], [0, -0.08], [0.08, 0]])
+    motions = plan_motions(moved(contacts), bar, tip_radius=RADIUS, clearance=CLEARANCE, capsules=capsules)
+    ring = bar.polygon()
+    t = np.linspace(0, motions.duration, 3000)
+    at = motions.positions(t)
+    s = np.linspace(0, 1, 161)[:, None]
+    fingers = [at[:, i, None] + s * v for i, v in enumerate(capsules)]
+    for i, axis in enumerate(fingers):
+        assert to_boundary(axis.reshape(-1, 2), ring).min() > RADIUS - 1e-6
+        for j in range(i):
+            moves = ~(motions.touching(t)[:, i] & motions.touching(t)[:, j])
+            between = np.linalg.norm(axis[moves][:, ::4, None] - fingers[j][moves][:, None, ::4], axis=-1)
+            assert between.min() >= 2 * RADIUS + CLEARANCE - 1e-9
 
 
 @pytest.mark.parametrize("name", ["ellipse", "hook"])
@@ -212,9 +216,18 @@ def test_a_contact_in_a_slot_is_shut_in() -> None:
 
 def test_tips_that_stand_in_the_way_are_named() -> None:
     ellipse = SHAPES["ellipse"]
-    near = [ellipse.contact_at(s * ellipse.length, friction=0.8) for s in (0.25, 0.26, 0.75)]
+    near = [ellipse.contact_at(s * ellipse.length, friction=0.8) for s in (0.25, 0.285, 0.75)]
     plan = rg.plan_removal(rg.Grasp(near), "P1", load=rg.Wrench([0, -1.0]))
     said = "no way from P1 to P1: at P1, .*, the tip of finger 2 is too near"
+    with pytest.raises(rg.Infeasible, match=said):
+        plan_motions(plan, ellipse, tip_radius=RADIUS, clearance=CLEARANCE)
+
+
+def test_fingers_in_one_another_are_refused() -> None:
+    ellipse = SHAPES["ellipse"]
+    places = enumerate((0.5, 0.25, 0.26, 0.75, 0.6, 0.9))
+    plan = moved([ellipse.contact_at(s * ellipse.length, friction=0.8, name=f"C{k}") for k, s in places])
+    said = r"during step 1 fingers 2 and 3 of radius 0\.003 are in one another, 0\.00201 apart at C1 and C2"
     with pytest.raises(rg.Infeasible, match=said):
         plan_motions(plan, ellipse, tip_radius=RADIUS, clearance=CLEARANCE)
 
@@ -240,7 +253,9 @@ def test_two_rooms_without_a_door_are_told_apart() -> None:
 
 def test_what_is_not_planar_is_refused() -> None:
     plan, _ = planned("ellipse", 3)[0]
-    with pytest.raises(rg.InvalidInput, match="ways are planned in the plane, around an Outline, got str"):
+    with pytest.raises(
+        rg.InvalidInput, match=r"ways of this plan are in the plane, around an Outline, got .disc."
+    ):
         plan_motions(plan, "disc", tip_radius=1, clearance=1)  # type: ignore[arg-type]
     with pytest.raises(rg.InvalidInput, match="clearance must be greater than 0, got 0"):
         plan_motions(plan, SHAPES["ellipse"], tip_radius=1, clearance=0)

@@ -20,7 +20,7 @@ _FASTEST, _HARDEST = 15 / 8, 10 / sqrt(3)
 
 @dataclass(frozen=True, eq=False)
 class RoundedWay(ArrayValue):
-    """points: (k, 2) corners, no two in a row alike [m]. cuts: (k - 2,) how far before it each is rounded."""
+    """points: (k, d) corners, no two in a row alike [m]. cuts: (k - 2,) how far before it each is rounded."""
 
     points: Array
     cuts: Array
@@ -38,7 +38,7 @@ class RoundedWay(ArrayValue):
 
     @cached_property
     def directions(self) -> Array:
-        """(k - 1, 2) unit directions of the parts."""
+        """(k - 1, d) unit directions of the parts."""
         result: Array = np.diff(self.points, axis=0) / self.lengths[:, None]
         return result
 
@@ -51,7 +51,7 @@ class RoundedWay(ArrayValue):
         return float((turns / (2 * self.cuts)).max())
 
     def at(self, s: Array) -> tuple[Array, Array]:
-        """Places (m, 2) [m] and their change by s (m, 2), at lengths (m,) along the polygon."""
+        """Places (m, d) [m] and their change by s (m, d), at lengths (m,) along the polygon."""
         ends = np.cumsum(self.lengths)
         part = np.minimum(np.searchsorted(ends, s, side="right"), self.lengths.size - 1)
         along = s - (ends - self.lengths)[part]
@@ -71,7 +71,7 @@ class RoundedWay(ArrayValue):
         return max(fast / speed, sqrt((_HARDEST * self.length + fast**2 * self.bend) / acceleration))
 
     def over_time(self, x: Array, duration: float) -> tuple[Array, Array]:
-        """Places (m, 2) [m] and velocities (m, 2) [m/s] at parts x (m,) of the duration [s]."""
+        """Places (m, d) [m] and velocities (m, d) [m/s] at parts x (m,) of the duration [s]."""
         s = self.length * x**3 * (10 - 15 * x + 6 * x**2)
         rate = self.length * 30 * x**2 * (1 - x) ** 2 / duration
         place, change = self.at(np.minimum(s, self.length))

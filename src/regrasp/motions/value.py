@@ -40,9 +40,10 @@ class Motion(ArrayValue):
 class Motions(ArrayValue):
     """A plan with the ways of its free fingers: the clock stands for a step while fingers move before it.
 
-    plan, motions: in order. tips: (steps + 1, k, 2) where the tips' centres are during each step, and at last
+    plan, motions: in order. tips: (steps + 1, k, d) where the tips' centres are during each step, and at last
     [m]. contacts: (steps + 1, k) whether each finger is at its contact then.
-    tip_radius, clearance: as asked for [m].
+    tip_radius, clearance: as asked for [m]. capsules: (k, d) from each tip's centre to its finger's other
+    end, in the object's frame, zero for a disc or a sphere [m].
     """
 
     plan: Transition | RegraspPlan
@@ -51,6 +52,7 @@ class Motions(ArrayValue):
     contacts: NDArray[np.bool_]
     tip_radius: float
     clearance: float
+    capsules: Array
 
     @property
     def steps(self) -> tuple[Transition, ...]:
@@ -77,11 +79,11 @@ class Motions(ArrayValue):
         return float(self.starts[-1])
 
     def positions(self, t: ArrayLike) -> Array:
-        """(m, k, 2) the tips' centres in the object's frame at times (m,) in [0, duration] [m]."""
+        """(m, k, d) the tips' centres in the object's frame at times (m,) in [0, duration] [m]."""
         return self._over_time(t)[0]
 
     def velocities(self, t: ArrayLike) -> Array:
-        """(m, k, 2) their velocities in the object's frame [m/s]."""
+        """(m, k, d) their velocities in the object's frame [m/s]."""
         return self._over_time(t)[1]
 
     def touching(self, t: ArrayLike) -> NDArray[np.bool_]:

@@ -1,0 +1,89 @@
+"""The verb: ways of free fingers through the air."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, ArrayLike, number, numbers_in
+from regrasp.mesh.mesh import Mesh
+from regrasp.motions.air import Air
+from regrasp.motions.stands import stops
+from regrasp.motions.value import Motion, Motions
+from regrasp.outline.outline import Outline
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.transition import Transition
+
+
+def plan_motions(
+    plan: Transition | RegraspPlan,
+    shape: Outline | Mesh,
+    *,
+    tip_radius: float,
+    clearance: float,
+    speed: float = 0.1,
+    acceleration: float = 1.0,
+    capsules: ArrayLike | None = None,
+) -> Motions:
+    """The ways of the fingers that are free, from contact to contact in the object's frame.
+
+    Each finger lifts off along the normal, goes around the object and the fingers that stand, and touches
+    down along the normal; fingers that move before the same step do so one after the other, in an order in
+    which each finds its way. A finger that is not needed stands off its last contact. In the plane ways are
+    the shortest around the offset outline, in space those of a roadmap off the surface, drawn tight. Away
+    from its contacts a finger keeps the clearance from the object and the others: proven of the rounded way's
+    hulls, in space by distances that change no faster than points move. Speed and acceleration, in the
+    object's frame, stay within limits all the way.
+
+    Args:
+        plan: a ``Transition`` or a ``RegraspPlan``.
+        shape: the object it was planned for: an ``Outline`` in the plane, a ``Mesh`` in space.
+        tip_radius: of the fingertips, discs or spheres [m].
+        clearance: that fingers keep from the object and from one another [m].
+        speed: the largest, of a tip in the object's frame [m/s].
+        acceleration: the largest, of a tip in the object's frame [m/s^2].
+        capsules: (d,) from each tip's centre to the other end of its finger, a capsule of the tips' radius,
+            in the object's frame, with which fingers turn [m]; or (k, d), one for each finger. Discs and
+            spheres if absent.
+
+    Raises:
+        InvalidInput: For a plan in the plane with a mesh, or one in space with an outline.
+        Infeasible: With the finger and the place where it is shut in, or where two fingers are in one
+            another.
+    """
+    if not isinstance(plan, (Transition, RegraspPlan)):
+        raise InvalidInput(f"ways are those of a Transition or a RegraspPlan, got {shown(plan)}")
+    steps = (plan,) if isinstance(plan, Transition) else plan.steps
+    dimension = steps[0].grasp.dimension
+    if not isinstance(shape, Outline if dimension == 2 else Mesh):
+        wanted = "plane, around an Outline" if dimension == 2 else "space, around a Mesh"
+        raise InvalidInput(f"ways of this plan are in the {wanted}, got {shown(shape)}")
+    radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
+    limits = number(speed, "speed", above=0), number(acceleration, "acceleration", above=0)
+    places = list(stops(plan, steps))
+    air = Air(steps, shape, radius, keep, _capsules(capsules, len(places[0]), dimension))
+    for k, stop in enumerate(places[1:-1]):
+        air.check_held(k, stop)
+    motions: list[Motion] = []
+    clock = 0.0
+    for k, (before, after) in enumerate(pairwise(places)):
+        for motion in air.moved(k, before, after, limits, clock):
+            motions.append(motion)
+            clock += motion.duration
+        clock += steps[k].duration if k < len(steps) else 0.0
+    tips = np.array([[air.stand(i, n).tip(on) for i, (n, on) in enumerate(p)] for p in places[1:]])
+    touching = np.array([[on for _, on in p] for p in places[1:]])
+    return Motions(plan, tuple(motions), tips, touching, radius, keep, air.capsules)
+
+
+def _capsules(given: ArrayLike | None, fingers: int, dimension: int) -> Array:
+    """(k, d) one for each finger."""
+    if given is None:
+        return np.zeros((fingers, dimension))
+    result = numbers_in(given, "capsules must be numbers")
+    if result.shape not in ((dimension,), (fingers, dimension)) or not np.isfinite(result).all():
+        raise InvalidInput(
+            f"capsules must be finite, of shape ({dimension},), or ({fingers}, {dimension}) for one of each "
+            f"finger, got {shown(given)}"
+        )
+    return np.broadcast_to(result, (fingers, dimension)).copy()

@@ -1,0 +1,58 @@
+"""Plans that only move fingers, and what their motions must keep, sampled with lines of their own."""
+
+import numpy as np
+
+import regrasp as rg
+from regrasp.motions import Motions
+from regrasp.plans.record import Record
+
+
+def moved(contacts: list[rg.Contact]) -> rg.RegraspPlan:
+    """The fingers of the first half of the contacts go to the second, one after the other.
+
+    Ways depend on places only, so no forces are planned: all are zero, and nothing of this plan is verified.
+    """
+    steps, n = [], len(contacts) // 2
+    d = contacts[0].dimension
+    for k in range(n + 1):
+        grasp = rg.Grasp(contacts[k : k + n])
+        state = rg.GraspState(grasp, rg.Wrench(-np.eye(d)[-1]), np.zeros((n, d)))
+        leaving = (str(grasp.names[0]),) if k < n else ()
+        arriving = (str(grasp.names[-1]),) if k > 0 else ()
+        clock, record = rg.TimeScaling.spline(1.0), Record(reserve=0.0)
+        steps.append(rg.Transition(state, state, clock, record, leaving=leaving, arriving=arriving))
+    return rg.RegraspPlan(tuple(steps), (0.0,) * (n + 2), 0.0)
+
+
+def instants(motions: Motions, apart: float) -> np.ndarray:
+    """Times between which no tip moves by more than ``apart`` [m]."""
+    times = [np.array([0.0, motions.duration])]
+    for m in motions.motions:
+        number = int(np.ceil(15 / 8 * m.way.length / apart)) + 1
+        times.append(m.start + np.linspace(0, m.duration, number))
+    return np.unique(np.concatenate(times))
+
+
+def to_faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(m,) distances of points from triangles (k, 3, 3): above a face to its plane, else to its sides."""
+    best = np.full(len(points), np.inf)
+    for a, b, c in corners:
+        n = np.cross(b - a, c - a)
+        n = n / np.linalg.norm(n)
+        over = np.ones(len(points), dtype=bool)
+        for p, q in ((a, b), (b, c), (c, a)):
+            side = q - p
+            over &= (points - p) @ np.cross(n, side) >= 0
+            s = np.clip((points - p) @ side / (side @ side), 0, 1)
+            best = np.minimum(best, np.linalg.norm(points - p - s[:, None] * side, axis=1))
+        best = np.where(over, np.minimum(best, abs((points - a) @ n)), best)
+    return best
+
+
+def axes(motions: Motions, at: np.ndarray, apart: float) -> list[np.ndarray]:
+    """(m, s, d) of each finger: points of its axis no more than ``apart`` [m] from one another."""
+    found = []
+    for i, v in enumerate(motions.capsules):
+        s = np.linspace(0, 1, int(np.ceil(np.linalg.norm(v) / apart)) + 1 if v.any() else 1)
+        found.append(at[:, i, None] + s[:, None] * v)
+    return found
