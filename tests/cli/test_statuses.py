@@ -306,3 +306,42 @@ def test_page_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
             for option in parameter.opts:
                 if option.startswith("--"):
                     assert option in page, f"{name} {option}"
+
+
+# -- before any work ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("demo", "-o", "paper.toml"),
+        ("demo", "-o", "paper.toml/deeper/still"),
+        ("plan", "paper.toml", "-o", "paper.toml"),
+        ("plan", "paper.toml", "-o", "n" * 5000),
+        ("verify", "out", "--rate", "nan"),
+        ("verify", "out", "--rate", "0"),
+        ("simulate", "out", "-o", "paper.toml"),
+        ("simulate", "out", "--friction", "nan"),
+        ("simulate", "out", "--stiffness", "-1"),
+        ("simulate", "out", "--gravity", "0"),
+        ("bench", "-o", "paper.toml"),
+        ("bench", "export", "paper.toml"),
+        ("bench", "-o", "out", "--time-limit", "nan"),
+    ],
+)
+def test_what_is_wrong_is_refused_before_any_work(
+    here: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+) -> None:
+    def worked(*_: object, **__: object) -> None:
+        pytest.fail("it went to work")
+
+    for name in ("read_scenario", "parse_scenario", "read_plan", "plan_scenario"):
+        monkeypatch.setattr(f"regrasp.files.{name}", worked)
+    for name in ("bench.running.runner.chosen_problems", "bench.exchange.export", "execution.simulate"):
+        monkeypatch.setattr(f"regrasp.{name}", worked)
+    status, out, err = regrasp(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1

@@ -3,8 +3,10 @@
 import struct
 import subprocess
 import sys
+import warnings
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +15,8 @@ from hypothesis import strategies as st
 
 import regrasp as rg
 from regrasp.mesh import parts
-from regrasp.mesh.files import stl
+from regrasp.mesh.reading.cavities import windings
+from regrasp.mesh.reading.files import stl
 from solids import bumpy, seeds
 
 pytestmark = pytest.mark.contract
@@ -275,7 +278,7 @@ def test_what_was_read_is_equal_whatever_was_mended(tmp_path: Path) -> None:
         ("a.obj", SHEET + "".join(f"usemtl {i}\nf 1 2 3\n" for i in range(20_000)), "more than two"),
         ("a.obj", "v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 0 is (inf, 0, 0)"),
         ("a.obj", "v 1e200 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh must be between 1e-60 and 1e+60"),
-        ("a.obj", SHEET + f"f 1 2 {10**30}\n", "the file cannot be read as OBJ"),
+        ("a.obj", SHEET + f"f 1 2 {10**30}\n", "a face names a vertex that is not there"),
         (
             "a.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\n",
@@ -301,3 +304,104 @@ def test_a_crowd_of_vertices_is_refused(tmp_path: Path) -> None:
     soup["corners"][0] = np.eye(3)
     path = text(tmp_path, b"x" * 80 + struct.pack("<I", 30_000) + soup.tobytes(), "part.stl")
     assert "of the vertices many are within" in refusal(rg.Mesh.from_file, path)
+
+
+def facets(vertices: Any, faces: Any) -> str:
+    """The facets of an ASCII STL."""
+    lines = []
+    for face in faces:
+        corners = "".join(f"   vertex {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in vertices[face])
+        lines.append(f" facet normal 0 0 0\n  outer loop\n{corners}  endloop\n endfacet\n")
+    return "".join(lines)
+
+
+@pytest.mark.parametrize("line_break", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize(
+    ("first", "last"), [("solid a\n", ""), ("", "endsolid a\n"), ("", ""), ("solid\n", "endsolid\n")]
+)
+def test_text_without_its_first_or_last_line_is_read_and_said(tmp_path, first, last, line_break) -> None:
+    box = rg.Mesh.box(1, 2, 3)
+    path = tmp_path / "a.stl"
+    path.write_bytes((first + facets(box.vertices, box.faces) + last).replace("\n", line_break).encode())
+    read = rg.Mesh.from_file(path)
+    assert read.volume == pytest.approx(6)
+    assert bool(read.notes) == (not first or not last)
+    assert all("mended" in note for note in read.notes)
+
+
+@pytest.mark.parametrize(
+    ("cut", "holds"), [(" endfacet\n", True), ("  endloop\n endfacet\n", True), ("1.5\n  endloop\n", False)]
+)
+def test_text_that_ends_within_a_facet(tmp_path, cut: str, holds: bool) -> None:
+    box = rg.Mesh.box(1, 2, 3)
+    text = facets(box.vertices, box.faces)
+    path = tmp_path / "a.stl"
+    path.write_text("solid a\n" + text[: text.rindex(cut)])
+    if holds:
+        assert rg.Mesh.from_file(path).volume == pytest.approx(6)
+        return
+    with pytest.raises(rg.InvalidInput, match="not watertight: 3 open edges"):
+        rg.Mesh.from_file(path)
+    closed = rg.Mesh.from_file(path, close_holes=2)
+    assert closed.volume == pytest.approx(6)
+    assert any("which is left out" in note for note in closed.notes)
+
+
+@pytest.mark.parametrize(
+    ("face", "words"),
+    [
+        ("f 0 1 2", "names a vertex that is not there, 'f 0 1 2': they are counted from 1 to 8"),
+        ("f 1 2 9", "names a vertex that is not there"),
+        ("f 1 2 99999999999999999999999", "names a vertex that is not there"),
+        ("f -9 1 2", "names a vertex before the first"),
+        ("f -1 0 2", "names a vertex that is not there"),
+        ("f 1.0 2.0 3.0", "must be f with numbers of vertices"),
+        ("f a b c", "must be f with numbers of vertices"),
+    ],
+)
+def test_faces_of_other_vertices_are_refused(tmp_path, face: str, words: str) -> None:
+    box = rg.Mesh.box(1, 2, 3)
+    rows = ["v {:g} {:g} {:g}".format(*tuple(v)) for v in box.vertices] + [
+        f"f {a} {b} {c}" for a, b, c in box.faces + 1
+    ]
+    path = tmp_path / "a.obj"
+    path.write_text("\n".join([*rows, face]))
+    with pytest.raises(rg.InvalidInput) as caught:
+        rg.Mesh.from_file(path)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+    path.write_text("\r".join(rows))
+    assert rg.Mesh.from_file(path).volume == pytest.approx(6)
+    path.write_text("\n".join(rows).replace(".", ","))
+    with pytest.raises(rg.InvalidInput, match="with decimal commas"):
+        rg.Mesh.from_file(path)
+
+
+@pytest.mark.parametrize("bodies", ["largest", "fuse"])
+@pytest.mark.parametrize(("inner", "hollow"), [("cavity", True), ("solid", False), ("apart", False)])
+def test_cavities_are_filled_with_a_warning(tmp_path, bodies: str, inner: str, hollow: bool) -> None:
+    ball = rg.Mesh.sphere(1.0, divisions=3)
+    small, faces = 0.5 * ball.vertices + 0.1, ball.faces
+    text = facets(ball.vertices, faces)
+    text += facets(small + 9 * (inner == "apart"), faces[:, ::-1] if inner == "cavity" else faces)
+    path = tmp_path / "a.stl"
+    path.write_text(f"solid a\n{text}endsolid a\n")
+    if inner == "apart" and bodies == "fuse":
+        with pytest.raises(rg.InvalidInput, match="2 closed surfaces"):
+            rg.Mesh.from_file(path, bodies=bodies)
+        return
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        mesh = rg.Mesh.from_file(path, bodies=bodies)
+    assert mesh.volume == pytest.approx(ball.volume)
+    assert [bool("filled: 1 cavity of volume" in str(w.message)) for w in caught] == [True] * hollow
+    assert any("filled: 1 cavity" in note for note in mesh.notes) == hollow
+
+
+def test_windings_are_whole_numbers() -> None:
+    ball = rg.Mesh.sphere(1.0, divisions=3)
+    points = np.random.default_rng(3).uniform(-1.5, 1.5, (40, 3))
+    away = abs(np.linalg.norm(points, axis=1) - 0.97) > 0.05
+    found = windings(points, ball.vertices[ball.faces])
+    inside = np.linalg.norm(points, axis=1) < 0.97
+    assert found[away] == pytest.approx(inside[away].astype(float), abs=1e-12)

@@ -315,7 +315,9 @@ def test_points_of_any_size_have_a_nearest_one_in_the_dual_cone(size):
     cones = Cones((Block(Cone.ZERO, 1, 1), Block(Cone.NONNEGATIVE, 1, 2), Block(Cone.SECOND_ORDER, 3, 2)))
     z = np.array([-1.0, -2.0, 3.0, 1.0, 3.0, 4.0, 5.0, 3.0, 4.0])
     nearest = cones.dual(size * z)
-    assert nearest == pytest.approx(size * np.array([-1.0, 0.0, 3.0, 3.0, 1.8, 2.4, 5.0, 3.0, 4.0]), rel=1e-12)
+    assert nearest == pytest.approx(
+        size * np.array([-1.0, 0.0, 3.0, 3.0, 1.8, 2.4, 5.0, 3.0, 4.0]), rel=1e-12
+    )
 
 
 def test_what_programs_share_cannot_be_written_to():

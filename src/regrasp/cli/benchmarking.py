@@ -65,7 +65,9 @@ def bench(
     from regrasp.bench.families.catalogue import FAMILIES
     from regrasp.bench.running.runner import Limits, chosen_problems, run
     from regrasp.bench.running.solvers import chosen_solvers
+    from regrasp.files.staging import check_folder
 
+    check_folder(output)
     if quick:
         most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
     if jobs > 1:
@@ -148,12 +150,14 @@ def bench_export(context: click.Context, folder: Path, families: tuple[str, ...]
     """Write the problems to files in DIR, CBF for conic ones and NPZ for QPs, with a manifest."""
     from regrasp.bench.exchange import export
     from regrasp.bench.families.catalogue import FAMILIES
+    from regrasp.files.staging import check_folder
 
     before = (context.obj or {}).get("families", ())  # those that stood before the subcommand count, too
     families = tuple(dict.fromkeys((*before, *families)))
     unknown = [name for name in families if name not in FAMILIES]
     if unknown:
         raise InvalidInput(f"no family {shown(unknown[0])}; there are {', '.join(FAMILIES)}")
+    check_folder(folder)
     written = export([FAMILIES[name] for name in families or FAMILIES], folder)
     say(f"wrote {written}")
     return {"status": "done", "exit": 0, "wrote": [written]}

@@ -3,9 +3,11 @@
 import os
 import signal
 import sys
+import warnings
 from contextlib import ExitStack, suppress
 from io import TextIOWrapper
 from types import FrameType
+from typing import Any
 
 import click
 
@@ -60,6 +62,8 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")  # a terminal need not know every letter
     with ExitStack() as heard:
         _hear_signals(heard)
+        heard.enter_context(warnings.catch_warnings())
+        warnings.showwarning = _warn
         sys.exit(_ended())
 
 
@@ -118,6 +122,11 @@ def _complain(text: str) -> None:
     """On stderr, if somebody can read it."""
     with suppress(OSError):
         click.echo(text, err=True)
+
+
+def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
+    """A doubt, on a line of stderr."""
+    _complain(f"Warning: {message}")
 
 
 def _hear_signals(heard: ExitStack) -> None:

@@ -35,7 +35,9 @@ def demo(output: Path) -> dict[str, Any]:
     from importlib.resources import files
 
     from regrasp.files import parse_scenario
+    from regrasp.files.staging import check_folder
 
+    check_folder(output)
     name = "paper.toml"
     text = (files("regrasp.files.scenarios") / name).read_text(encoding="utf-8")
     facts = _work(parse_scenario(text, name), name, output, copy=text)
@@ -61,7 +63,9 @@ def plan(scenario: Path, output: Path, no_figures: bool) -> dict[str, Any]:
     SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
     """
     from regrasp.files import read_scenario
+    from regrasp.files.staging import check_folder
 
+    check_folder(output)
     return _work(read_scenario(scenario), scenario, output, draw=not no_figures)
 
 
@@ -88,6 +92,9 @@ def _work(
             verified(checked(planned, rows), name)
             count += rows.times.size
             progress.update(task, completed=count)
+    shape = _shape(scenario)
+    for remark in getattr(shape, "notes", ()):
+        say(f"{name}: {one_line(remark)}")
     with legible(given) as shown:
         say(f"{one_line(scenario.title)}\n\n{shown(planned)}" if scenario.title else shown(planned))
     say(f"{verdict}\neach of {count} set-points verified too")
@@ -98,7 +105,7 @@ def _work(
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:
-            _draw(planned, _shape(scenario), folder)
+            _draw(planned, shape, folder)
         written = sorted(file.name for file in folder.iterdir())
     say("")
     for file in written:

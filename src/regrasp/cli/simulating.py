@@ -45,7 +45,11 @@ def simulate(path: Path, critical: bool, output: Path | None, **options: Any) ->
     """
     from regrasp import execution
     from regrasp.files import read_plan
+    from regrasp.files.staging import check_folder
 
+    if output is not None:
+        check_folder(output)
+    execution.Setup(**options)
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
     try:

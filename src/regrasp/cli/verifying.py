@@ -25,7 +25,10 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
     from regrasp.files import read_plan
     from regrasp.files.plans.setpoints import checked, read_setpoints
     from regrasp.files.source import legible
+    from regrasp.mechanics.checks import number
 
+    if rate is not None:
+        number(rate, "rate", above=0)
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
     table, count = path.with_name("setpoints.csv"), 0

@@ -45,6 +45,19 @@ def whole_file(path: str | Path) -> Iterator[TextIO]:
             part.replace(path)
 
 
+def check_folder(path: str | Path) -> None:
+    """Raise ``InvalidInput`` where ``whole_folder`` could not write, so that nothing is done in vain."""
+    path = file_path(path).absolute()
+    if path.exists() and not path.is_dir():
+        raise InvalidInput(f"{path}: expected a folder to write into, found a file")
+    with _writing(path):
+        there = next(folder for folder in (path, *path.parents) if folder.exists())
+    if not there.is_dir():
+        raise InvalidInput(f"{path}: expected a folder to write into, found the file {there}")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InvalidInput(f"{path}: cannot be written: {there} may not be written to")
+
+
 @contextmanager
 def whole_folder(path: str | Path) -> Iterator[Path]:
     """A folder to write files into; they appear in ``path`` together when the block ends without error.

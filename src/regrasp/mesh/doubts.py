@@ -29,7 +29,7 @@ def warn_of_distance(point: Array, away: float, size: Array) -> None:
         warn(
             f"the contact is {away:.3g} away from the point {numbers(point)}, on an object of size "
             f"{numbers(size)}; if they are in different units, read the mesh with scale=",
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
@@ -43,5 +43,12 @@ def warn_of_walls(point: Array, away: float, opposed: Array) -> None:
         warn(
             f"the point {numbers(point)} is {away:.3g} from the wall that the contact is put on and "
             f"{far:.3g} from one that faces the other way; say which with along= or outside=True",
-            stacklevel=3,
+            stacklevel=4,
         )
+
+
+def warn_of_cavities(file: Path, notes: list[str]) -> None:
+    """Where reading a mesh has filled what was hollow."""
+    for note in notes:
+        if note.startswith("filled: "):
+            warn(f"{file}: {note}", stacklevel=3)

@@ -20,22 +20,14 @@ from regrasp.mechanics.checks import (
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
-from regrasp.mesh.closest import at, touching
-from regrasp.mesh.doubts import warn_of_distance, warn_of_unit, warn_of_walls
-from regrasp.mesh.rays import entry, outermost
-from regrasp.mesh.shading import Shading, face_normals, turns
+from regrasp.mesh.doubts import warn_of_cavities, warn_of_unit
 from regrasp.mesh.solid import doubled_areas, inertia, moments, solid
-from regrasp.mesh.spread import Surface, spread
+from regrasp.mesh.touch import Touch
 from regrasp.outline import Outline
 from regrasp.outline.region import checked_size
 
 CREASE = float(np.radians(35.0))
 """An edge is sharp where the surface turns there by more than this [rad], if not said otherwise."""
-
-_AMBIGUOUS = np.radians(5.0)  # normals of faces that meet may differ by this where a finger touches
-_AT_EDGE = 1e-9  # of the largest side
-_FAR = 0.1  # of the largest side
-_OPPOSED = -0.5  # the cosine between walls that face apart
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -113,7 +105,7 @@ class Mesh(ArrayValue):
             smooth: whether the triangles stand for a curved surface, as of ``Mesh``.
             crease: as of ``Mesh`` [rad].
             bodies: "one" refuses several closed surfaces, "largest" takes the one of the largest volume,
-                "fuse" unites them; a cavity is filled by both.
+                "fuse" unites them; a cavity is filled by both, with a warning.
             close_holes: holes up to this part of the largest side across are closed by triangles between
                 their rims. ``notes`` of the result say what was done. Needs the extra ``regrasp[meshes]``.
 
@@ -121,8 +113,8 @@ class Mesh(ArrayValue):
             InvalidInput: For a file that cannot be read and for what ``Mesh`` refuses.
             ImportError: Without the extra.
         """
-        from regrasp.mesh.files import advice, read
-        from regrasp.mesh.mending import BODIES
+        from regrasp.mesh.reading.files import advice, read
+        from regrasp.mesh.reading.mending import BODIES
         from regrasp.outline.opening import naming
 
         if not isinstance(smooth, bool):
@@ -137,6 +129,7 @@ class Mesh(ArrayValue):
             except InvalidInput as error:
                 raise InvalidInput(f"{error}{advice(faces, error)}") from None
         object.__setattr__(mesh, "notes", tuple(notes))
+        warn_of_cavities(file, notes)
         if scale is None:
             warn_of_unit(file, mesh.size)
         return mesh
@@ -228,7 +221,7 @@ class Mesh(ArrayValue):
     @cached_property
     def area(self) -> float:
         """Of the surface [m^2]."""
-        return float(doubled_areas(self._corners).sum()) / 2
+        return float(doubled_areas(self._touch.corners).sum()) / 2
 
     @cached_property
     def centre_of_mass(self) -> Array:
@@ -255,7 +248,7 @@ class Mesh(ArrayValue):
         Args:
             path: the file to write.
         """
-        from regrasp.mesh.files import stl
+        from regrasp.mesh.reading.files import stl
 
         path = file_path(path)
         try:
@@ -274,8 +267,7 @@ class Mesh(ArrayValue):
             points: (..., 3) in the coordinates given [m].
         """
         given = checked_points(points)
-        faces, weights = self._nearest(given.reshape(-1, 3))
-        return at(self._corners[faces], weights).reshape(given.shape)
+        return self._touch.nearest(given.reshape(-1, 3)).reshape(given.shape)
 
     def normals(self, points: ArrayLike) -> Array:
         """(..., 3) unit normals into the object where the surface is nearest to ``points`` (..., 3).
@@ -286,7 +278,7 @@ class Mesh(ArrayValue):
             points: (..., 3), in the coordinates given [m].
         """
         given = checked_points(points)
-        return self._normals_at(*self._nearest(given.reshape(-1, 3))).reshape(given.shape)
+        return self._touch.normals(given.reshape(-1, 3)).reshape(given.shape)
 
     def contact_at(
         self,
@@ -322,33 +314,10 @@ class Mesh(ArrayValue):
             raise InvalidInput(f"outside must be True or False, got {shown(outside)}")
         if along is not None and outside:
             raise InvalidInput("give one of along and outside")
-        if along is not None:
-            foot = entry(given, array(along, "along", (3,)), self._corners, self._flat)
-        else:
-            foot = outermost(given, self._corners, self._flat) if outside else self.nearest(given)
-        away, largest = float(np.linalg.norm(given - foot)), float(self.size.max())
-        if away > _FAR * largest:
-            raise InvalidInput(
-                f"point {numbers(given)} is {away:.3g} away from the surface of an object of size "
-                f"{numbers(self.size)}; is it in the mesh's coordinates and unit? nearest() answers for any"
-            )
-        _, faces, weights = touching(foot[None], self._corners, _AT_EDGE * largest)
-        normals = self._normals_at(faces, weights)
-        turn = float(turns(normals, normals[0]).max())
-        bend = float(turns(normals, self._flat[faces]).max())  # the tip of a cone has one normal and no sense
-        if turn > _AMBIGUOUS or bend > self.crease:
-            most = np.degrees(max(turn, bend))
-            soft = not self.smooth and turn <= self.crease
-            advice = "; for a curved surface give the mesh smooth=True" if soft else ""
-            raise InvalidInput(
-                f"point {numbers(foot)} is at an edge or corner, where {len(faces)} faces meet at up to "
-                f"{most:.3g} degrees and no normal is defined; move it into a face{advice}"
-            )
-        if along is None and not outside and away > _AT_EDGE * largest:
-            warn_of_walls(given, away, self._corners[self._flat @ normals[0] < _OPPOSED])
-            warn_of_distance(given, away, self.size)
+        way = None if along is None else array(along, "along", (3,))
+        foot, normal = self._touch.place(checked_points(given), way, outside)
         place = foot - self.centre_of_mass
-        return Contact(place, normals[0], friction, max_force=max_force, torsion=torsion, name=name)
+        return Contact(place, normal, friction, max_force=max_force, torsion=torsion, name=name)
 
     def sample(self, count: int, *, seed: int = 0, clearance: float | None = None) -> Array:
         """(count, 3) points spread evenly over the surface, in the coordinates given [m].
@@ -391,43 +360,17 @@ class Mesh(ArrayValue):
     def _sample(self, count: int, seed: int, clearance: float | None) -> tuple[Array, Array]:
         n = whole(count, "count", least=1, most=1_000_000)
         keep = None if clearance is None else number(clearance, "clearance", least=0)
-        shading = self._shading
-        starts, ends = (np.concatenate([shading.edges[:, k], shading.points]) for k in (0, 1))
-        sharp = self.vertices[starts], self.vertices[ends]
-        surface = Surface(self._corners, doubled_areas(self._corners) / 2, self._flat, sharp)
-        least = 2 * _AT_EDGE * float(self.size.max())
-        faces, weights = spread(surface, n, whole(seed, "seed", least=0), keep, least)
-        return at(self._corners[faces], weights), self._normals_at(faces, weights)
+        return self._touch.sample(n, whole(seed, "seed", least=0), keep)
 
     # -- what they stand on -----------------------------------------------------------------------------
 
     @cached_property
-    def _corners(self) -> Array:
-        return self.vertices[self.faces]
-
-    @cached_property
-    def _flat(self) -> Array:
-        return face_normals(self._corners)
+    def _touch(self) -> Touch:
+        return Touch(self.vertices, self.faces, self.smooth, self.crease)
 
     @cached_property
     def _moments(self) -> tuple[float, Array]:
         return moments(self.vertices, self.faces)
-
-    @cached_property
-    def _shading(self) -> Shading:
-        return Shading(self.vertices, self.faces, self.crease)
-
-    def _nearest(self, points: Array) -> tuple[Indices, Array]:
-        i, faces, weights = touching(points, self._corners, _AT_EDGE * float(self.size.max()))
-        first = np.searchsorted(i, np.arange(len(points)))
-        return faces[first], weights[first]
-
-    def _normals_at(self, faces: Indices, weights: Array) -> Array:
-        if not self.smooth:
-            return self._flat[faces]
-        mixed = at(self._shading.normals[faces], weights)
-        length = np.linalg.norm(mixed, axis=1, keepdims=True)
-        return np.where(length > _AT_EDGE, mixed / np.maximum(length, _AT_EDGE), self._flat[faces])
 
     def __repr__(self) -> str:
         kind = ", smooth" if self.smooth else ""

@@ -1,5 +1,6 @@
 """The solid object of a scenario in space."""
 
+from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -11,6 +12,8 @@ from regrasp.files.strict import Strict
 
 if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
+
+_OF_FILES = ("scale", "smooth", "crease_degrees", "bodies", "close_holes")
 
 
 class ObjectEntry(Strict):
@@ -24,6 +27,15 @@ class ObjectEntry(Strict):
     )
     scale: Positive | None = Field(None, description="metres per unit of the file; 1 if absent")
     smooth: bool = Field(False, description="whether normals are interpolated, of a file of a curved surface")
+    crease_degrees: Annotated[float, Field(gt=0, lt=90)] | None = Field(
+        None, description="largest turn between triangles over which they are; 35 if absent"
+    )
+    bodies: Literal["one", "largest", "fuse"] | None = Field(
+        None, description="of several closed surfaces: refuse them (if absent), take the largest, unite them"
+    )
+    close_holes: Annotated[float, Field(ge=0)] | None = Field(
+        None, description="holes up to this part of the largest side across are closed"
+    )
 
     _value: "Mesh" = PrivateAttr()
 
@@ -37,8 +49,9 @@ class ObjectEntry(Strict):
         if (self.mesh is None) == (self.part is None):
             found = "neither" if self.mesh is None else "both"
             raise ValueError(f"expected either mesh or part, found {found}")
-        if self.mesh is None and (self.scale is not None or self.smooth):
-            raise ValueError(f"{'smooth' if self.scale is None else 'scale'} goes with mesh, found part")
+        of_files = [key for key in _OF_FILES if getattr(self, key) not in (None, False)]
+        if self.mesh is None and of_files:
+            raise ValueError("\n".join(f"{key} goes with mesh, found part" for key in of_files))
         try:
             self._value = self._made((info.context or {}).get("folder", Path()))
         except (InvalidInput, ImportError) as error:
@@ -50,5 +63,8 @@ class ObjectEntry(Strict):
 
         if self.part is not None:
             return parts.PARTS[self.part]()
-        scale = 1.0 if self.scale is None else self.scale
-        return Mesh.from_file(folder / str(self.mesh), scale=scale, smooth=self.smooth)
+        asked = {key: getattr(self, key) for key in ("scale", "bodies", "close_holes")}
+        if self.crease_degrees is not None:
+            asked["crease"] = radians(self.crease_degrees)
+        given = {key: value for key, value in asked.items() if value is not None}
+        return Mesh.from_file(folder / str(self.mesh), smooth=self.smooth, **given)

@@ -22,6 +22,7 @@ from regrasp.planning.regrasps.options import MOST_CANDIDATES
 Ring = Annotated[list[Vector], Field(min_length=3)]
 
 _SHAPES = ("vertices", "points", "ellipse", "part", "file")
+_OF_FILES = ("scale", "unit", "layers", "tolerance")
 
 # A position farther from the outline than this fraction of its length is in other coordinates or units.
 _NEAR = 0.05
@@ -54,6 +55,15 @@ class OutlineEntry(Strict):
         [], description="[m], vertices of holes, of an outline from vertices, points or ellipse"
     )
     scale: Positive | None = Field(None, description="metres per unit of the file; 1 if absent")
+    unit: Literal["um", "mm", "cm", "dm", "m", "km", "in", "ft", "yd", "mil", "px"] | None = Field(
+        None, description="what coordinates are converted to from the unit that an SVG or DXF states"
+    )
+    layers: list[Annotated[str, Field(min_length=1)]] | None = Field(
+        None, description="only these layers of a DXF or groups of an SVG are read; hidden ones, too"
+    )
+    tolerance: Positive | None = Field(
+        None, description="of chords for curves and of ends that are joined [the file's units]"
+    )
 
     _value: Outline = PrivateAttr()
 
@@ -72,8 +82,11 @@ class OutlineEntry(Strict):
         problems = []
         if self.holes and given[0] in ("part", "file"):
             problems.append(f"holes go with vertices, points or ellipse; a {given[0]} has its own")
-        if self.scale is not None and given[0] != "file":
-            problems.append(f"scale goes with file, found {given[0]}")
+        problems += [
+            f"{key} goes with file, found {given[0]}"
+            for key in _OF_FILES
+            if getattr(self, key) is not None and given[0] != "file"
+        ]
         if problems:
             raise ValueError("\n".join(problems))
         try:
@@ -91,7 +104,8 @@ class OutlineEntry(Strict):
             return Outline.ellipse(*self.ellipse, holes=self.holes)
         if self.part is not None:
             return PARTS[self.part]()
-        return Outline.from_file(folder / str(self.file), scale=1.0 if self.scale is None else self.scale)
+        asked = {key: getattr(self, key) for key in _OF_FILES if getattr(self, key) is not None}
+        return Outline.from_file(folder / str(self.file), **asked)
 
 
 class Places(Strict):

@@ -8,6 +8,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mesh.arrays import Indices, merged
 from regrasp.mesh.build import polygon_triangles
+from regrasp.mesh.reading.cavities import filled
 from regrasp.mesh.solid import doubled_areas, moments, solid
 
 BODIES = ("one", "largest", "fuse")
@@ -177,7 +178,9 @@ def one_of(vertices: Array, faces: Indices, bodies: str) -> Mended:
         return vertices, faces, []
     solids = [merged(vertices, part) for part in parts]
     if bodies == "fuse":
-        return _fused(solids)
+        largest = int(np.argmax([np.ptp(points, axis=0).prod() for points, _ in solids]))
+        vertices, faces, notes = _fused(solids)
+        return vertices, faces, notes + filled(solids, largest)
     volumes = []
     for points, part in solids:
         try:
@@ -187,7 +190,7 @@ def one_of(vertices: Array, faces: Indices, bodies: str) -> Mended:
     best = int(np.argmax(volumes))
     rest = sum(volumes) - volumes[best]
     words = f"kept: the largest of {len(parts)} surfaces, volume {volumes[best]:.6g}; left out: {rest:.6g}"
-    return *solids[best], [words]
+    return *solids[best], [words, *filled(solids, best)]
 
 
 def parted(faces: Indices) -> list[Indices]:

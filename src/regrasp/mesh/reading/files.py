@@ -9,8 +9,8 @@ import numpy as np
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mesh.arrays import Indices, checked_vertices, merged
-from regrasp.mesh.encodings import check_count, prepared
-from regrasp.mesh.mending import Mended, one_of, parted, without_holes, without_slivers
+from regrasp.mesh.reading.encodings import check_count, prepared
+from regrasp.mesh.reading.mending import Mended, one_of, parted, without_holes, without_slivers
 from regrasp.mesh.shading import face_normals
 from regrasp.outline.opening import quiet, read_bytes, reason
 from regrasp.outline.region import checked_size
@@ -31,14 +31,16 @@ def read(path: Path, bodies: str = "one", close_holes: float = 0.0) -> Mended:
     data = read_bytes(path, "a mesh", _MOST)
     if not data:
         raise InvalidInput("the file is empty")
-    pieces = [piece for piece in _pieces(data, kind[1:]) if len(piece[1])]
+    found, notes = _pieces(data, kind[1:])
+    pieces = [piece for piece in found if len(piece[1])]
     if not pieces:
         raise InvalidInput("the file has no faces: a mesh is made of triangles")
     check_count(sum(len(faces) for _, faces in pieces))
     counts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])
     vertices = checked_vertices(np.concatenate([vertices for vertices, _ in pieces]))
     faces = np.concatenate([faces + before for (_, faces), before in zip(pieces, counts[:-1], strict=True)])
-    return _mended(vertices, faces, bodies, close_holes)
+    vertices, faces, words = _mended(vertices, faces, bodies, close_holes)
+    return vertices, faces, notes + words
 
 
 def _mended(vertices: Array, faces: Indices, bodies: str, close_holes: float) -> Mended:
@@ -65,22 +67,30 @@ def advice(faces: Indices, error: InvalidInput) -> str:
     return ""
 
 
-def _pieces(data: bytes, kind: str) -> list[tuple[Array, Indices]]:
-    """Every geometry in a file, in its place: an OBJ may part one body by groups or materials."""
+def _pieces(data: bytes, kind: str) -> tuple[list[tuple[Array, Indices]], list[str]]:
+    """Every geometry in a file, in its place, and what was mended in its text.
+
+    An OBJ may part one body by groups or materials.
+    """
     try:
         import trimesh
     except ImportError:
         raise ImportError(f"reading {kind.upper()} needs trimesh: pip install 'regrasp[meshes]'") from None
-    stream = io.BytesIO(prepared(data, kind))
+    clean, notes = prepared(data, kind)
+    stream = io.BytesIO(clean)
     try:
         with quiet("trimesh"), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # text that stops being numbers is an error
             warnings.filterwarnings("error", message="string or file could not be read")
             scene = trimesh.load_scene(stream, file_type=kind, process=False)
             dumped = [piece for piece in scene.dump() if isinstance(piece, trimesh.Trimesh)]
-        return [(np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int64)) for p in dumped]
+        pieces = [(np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int64)) for p in dumped]
     except Exception as error:  # the parsers raise whatever their numbers and strings raise
-        raise InvalidInput(f"the file cannot be read as {kind.upper()}: {reason(error)}") from None
+        words = reason(error)
+        if "string or file could not be read" in words:
+            words = "it has text where numbers are expected (with decimal commas?)"
+        raise InvalidInput(f"the file cannot be read as {kind.upper()}: {words}") from None
+    return pieces, notes
 
 
 def stl(vertices: Array, faces: Indices) -> bytes:

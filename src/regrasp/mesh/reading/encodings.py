@@ -15,9 +15,14 @@ _SIZES = {
 }  # fmt: skip
 
 
-def prepared(data: bytes, kind: str) -> bytes:
-    """The same mesh. Raises ``InvalidInput`` where the file holds less than it says, or too much."""
-    return {"stl": _stl, "obj": _obj, "ply": _ply}[kind](data)
+def prepared(data: bytes, kind: str) -> tuple[bytes, list[str]]:
+    """The same mesh, and words on what was mended.
+
+    Raises ``InvalidInput`` where the file holds less than it says, or too much.
+    """
+    if kind == "stl":
+        return _stl(data)
+    return (_obj(data) if kind == "obj" else _ply(data)), []
 
 
 def check_count(count: int) -> None:
@@ -26,29 +31,71 @@ def check_count(count: int) -> None:
         raise InvalidInput(f"there are {count} faces, more than {MOST_FACES}; simplify the mesh")
 
 
-def _stl(data: bytes) -> bytes:
+def _stl(data: bytes) -> tuple[bytes, list[str]]:
     count, held = int.from_bytes(data[80:84], "little"), (len(data) - 84) / _FACE
     if len(data) >= 84 and count == held:
         check_count(count)
-        return (
-            data[:80].replace(b"\0", b" ").decode("ascii", "replace").encode("ascii", "replace") + data[80:]
-        )
+        title = data[:80].replace(b"\0", b" ").decode("ascii", "replace").encode("ascii", "replace")
+        return title + data[80:], []
     if b"\0" in data and b"facet" not in data[:4096].lower() and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
         raise InvalidInput(
             f"the file is damaged: its header says {count} faces, its bytes hold {max(held, 0.0):.6g}"
         )
-    check_count(data.count(b"vertex") // 3)
-    return decoded(data).encode()
+    text = _lines(decoded(data))
+    check_count(len(re.findall(r"\bvertex\b", text, re.IGNORECASE)) // 3)
+    return _text_stl(text)
+
+
+def _text_stl(text: str) -> tuple[bytes, list[str]]:
+    """The facets of all solids as one, the last one ended where the file is cut."""
+    notes = []
+    names = re.findall(r"^[ \t]*(end)?solid\b", text, re.IGNORECASE | re.MULTILINE)
+    if names.count("") != len(names) - names.count("") or not names:
+        notes.append("mended: a first or last line (solid, endsolid) that is missing")
+    facets = re.sub(r"^[ \t]*(end)?solid\b.*$", "", text, flags=re.IGNORECASE | re.MULTILINE)
+    last = max((m.start() for m in re.finditer(r"\bfacet\b", facets, re.IGNORECASE)), default=0)
+    if last and names[-1:] != ["end"] and not re.search(r"\bendfacet\b", facets[last:], re.IGNORECASE):
+        whole = len(re.findall(r"\bvertex(?:\s+[-+.\deE]+){3}\s", facets[last:], re.IGNORECASE)) == 3
+        ended = re.sub(r"\s*end\w*\s*$", "", facets[last:], flags=re.IGNORECASE) + "\nendloop\nendfacet\n"
+        facets = facets[:last] + (ended if whole else "")
+        notes.append("mended: the file ends within a facet" + ("" if whole else ", which is left out"))
+    return f"solid\n{facets}\nendsolid\n".encode(), notes
+
+
+def _lines(text: str) -> str:
+    """Text with one kind of line break."""
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _obj(data: bytes) -> bytes:
     """Only vertices and faces: groups and materials do not part a body, textures and normals are not used."""
-    text = decoded(data).encode().replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
+    text = _lines(decoded(data)).encode().replace(b"\\\n", b" ")
     check_count(len(re.findall(rb"^[ \t]*f[ \t]", text, re.MULTILINE)))
     lines = re.findall(rb"^[ \t]*[vf][ \t][^\r\n#]*", text, re.MULTILINE)
     if len(lines) > _MOST_LINES:
         raise InvalidInput(f"there are {len(lines)} vertices and faces, more than {_MOST_LINES}")
-    return re.sub(rb"(?<=\d)/[-+/\d]*", b"", b"\n".join(_absolute(lines)) + b"\n")
+    plain = re.sub(rb"(?<=\d)/[-+/\d]*", b"", b"\n".join(_absolute(lines)) + b"\n")
+    _check_corners(plain)
+    return plain
+
+
+def _check_corners(text: bytes) -> None:
+    """Raise ``InvalidInput`` for a face whose corners are no numbers of vertices, counted from 1."""
+    faces = re.findall(rb"^[ \t]*f[ \t].*$", text, re.MULTILINE)
+    count = len(re.findall(rb"^[ \t]*v[ \t]", text, re.MULTILINE))
+    try:
+        corners = list(map(int, b" ".join(face.split(b"f", 1)[1] for face in faces).split()))
+        wrong = not corners or min(corners) < 1 or max(corners) > count
+    except ValueError:
+        wrong = True
+    for face in faces if wrong else ():
+        words = face.split()[1:]
+        if not all(word.isdigit() for word in words):
+            raise InvalidInput(f"a face must be f with numbers of vertices, got {_shown(face)}")
+        if not all(1 <= int(word[:20]) <= count for word in words):
+            raise InvalidInput(
+                f"a face names a vertex that is not there, {_shown(face)}: they are counted from 1 to {count}"
+            )
 
 
 def _absolute(lines: list[bytes]) -> list[bytes]:
