@@ -1,7 +1,8 @@
 """Regrasps by exhaustive search: fingers with their points, one of them free, one event at a time.
 
 A state is (points of fingers 1, 2, 3; which finger is free; orientation). The free finger moves to another
-point, or it presses and another one is freed while the object may turn, or only the object turns.
+point, or it presses and another one is freed while the object may turn, or only the object turns. A turn of
+less than pi takes as many steps as it has pieces of the largest turn; at both ends all three fingers turn it.
 """
 
 from heapq import heappop, heappush
@@ -34,7 +35,11 @@ def least_cost(
             prices[i][j] = prices[j][i] = worth[p].tolist()
     a = graph.angles
     apart = abs((a[:, None] - a + np.pi) % (2 * np.pi) - np.pi).tolist()
-    near = [[m for m in orientations if apart[k][m] <= max_turn + 1e-9] for k in orientations]
+    near = [[m for m in orientations if apart[k][m] < 3.1415] for k in orientations]
+
+    def turned(k, m, first=1.0):  # steps and angle of a turn; the first step may be free
+        pieces = max(np.ceil(apart[k][m] / max_turn - 1e-9), 1.0)
+        return step * (pieces - 1 + first) + turn * apart[k][m]
 
     def hold(at, free):
         return at[free - 2], at[free - 1]  # the two fingers that are not free
@@ -48,16 +53,21 @@ def least_cost(
         return prices[i][j][k]
 
     goals = {way for way in permutations(goal) if all(allowed[f, v] for f, v in enumerate(way))}
-    queue = [(price(start, f, 0), start, f, 0) for f in range(3) if holds(start, f, 0)]
+    queue = [
+        (price(start, f, k) + turned(0, k, 0.0), start, f, k)
+        for f in range(3)
+        for k in near[0]
+        if holds(start, f, k)
+    ]
     best = {state[1:]: state[0] for state in queue}
     queue.sort()
     while queue:
         cost, at, free, k = heappop(queue)
         if cost > best[at, free, k]:
             continue
-        if at in goals and k == o:
+        if not at:
             return cost
-        following = []
+        following = [(cost + turned(k, o, 0.0), (), free, o)] if at in goals and k in near[o] else []
         for p in points:
             if allowed[free, p] and p not in at:
                 there = (*at[:free], p, *at[free + 1 :])
@@ -65,7 +75,7 @@ def least_cost(
         for next_free in range(3):
             for m in near[k]:
                 if (next_free, m) != (free, k) and holds(at, next_free, m):
-                    paid = step + turn * apart[k][m] + price(at, next_free, m)
+                    paid = turned(k, m) + price(at, next_free, m)
                     following.append((cost + paid, at, next_free, m))
         for state in following:
             if state[0] < best.get(state[1:], np.inf):

@@ -37,7 +37,7 @@ GOAL = grasp([-0.03, -0.008, 0.004], [0.004, 0.025, 0.006], [-0.01, -0.025, 0.00
 def plan():
     return rg.plan_regrasp(
         BOX, START, GOAL, WEIGHT, friction=0.6, goal_rotation=LAST,
-        candidates=12, orientations=20, min_distance=0.01,
+        candidates=12, orientations=36, min_distance=0.01,
     )  # fmt: skip
 
 

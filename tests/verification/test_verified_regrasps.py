@@ -19,7 +19,7 @@ def planar():
         rg.Grasp(OUTLINE.contact_at(p * OUTLINE.length, friction=0.5) for p in places)
         for places in ((0.02, 0.35, 0.7), (0.2, 0.5, 0.85))
     )
-    return rg.plan_regrasp(OUTLINE, first, last, rg.Wrench([0, -3.0]), friction=0.5)
+    return rg.plan_regrasp(OUTLINE, first, last, rg.Wrench([0, -3.0]), friction=0.5, orientations=1)
 
 
 def solid():

@@ -46,7 +46,7 @@ def test_bottlenecks_are_those_of_exhaustive_search(max_turn):
         o = int(rng.integers(len(graph.angles)))
         start, goal = ends_of(rng, graph, o)
         expected = trade_off(graph, start, goal, o, max_turn)
-        found = bottleneck(graph, start, goal, o, max_turn=max_turn)
+        found = bottleneck(graph, start, goal, o)
         seen["found" if found else "impossible"] += 1
         assert (found is None) == (not expected)
         if found is None:
@@ -69,7 +69,7 @@ def test_bottlenecks_are_those_of_exhaustive_search(max_turn):
 
 
 def test_a_problem_tells_its_bottleneck():
-    problem = RegraspProblem(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, orientations=12, candidates=40)
+    problem = RegraspProblem(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, orientations=1, candidates=40)
     found = problem.bottleneck()
     widest = problem.plans(extra=12)[-1]
     assert found.margin == pytest.approx(widest.margin, abs=1e-6)
@@ -212,7 +212,7 @@ def test_both_fingers_push_in_every_hold_of_a_plan(objective):
             (np.hypot(*step.end.forces.T) > 1e-9 * np.hypot(*step.end.forces.T).max()).sum()
             for step in plan.steps[:-1]
         ]
-        assert allowed or set(pushing) == {2}
+        assert allowed or set(pushing) <= {2, 3}
 
 
 # -- what would make it possible ----------------------------------------------------------------------------
@@ -267,12 +267,13 @@ def test_a_goal_on_another_component_says_at_which_friction_they_meet(part, fric
 
 
 def test_a_force_limit_too_low_says_which_would_do():
-    options = {"friction": 0.5, "orientations": 24, "goal_orientation": np.pi / 2, "candidates": 60}
-    error = refused(ELLIPSE, START, GOAL, max_force=12.0, **options)
+    options = {"friction": 0.5, "orientations": 1, "candidates": 60}
+    ends = grasp_on(ELLIPSE, (0.7, 0.75, 0.02)), grasp_on(ELLIPSE, (0.5, 0.72, 0.8), prefix="B")
+    error = refused(ELLIPSE, *ends, max_force=2.8, **options)
     needed = error.certificate.max_force
     assert f"or with force limits of {needed:g}" in str(error)
-    assert rg.verify(rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, max_force=needed, **options)).ok
-    refused(ELLIPSE, START, GOAL, max_force=0.97 * needed, **options)
+    assert rg.verify(rg.plan_regrasp(ELLIPSE, *ends, WEIGHT, max_force=needed, **options)).ok
+    refused(ELLIPSE, *ends, max_force=0.97 * needed, **options)
 
 
 def test_a_force_limit_too_low_for_three_fingers_says_which_would_do():

@@ -1,8 +1,9 @@
 """What limits the way between two grasps in the hold graph, however many finger moves it takes.
 
 Points and orientations are nodes, one for each contact that has a hold there. A hold joins its two points
-with its margin; a turn joins two orientations of a point, at most a largest turn apart, with the smaller of
-the widest margins that the point has at both. The widest way is then the one in a maximum spanning tree.
+with its margin; a turn joins two orientations of a point, less than pi apart, with the smaller of the widest
+margins that the point has at both: three fingers hold everything between. The widest way is then the one in a
+maximum spanning tree.
 """
 
 from dataclasses import dataclass, field
@@ -15,7 +16,8 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, whole
 from regrasp.planning.holds.pairs import HoldGraph
-from regrasp.planning.holds.sequences import MAX_TURN, Hold
+from regrasp.planning.holds.sequences import Hold
+from regrasp.planning.holds.stances import REACH
 
 # Above every margin: the tree of least weights wants them positive.
 _ABOVE = 4.0
@@ -60,18 +62,19 @@ def bottleneck(
     goal: tuple[int, ...],
     goal_orientation: int = 0,
     *,
-    max_turn: float = MAX_TURN,
+    max_turn: float = REACH,
 ) -> Bottleneck | None:
     """What limits the way from a hold of three contacts to a hold of three; None where there is no way.
 
-    Every finger may touch everywhere.
+    Every finger may touch everywhere. Where the object turns by more than one step may, three fingers hold it
+    in between.
 
     Args:
         graph: of planar contacts.
         start: three contacts by their places in the graph, held at its first angle.
         goal: three contacts by their places in the graph, held at the angle of place ``goal_orientation``.
         goal_orientation: the place of the last angle in the graph's angles.
-        max_turn: largest turn of the object during one step [rad].
+        max_turn: largest turn of the object from one hold to the next, in however many steps, below pi [rad].
 
     Raises:
         InvalidInput: For what are no places.
@@ -112,11 +115,9 @@ def bottleneck(
     )
 
 
-def connected(
-    graph: HoldGraph, start: tuple[int, ...], goal: tuple[int, ...], goal_orientation: int, max_turn: float
-) -> bool:
+def connected(graph: HoldGraph, start: tuple[int, ...], goal: tuple[int, ...], goal_orientation: int) -> bool:
     """Whether any sequence of holds leads from the start to the goal."""
-    return _Ends(graph, start, goal, goal_orientation, max_turn).connected(graph.margins)
+    return _Ends(graph, start, goal, goal_orientation).connected(graph.margins)
 
 
 class _Links(NamedTuple):
@@ -132,12 +133,15 @@ class _Ends:
     """Node v * O + o is contact v at orientation o; the last two nodes are the start and the goal."""
 
     def __init__(
-        self, graph: HoldGraph, start: tuple[int, ...], goal: tuple[int, ...], o: int, max_turn: float
+        self, graph: HoldGraph, start: tuple[int, ...], goal: tuple[int, ...], o: int, reach: float = REACH
     ) -> None:
-        self.graph, self.ends = graph, ((start, 0), (goal, o))
         self.points, self.turns = len(graph.contacts), len(graph.angles)
         apart = abs((graph.angles[:, None] - graph.angles + pi) % (2 * pi) - pi)
-        self.near = np.nonzero(np.triu(apart <= max_turn + 1e-9, 1))
+        self.near = np.nonzero(np.triu(apart <= reach + 1e-9, 1))
+        self.graph = graph
+        self.ends = tuple(
+            (places, np.flatnonzero(apart[end] <= reach + 1e-9)) for places, end in ((start, 0), (goal, o))
+        )
         self.nodes = self.points * self.turns + 2
 
     def connected(self, margins: NDArray[np.float32]) -> bool:
@@ -186,10 +190,10 @@ class _Ends:
         ]
         for end, (places, at) in enumerate(self.ends):
             for i in places:
-                others = [margins[at, self.graph.pair(i, j)] for j in places if j != i]
-                if max(others) >= 0:
-                    node = np.array([self.nodes - 2 + end]), np.array([i * self.turns + at])
-                    parts.append((*node, np.array([float(max(others))])))
+                width = np.max([margins[at, self.graph.pair(i, j)] for j in places if j != i], axis=0)
+                held = width >= 0
+                node = np.full(int(held.sum()), self.nodes - 2 + end)
+                parts.append((node, i * self.turns + at[held], width[held].astype(np.float64)))
         a, b, width = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
         return _Links(a, b, width, best)
 
@@ -197,8 +201,8 @@ class _Ends:
         """The hold of a link, or both of a turn: the widest of its point at either orientation."""
         (v, o), (w, p) = (divmod(node, self.turns) for node in link)
         if max(link) >= self.nodes - 2:
-            places, at = self.ends[max(link) - self.nodes + 2]
-            i = min(link) // self.turns
+            places, _ = self.ends[max(link) - self.nodes + 2]
+            i, at = divmod(min(link), self.turns)
             j = max((j for j in places if j != i), key=lambda j: self.graph.margin(i, j, at))
             return [(min(i, j), max(i, j), at)]
         if v != w:

@@ -1,9 +1,10 @@
 """The sequence of holds of least cost, by moves from both ends.
 
 A way costs ``move`` for each finger move, ``turning`` per radian of the object's turns, ``step`` for every
-exchange or turn, and ``worth`` of each hold it passes. With F_i(h, o) the least cost of a way from the start
-to a hold with at most i moves, and B_j(h, o) the same from the goal, the least cost of i + j + 1 moves is the
-least of F_i + move + B_j - worth over all holds and orientations. More moves are tried until they cannot pay.
+step, an exchange or a turn, and ``worth`` of each hold it passes. With F_i(h, o) the least cost of a way from
+the start to a hold with at most i moves, and B_j(h, o) the same from the goal, the least cost of i + j + 1
+moves is the least of F_i + move + B_j - worth over all holds and orientations. More moves are tried until
+they cannot pay.
 """
 
 from dataclasses import dataclass
@@ -35,13 +36,17 @@ class CheapEnd:
 
     def __init__(self, fingers: Stances, costs: Costs, ways: list[Places], o: int, other: int) -> None:
         self.fingers, self.costs, self.ends = fingers, costs, [fingers.of(way) for way in ways]
-        self.turns = costs.turning * fingers.turning
+        turns = costs.turning * fingers.apart + costs.step * np.where(
+            fingers.further < inf, fingers.further, 0.0
+        )
+        self.turns = np.take_along_axis(turns, fingers.near, axis=1)
         self.rest = costs.turning * fingers.apart[other]  # the turn to the other end, at the least
         count = fingers.rows.size
         first = np.full((count, costs.worth.shape[1]), inf)
         for holds in self.ends:
-            for h in holds:
-                first[h, o] = costs.worth[fingers.rows[h], o]
+            for h in holds:  # all fingers hold at the end, and turn with the object to any of its holds
+                within = fingers.further[o] < inf
+                first[h] = np.where(within, costs.worth[fingers.rows[h]] + turns[o], inf)
         self.first, reached = first, first.copy()
         for holds in self.ends:
             for h, row in zip(holds, self._inside(holds, first, 0.0), strict=True):
@@ -139,8 +144,10 @@ def cheapest(
     ends = CheapEnd(fingers, costs, [start], 0, o), CheapEnd(fingers, costs, goals, o, 0)
     best: tuple[float, int, int, Node] | None = None
     for h in fingers.of(start) if start in goals else ():
-        if ends[0].last[h, o] < (best[0] if best else inf):
-            best = float(ends[0].last[h, o]), 0, -1, (h, o)
+        worth = costs.worth[fingers.rows[h]]
+        whole = ends[0].last[h] + ends[1].first[h] - np.where(worth < inf, worth, 0.0)
+        if whole.min() < (best[0] if best else inf):
+            best = float(whole.min()), 0, -1, (h, int(whole.argmin()))
     while True:
         i, j = (len(end.tables) - 1 for end in ends)
         if split is None or (i, j) == split:

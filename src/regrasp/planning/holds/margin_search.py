@@ -51,8 +51,8 @@ class WideEnd:
         ends = [fingers.of(way) for way in ways]
         known = np.full((rows.size, margins.shape[1]), -1.0, dtype=np.float32)
         for holds in ends:
-            for h in holds:
-                known[h, o] = margins[rows[h], o]
+            for h in holds:  # all fingers hold at the end and turn with the object to any of its holds
+                known[h] = np.where(fingers.further[o] < np.inf, margins[rows[h]], -1.0)
         result, inside = np.empty((fingers.fingers, margins.shape[1])), []
         for holds in ends:
             widen(holds, known, margins, rows, fingers.near, _NONE, result)
@@ -79,14 +79,15 @@ class WideEnd:
 def widest_by_moves(fingers: Stances, start: Places, goal: Places, o: int, extra: int) -> Iterator[Widest]:
     """The widest margin of the fewest moves, then that of more moves wherever it is wider.
 
-    The start is held at the first orientation, the goal at that of place ``o``. At most ``extra`` moves more
-    than the fewest.
+    The start is held by all its fingers at the first orientation, the goal at that of place ``o``. At most
+    ``extra`` moves more than the fewest.
     """
     goals = fingers.ways(goal)
     start = fingers.start(start)
     ends = WideEnd(fingers, [start], 0), WideEnd(fingers, goals, o)
     floor, moves, fewest = _NONE, 0, None
-    together = ends[0].known[list(fingers.of(start)), o] if start in goals else np.empty(0)
+    same = list(fingers.of(start)) if start in goals else []
+    together = np.minimum(ends[0].known[same], ends[1].known[same])
     while True:
         margin = float(together.max(initial=-1.0))
         if margin > floor:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.planning.holds.pairs import HoldGraph
-from regrasp.planning.holds.stances import Holds, Places, Stances, nearest_turns
+from regrasp.planning.holds.stances import REACH, Holds, Places, Stances
 
 if TYPE_CHECKING:
     from regrasp.closed_form.compiled.hold_paths import Moves
@@ -25,15 +25,20 @@ _FINGERS = ((0, 1), (0, 2), (1, 2))
 class Fingering(Stances):
     """The holds of three fingers on the contacts of a graph.
 
-    max_turn: of the object at a time [rad]. least: margin [rad] below which a pair does not hold. allowed:
-    (3, V) which finger may touch which contact; None where all may touch all.
+    max_turn: of the object in one step [rad]; reach: within a stance [rad]. least: margin [rad] below which a
+    pair does not hold. allowed: (3, V) which finger may touch which contact; None where all may touch all.
     Holds are numbered by slot and points, ``holds`` has of each its slot and points.
     """
 
     fingers: ClassVar[int] = 3
 
     def __init__(
-        self, graph: HoldGraph, max_turn: float, least: float = 0.0, allowed: NDArray[np.bool_] | None = None
+        self,
+        graph: HoldGraph,
+        max_turn: float,
+        least: float = 0.0,
+        allowed: NDArray[np.bool_] | None = None,
+        reach: float = REACH,
     ) -> None:
         self.allowed = allowed
         self.margins = np.ascontiguousarray(graph.margins.T)
@@ -44,7 +49,7 @@ class Fingering(Stances):
         self.holds = tuple(holds)
         angles = graph.angles
         self.apart = abs((angles[:, None] - angles + pi) % (2 * pi) - pi)
-        self.near, self.turning = nearest_turns(self.apart, max_turn)
+        self.turns(max_turn, reach)
 
     @property
     def moves(self) -> "Moves":

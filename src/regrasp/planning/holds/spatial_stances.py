@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.holds.stances import Holds, Places, Stances, nearest_turns
+from regrasp.planning.holds.stances import REACH, Holds, Places, Stances
 from regrasp.planning.holds.triples import TripleGraph
 
 if TYPE_CHECKING:
@@ -18,13 +18,20 @@ class Quads(Stances):
     """Four fingers on the contacts of a graph, three of which hold.
 
     directions: (O, 3) unit directions of the load, seen from the object, of the graph's loads. While the
-    object turns the load goes along the great circle from one to the other, by at most ``max_turn`` [rad] at
-    a time. least: margin [rad] below which a triple does not hold.
+    object turns the load goes along the great circle from one to the other, by at most ``max_turn`` [rad] in
+    one step and ``reach`` within a stance. least: margin [rad] below which a triple does not hold.
     """
 
     fingers: ClassVar[int] = 4
 
-    def __init__(self, graph: TripleGraph, directions: Array, max_turn: float, least: float = 0.0) -> None:
+    def __init__(
+        self,
+        graph: TripleGraph,
+        directions: Array,
+        max_turn: float,
+        least: float = 0.0,
+        reach: float = REACH,
+    ) -> None:
         self.graph, self.count = graph, len(graph.contacts)
         self.margins = np.ascontiguousarray(graph.margins.T)
         self.margins[self.margins < max(least, 0.0)] = -1.0
@@ -32,7 +39,7 @@ class Quads(Stances):
         self.holds = np.append(self.rows, self.count), graph.triples.astype(np.int64)
         sines = np.linalg.norm(np.cross(directions[:, None], directions), axis=-1)
         self.apart = np.arctan2(sines, directions @ directions.T)
-        self.near, self.turning = nearest_turns(self.apart, max_turn)
+        self.turns(max_turn, reach)
 
     @property
     def moves(self) -> "Moves":

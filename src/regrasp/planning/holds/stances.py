@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from copy import copy
+from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -19,13 +20,18 @@ Holds = tuple[int, ...]
 """The numbers of the holds of a stance: all its contacts but one."""
 
 
+REACH = pi - 1e-6
+"""Two holds farther apart [rad] may hold nothing between them."""
+
+
 class Stances(ABC):
     """Stances of some fingers on contacts, all but one of which hold (``hold_paths``).
 
     holds: how holds are numbered, as the compiled ``stances`` take it. rows: (H,) the row of margins of each
     hold. margins: (rows, O) [rad], -1 where it does not hold. count: of contacts.
-    near: (O, k) from where the object may turn to an orientation in one step, the nearest first; turning:
-    (O, k) these turns [rad]; apart: (O, O) angles between all orientations [rad].
+    near: (O, k) from where the object may turn to an orientation within a stance, the nearest first; turning:
+    (O, k) these turns [rad]. apart: (O, O) angles between all orientations [rad]; further: (O, O) how many
+    steps such a turn takes beyond one, inf where it is too large.
     """
 
     fingers: ClassVar[int]
@@ -36,6 +42,7 @@ class Stances(ABC):
     near: NDArray[np.int64]
     turning: Array
     apart: Array
+    further: Array
 
     @property
     @abstractmethod
@@ -53,6 +60,16 @@ class Stances(ABC):
     @abstractmethod
     def renumbered(self, numbers: NDArray[np.int64], kept: NDArray[np.int64]) -> tuple[Any, ...]:
         """``holds`` with other numbers, of the holds ``kept``."""
+
+    def turns(self, max_turn: float, reach: float) -> None:
+        """Sets what follows from ``apart``: steps of ``max_turn`` at most, ``reach`` in all [rad].
+
+        Two holds of one stance, less than pi apart, hold everything between them together (docs/facts.md, 6):
+        where that is more than a step may turn, all fingers of the stance take part on the way.
+        """
+        self.near, self.turning = nearest_turns(self.apart, reach)
+        steps = np.maximum(np.ceil(self.apart / max_turn - 1e-9), 1.0)
+        self.further = np.where(self.apart <= reach + 1e-9, steps - 1, np.inf)
 
     def start(self, contacts: Places) -> Places:
         """The contacts in the order in which ``ways`` gives them."""
@@ -74,9 +91,9 @@ class Stances(ABC):
         return few
 
 
-def nearest_turns(apart: Array, max_turn: float) -> tuple[NDArray[np.int64], Array]:
-    """(O, k) from where the object may turn to an orientation in one step, the nearest first; these turns."""
-    within = apart <= max_turn + 1e-9
+def nearest_turns(apart: Array, reach: float) -> tuple[NDArray[np.int64], Array]:
+    """(O, k) orientations within ``reach`` [rad] of each, the nearest first; the turns [rad]."""
+    within = apart <= reach + 1e-9
     order = np.argsort(np.round(apart, 9), axis=1, kind="stable")[:, : within.sum(axis=1).max()]
     own = np.arange(len(order))[:, None]  # fills the row where fewer are near
     near = np.where(np.take_along_axis(within, order, axis=1), order, own).astype(np.int64)

@@ -21,7 +21,7 @@ from regrasp.planning.holds.cost_search import cheapest
 from regrasp.planning.holds.pairs import Filter, HoldGraph, evenly
 from regrasp.planning.holds.planar_stances import Fingering
 from regrasp.planning.holds.sequences import MAX_TURN, Sequence, as_sequence, sequences
-from regrasp.planning.holds.stances import Places
+from regrasp.planning.holds.stances import REACH, Places
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs, arc_lengths, on_arcs
 from regrasp.planning.regrasps.ends import Ends
@@ -34,7 +34,7 @@ from regrasp.planning.regrasps.options import (
 )
 from regrasp.planning.regrasps.remedies import allowed
 from regrasp.planning.regrasps.steps import chosen_states, regrasp_of, spread_states
-from regrasp.planning.regrasps.why_not import why_not
+from regrasp.planning.regrasps.why_not import unheld_end, why_not
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -189,12 +189,15 @@ class RegraspProblem(ArrayValue):
         off = (self.graph.angles - self.goal_orientation + pi) % (2 * pi) - pi
         return self.ends.start, self.ends.goal, int(np.argmin(abs(off)))
 
-    def sequences(self, extra: int = 0, max_turn: float | None = None) -> list[Sequence]:
+    def sequences(
+        self, extra: int = 0, max_turn: float | None = None, reach: float = REACH
+    ) -> list[Sequence]:
         """The best sequence of holds, and those of up to ``extra`` more moves with wider margins.
 
         Args:
             extra: finger moves beyond the fewest.
             max_turn: in place of the problem's [rad].
+            reach: of turns in several steps, with all three fingers between them [rad].
         """
         whole(extra, "extra", least=0, most=MOST_EXTRA)
         start, goal, last = self.places
@@ -202,9 +205,9 @@ class RegraspProblem(ArrayValue):
         if self.weights is None:
             return sequences(
                 self.graph, start, goal, last, max_turn=turn, least_margin=self.least_margin,
-                allowed=self.allowed, extra=extra,
+                allowed=self.allowed, extra=extra, reach=reach,
             )  # fmt: skip
-        fingers = Fingering(self.graph, turn, self.least_margin, self.allowed)
+        fingers = Fingering(self.graph, turn, self.least_margin, self.allowed, reach)
         costs = self.weights.costs(self.graph, fingers.margins, self.step_duration)
         found = cheapest(fingers, costs, start, goal, last)
         return [] if found is None else [as_sequence(fingers, found)]
@@ -212,8 +215,8 @@ class RegraspProblem(ArrayValue):
     def plans(self, extra: int = 0) -> list[RegraspPlan]:
         """The plan of each sequence.
 
-        Forces grow while the object turns. Where force limits leave too little room for that, sequences of
-        smaller turns are looked for, of half the size each time.
+        Forces grow while the object turns. Where force limits leave too little room for that, sequences
+        without turns in several steps are looked for, then of smaller turns, of half the size each time.
 
         Args:
             extra: finger moves beyond the fewest.
@@ -227,12 +230,17 @@ class RegraspProblem(ArrayValue):
         turn, found = self.max_turn, self.sequences(extra)
         if not found:
             raise why_not(self)
+        reach = REACH
         while True:
             try:
-                return [self._plan(sequence) for sequence in found]
+                return [self._plan(sequence, turn) for sequence in found]
             except Infeasible as error:
-                turn /= 2
-                found = self.sequences(extra, turn)
+                unheld = unheld_end(self)
+                if unheld is not None:
+                    raise unheld from None
+                turn = turn / 2 if reach == turn else turn
+                reach = turn
+                found = self.sequences(extra, turn, reach)
                 if not found:
                     raise Infeasible(
                         f"the force limits leave no room for forces to grow while the object turns: {error}; "
@@ -255,9 +263,9 @@ class RegraspProblem(ArrayValue):
         """What limits the way, however many moves it takes; None where there is none. Not with ``arcs``."""
         if self.arcs is not None:
             raise InvalidInput("a bottleneck is that of fingers that may touch everywhere; leave arcs out")
-        return bottleneck(self.graph, *self.places, max_turn=self.max_turn)
+        return bottleneck(self.graph, *self.places)
 
-    def _plan(self, sequence: Sequence) -> RegraspPlan:
+    def _plan(self, sequence: Sequence, max_turn: float) -> RegraspPlan:
         start, goal, _ = self.places
         states = chosen_states(
             sequence,
@@ -266,9 +274,11 @@ class RegraspProblem(ArrayValue):
             goal,
             self.load,
             self.graph.angles,
+            self.goal_orientation,
             self.criteria,
             self.one_finger,
             self.least_margin,
+            max_turn,
         )
         if self.states == "joint":
             states = spread_states(states, self.criteria, self.least_margin)

@@ -88,7 +88,7 @@ def possible_on(problem: Asked, graph: HoldGraph, arcs: bool = True) -> bool:
     """Whether any sequence exists on another graph of the same contacts, whatever its margins."""
     start, goal, last = problem.places
     if problem.allowed is None or not arcs:
-        return connected(graph, start, goal, last, problem.max_turn)
+        return connected(graph, start, goal, last)
     return bool(sequences(graph, start, goal, last, max_turn=problem.max_turn, allowed=problem.allowed))
 
 
@@ -96,7 +96,7 @@ def widest_margin(problem: Asked) -> float:
     """The widest least margin of any sequence [rad], where there is one."""
     start, goal, last = problem.places
     if problem.allowed is None:
-        found = bottleneck(problem.graph, start, goal, last, max_turn=problem.max_turn)
+        found = bottleneck(problem.graph, start, goal, last)
         assert found is not None
         return found.margin
     every = sequences(

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
-from math import atan2, cos, pi
+from math import atan2, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +22,16 @@ from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.triples import FACETS, TripleFilter, TripleGraph, directions
 from regrasp.planning.regrasps.ends import Ends
 from regrasp.planning.regrasps.options import MOST_CANDIDATES, MOST_EXTRA, check_steps, settled
-from regrasp.planning.regrasps.steps import chosen_state, kept, spread_states, step_between
+from regrasp.planning.regrasps.steps import (
+    Chosen,
+    chosen_state,
+    eased_by,
+    kept,
+    least_margin,
+    pieces_of,
+    spread_states,
+    step_between,
+)
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import FORCE, Objective
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
@@ -194,49 +203,62 @@ class SpaceRegraspProblem(ArrayValue):
         found = self.sequences(extra)
         if not found:
             raise self._why_not()
-        return [self._plan(sequence) for sequence in found]
+        try:
+            return [self._plan(sequence) for sequence in found]
+        except Infeasible:
+            raise self._unheld_end() or self._why_not() from None
 
     def _plan(self, sequence: Sequence) -> SpaceRegraspPlan:
-        ways = [o for *_, o in sequence.holds]
         whole = replace(self.criteria, objective=FORCE)
-        start, goal, _ = self.places
-        states = [chosen_state(start, self.contacts, self._seen(0), whole)]
-        for k, (*places, o) in enumerate(sequence.holds):
-            beside = [
-                _angle(self.directions[a], self.directions[b])
-                for a, b in pairwise(ways[max(k - 1, 0) : k + 2])
-            ]
-            ease = cos(max(beside, default=0.0) / 2) * (1 - 1e-9)  # forces grow while the object turns
-            state = chosen_state(tuple(places), self.contacts, self._seen(o), self.criteria, ease)
-            if not state.all_work:
-                state = chosen_state(tuple(places), self.contacts, self._seen(o), whole, ease)
-            states.append(kept(state, self.contacts, self.criteria, ease, self.least_margin))
-        states.append(chosen_state(goal, self.contacts, self._seen(ways[-1]), whole))
+        start, goal, last = self.places
+        nodes = [(start, 0), *((tuple(places), o) for *places, o in sequence.holds), (goal, last)]
+        turns = [_angle(self.directions[a], self.directions[b]) for (_, a), (_, b) in pairwise(nodes)]
+        pieces = [pieces_of(turn, self.max_turn) for turn in turns]
+        sizes = [0.0, *(turn / n for turn, n in zip(turns, pieces, strict=True)), 0.0]
+        states: list[Chosen] = []
+        ways: list[Array] = []
+
+        def add(places: Places, way: Array, criteria: Criteria, ease: float) -> None:
+            load = self._seen(way)
+            state = chosen_state(places, self.contacts, load, criteria, ease)
+            if len(places) < len(start):
+                if not state.all_work:
+                    state = chosen_state(places, self.contacts, load, whole, ease)
+                state = kept(state, self.contacts, self.criteria, ease, self.least_margin)
+            states.append(state)
+            ways.append(way)
+
+        for k, (places, o) in enumerate(nodes):
+            if k:  # where the object turns by more than a step may, the contacts of both hold in between
+                before, a = nodes[k - 1]
+                every = tuple(dict.fromkeys((*before, *places)))
+                for q in range(1, pieces[k - 1]):
+                    add(every, self._between(a, o, q / pieces[k - 1]), whole, eased_by(sizes[k]))
+            criteria = self.criteria if len(places) < len(start) else whole
+            add(places, self.directions[o], criteria, eased_by(max(sizes[k : k + 2])))
         if self.states == "joint":
             states = spread_states(states, self.criteria, self.least_margin)
-        scaling, ways = TimeScaling.spline(self.step_duration), [0, *ways, ways[-1]]
+        scaling = TimeScaling.spline(self.step_duration)
         steps = [
-            step_between(a, b, self.contacts, scaling, self.reserve, *self._turn(u, v))
+            step_between(a, b, self.contacts, scaling, self.reserve, *_turn(u, v))
             for (a, b), (u, v) in zip(pairwise(states), pairwise(ways), strict=True)
         ]
         steps += self._last_turn(steps, scaling)
         turned, rotations = accumulated(steps)
-        margin = min(state.margin for state in states[1:-1])
-        return SpaceRegraspPlan(tuple(steps), turned, margin, rotations=rotations)
+        return SpaceRegraspPlan(tuple(steps), turned, least_margin(states), rotations=rotations)
 
-    def _seen(self, o: int) -> Wrench:
+    def _seen(self, way: Array) -> Wrench:
         """The load seen in a direction; that of the start as it was given."""
-        if o == 0:
+        if way is self.directions[0] or (way == self.directions[0]).all():
             return self.load
-        return Wrench(float(np.linalg.norm(self.load.force)) * self.directions[o])
+        return Wrench(float(np.linalg.norm(self.load.force)) * way)
 
-    def _turn(self, a: int, b: int) -> tuple[float, Array | None]:
-        """The turn of the object that takes the load from one direction to another, and its axis."""
-        if a == b:
-            return 0.0, None
+    def _between(self, a: int, b: int, share: float) -> Array:
+        """The direction a share of the way from one to another, along their great circle."""
         u, v = self.directions[a], self.directions[b]
-        across = np.cross(v, u)
-        return _angle(u, v), across / np.linalg.norm(across)
+        whole = _angle(u, v)
+        way: Array = sin((1 - share) * whole) * u + sin(share * whole) * v
+        return way / np.linalg.norm(way)
 
     def _last_turn(self, steps: list[Transition], scaling: TimeScaling) -> list[Transition]:
         """A turn about the load, which changes no force, to where the object is to be; none if it is."""
@@ -252,15 +274,27 @@ class SpaceRegraspProblem(ArrayValue):
         end = steps[-1].end
         return [plan_rotation(end, angle, axis=axis, end=end, scaling=scaling, reserve=self.reserve)]
 
-    def _held(self, graph: TripleGraph, places: Places, o: int) -> bool:
-        """Whether any three of four fingers hold the load in a direction, with the least margin."""
-        triples = [graph.triple(*three) for three in combinations(sorted(places), 3)]
-        return bool((graph.margins[o, triples] >= max(self.least_margin, 0.0)).any())
+    def _unheld_end(self) -> Infeasible | None:
+        """The error of an end that even four fingers cannot hold."""
+        start, goal, last = self.places
+        for what, places, o in (("start", start, 0), ("goal", goal, last)):
+            try:
+                whole = replace(self.criteria, objective=FORCE)
+                chosen_state(places, self.contacts, self._seen(self.directions[o]), whole)
+            except Infeasible as reason:
+                message = f"the fingers of the {what} cannot hold the load there: {reason}"
+                return Infeasible(message, reason.certificate)
+        return None
 
-    def _in_the_way(self, places: Places, o: int) -> str | None:
+    def _held(self, graph: TripleGraph, places: Places) -> bool:
+        """Whether any three of four fingers hold the load in any direction, with the least margin."""
+        triples = [graph.triple(*three) for three in combinations(sorted(places), 3)]
+        return bool((graph.margins[:, triples] >= max(self.least_margin, 0.0)).any())
+
+    def _in_the_way(self, places: Places) -> str | None:
         """In words, an option without which three fingers of an end would hold; None where there is none."""
         four = tuple(self.contacts[place] for place in places)
-        load = self.graph.loads[[o]]
+        load = self.graph.loads
         free = tuple(c.changed(max_force=None) for c in four)
         variants = {
             "keep": (four, self.min_distance, None),
@@ -269,24 +303,31 @@ class SpaceRegraspProblem(ArrayValue):
         }
         for option, (contacts, apart, keep) in variants.items():
             graph = TripleGraph(contacts, load, self.facets, self.peak_ratio, self.reserve, apart, keep)
-            if self._held(graph, tuple(range(4)), 0):
+            if self._held(graph, tuple(range(4))):
                 return option
         return None
 
     def _why_not(self) -> Infeasible:
         """Which end has no hold, or how far the fingers come from both."""
-        start, goal, last = self.places
-        for what, places, o in (("start", start, 0), ("goal", goal, last)):
-            if not self._held(self.graph, places, o):
-                option = self._in_the_way(places, o)
+        unheld = self._unheld_end()
+        if unheld is not None:
+            return unheld
+        start, goal, _ = self.places
+        count = len(self.directions)
+        where = (
+            f"in any of {count} directions, to which all four may turn the object," if count > 1 else "there"
+        )
+        for what, places in (("start", start), ("goal", goal)):
+            if not self._held(self.graph, places):
+                option = self._in_the_way(places)
                 if option is not None:
                     return Infeasible(
-                        f"no three fingers of the {what} hold the load there with {option}; without it "
+                        f"no three fingers of the {what} hold the load {where} with {option}; without it "
                         f"they do"
                     )
                 wanted = f" with a margin of {self.least_margin:.4g} rad" if self.least_margin else ""
                 return Infeasible(
-                    f"no three fingers of the {what} hold the load there{wanted} (in inner pyramids of "
+                    f"no three fingers of the {what} hold the load {where}{wanted} (in inner pyramids of "
                     f"{self.graph.facets} facets), so none of its fingers can leave or arrive; more "
                     f"friction, other contacts or more facets may do"
                 )
@@ -296,6 +337,14 @@ class SpaceRegraspProblem(ArrayValue):
             f"{len(self.directions)} directions of the load, of which {holding} triples hold one; try more "
             f"candidates, orientations, facets or friction, a larger max_turn, or a smaller least_margin"
         )
+
+
+def _turn(u: Array, v: Array) -> tuple[float, Array | None]:
+    """The turn of the object that takes the load from one direction to another, and its axis."""
+    if (u == v).all():
+        return 0.0, None
+    across = np.cross(v, u)
+    return _angle(u, v), across / np.linalg.norm(across)
 
 
 def _angle(a: Array, b: Array) -> float:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import atan, cos, pi, tan
+from math import atan, ceil, cos, pi, tan
 from typing import Literal
 
 import numpy as np
@@ -15,6 +15,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import eased
 from regrasp.planning.holds.sequences import Sequence
+from regrasp.planning.holds.stances import Places
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import ANGLE, FORCE, recorded
@@ -67,29 +68,56 @@ def chosen_states(
     goal: tuple[int, ...],
     load: Wrench,
     angles: Array,
+    goal_angle: float,
     criteria: Criteria,
     one_finger: bool,
     least: float = 0.0,
+    max_turn: float = pi,
 ) -> list[Chosen]:
     """The first grasp's state, that of every hold, and the last grasp's, each chosen by itself.
+
+    goal_angle: of the object in the end [rad]. Where the object turns by more than ``max_turn`` [rad] from
+    one to the next, states of the contacts of both are between.
 
     Holds are chosen for the objective, whole grasps for the widest force margin: every finger works. So are
     holds of which the objective would leave one finger idle, unless ``one_finger`` may hold. least: angle
     margin [rad] that every hold keeps, whatever it is chosen for.
     """
-    turned = _unwrapped([float(angles[o]) for _, _, o in sequence.holds])
+    turned = _unwrapped([0.0, *(float(angles[o]) for _, _, o in sequence.holds), goal_angle])
     whole = replace(criteria, objective=FORCE)
-    states = [chosen_state(start, contacts, load, whole)]
-    for k, ((i, j, _), angle) in enumerate(zip(sequence.holds, turned, strict=True)):
-        beside = [abs(b - a) for a, b in pairwise(turned[max(k - 1, 0) : k + 2])]
-        ease = cos(max(beside, default=0.0) / 2) * (1 - 1e-9)  # forces grow while the object turns
-        seen = turned_load(load, angle)
-        state = chosen_state((i, j), contacts, seen, criteria, ease)
+    pieces = [pieces_of(b - a, max_turn) for a, b in pairwise(turned)]
+    sizes = [abs(b - a) / n for (a, b), n in zip(pairwise(turned), pieces, strict=True)]
+
+    def at(places: Places, angle: float, criteria: Criteria, ease: float) -> Chosen:
+        return replace(chosen_state(places, contacts, turned_load(load, angle), criteria, ease), angle=angle)
+
+    def between(before: Places, after: Places, k: int) -> list[Chosen]:
+        """States on the way to the state of place k."""
+        a, step = turned[k - 1], (turned[k] - turned[k - 1]) / pieces[k - 1]
+        every = tuple(dict.fromkeys((*before, *after)))
+        ease = eased_by(sizes[k - 1])
+        return [at(every, a + q * step, whole, ease) for q in range(1, pieces[k - 1])]
+
+    states = [at(start, 0.0, whole, eased_by(sizes[0]))]
+    for k, (i, j, _) in enumerate(sequence.holds, 1):
+        ease = eased_by(max(sizes[k - 1 : k + 1]))
+        state = at((i, j), turned[k], criteria, ease)
         if not one_finger and not state.all_work:
-            state = chosen_state((i, j), contacts, seen, whole, ease)
-        states.append(replace(kept(state, contacts, criteria, ease, least), angle=angle))
-    last = chosen_state(goal, contacts, turned_load(load, turned[-1]), whole)
-    return [*states, replace(last, angle=turned[-1])]
+            state = at((i, j), turned[k], whole, ease)
+        way = between(states[-1].places, (i, j), k)
+        states += [*way, replace(kept(state, contacts, criteria, ease, least), angle=turned[k])]
+    way = between(states[-1].places, goal, len(turned) - 1)
+    return [*states, *way, at(goal, turned[-1], whole, eased_by(sizes[-1]))]
+
+
+def pieces_of(turn: float, max_turn: float) -> int:
+    """Into how many steps a turn [rad] of steps of ``max_turn`` at most falls."""
+    return max(ceil(abs(turn) / max_turn - 1e-9), 1)
+
+
+def eased_by(turn: float) -> float:
+    """Fraction of the force limits that leaves room for forces to grow in a turn [rad]; 1 without any."""
+    return cos(turn / 2) * (1 - 1e-9) if turn else 1.0
 
 
 def kept(
@@ -121,11 +149,11 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
                 s.grasp,
                 s.load,
                 s.places,
-                frictions(s, 0 < k < len(states) - 1),
+                frictions(s, len(s.places) < len(states[0].places)),
                 list(s.limits),
                 _in_use(s.forces),
             )
-            for k, s in enumerate(states)
+            for s in states
         ],
         unit,
     )
@@ -140,8 +168,12 @@ def regrasp_of(
 ) -> RegraspPlan:
     """The steps between states that follow one another."""
     steps = [step_between(a, b, contacts, scaling, reserve, b.angle - a.angle) for a, b in pairwise(states)]
-    margin = min(state.margin for state in states[1:-1])
-    return RegraspPlan(tuple(steps), tuple(s.angle for s in states), margin)
+    return RegraspPlan(tuple(steps), tuple(s.angle for s in states), least_margin(states))
+
+
+def least_margin(states: list[Chosen]) -> float:
+    """The least angle margin [rad] of the holds, in which a finger is free."""
+    return min(state.margin for state in states if len(state.places) < len(states[0].places))
 
 
 def chosen_state(

@@ -58,11 +58,11 @@ class RegraspObstacle:
 
 def why_not(problem: Asked) -> Infeasible:
     """The error that says why a problem has no plan."""
-    unheld = _unheld_end(problem)
+    unheld = unheld_end(problem)
     if unheld is not None:
         return unheld
-    graph, (start, goal, last) = problem.graph, problem.places
-    parts = [_components(graph, places, o) for places, o in ((start, 0), (goal, last))]
+    graph, (start, goal, _) = problem.graph, problem.places
+    parts = [_components(graph, places) for places in (start, goal)]
     if problem.least_margin > 0 and possible_on(problem, graph):
         margin = widest_margin(problem)
         return Infeasible(
@@ -80,9 +80,10 @@ def why_not(problem: Asked) -> Infeasible:
     return Infeasible(f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}", obstacle)
 
 
-def _components(graph: HoldGraph, places: tuple[int, ...], o: int) -> tuple[int, ...]:
-    """The components of an end's points that hold there, or of all its points if none do."""
-    held = {v for i in places for j in places if i != j and graph.margin(i, j, o) >= 0 for v in (i, j)}
+def _components(graph: HoldGraph, places: tuple[int, ...]) -> tuple[int, ...]:
+    """The components of an end's points that hold at any orientation, or of all its points if none do."""
+    margins = graph.margins.max(axis=0)
+    held = {v for i in places for j in places if i != j and margins[graph.pair(i, j)] >= 0 for v in (i, j)}
     component = graph.components()
     return tuple(sorted({int(component[i]) for i in held or places}))
 
@@ -92,13 +93,11 @@ def _reason(problem: Asked, start: tuple[int, ...], goal: tuple[int, ...]) -> st
     for what, places, o in (("start", ends[0], 0), ("goal", ends[1], last)):
         pairs = [graph.pair(i, j) for k, i in enumerate(places) for j in places[k + 1 :]]
         held: NDArray[np.bool_] = np.any(graph.margins[:, pairs] >= 0, axis=1)
-        if not held[o]:
-            some = ", ".join(f"{degrees(a):.4g}" for a in graph.angles[held][:4])
-            more = ", ..." if held.sum() > 4 else ""
-            where = f"only at {some}{more} deg" if some else "and at no other orientation"
+        if not held.any():
+            others = f", nor at any of {len(held) - 1} others that all three may turn the object to"
             return (
-                f"no two fingers of the {what} hold the load at {degrees(graph.angles[o]):.4g} deg, "
-                f"{where}, so none of its fingers can leave or arrive"
+                f"no two fingers of the {what} hold the load at {degrees(graph.angles[o]):.4g} deg"
+                f"{others if len(held) > 1 else ''}, so none of its fingers can leave or arrive"
             )
     count = int((graph.margins.max(axis=0) >= 0).sum())
     common = tuple(sorted(set(start) & set(goal) - {-1}))
@@ -132,7 +131,7 @@ def _remedy(problem: Asked, obstacle: RegraspObstacle) -> str:
     return f"there would be one {', or '.join(ways)}"
 
 
-def _unheld_end(problem: Asked) -> Infeasible | None:
+def unheld_end(problem: Asked) -> Infeasible | None:
     """The error of an end that even three fingers cannot hold."""
     graph, (start, goal, last) = problem.graph, problem.places
     for what, places, o in (("start", start, 0), ("goal", goal, last)):
