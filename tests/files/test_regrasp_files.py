@@ -699,6 +699,7 @@ def test_regrasp_that_cannot_be(capsys: pytest.CaptureFixture[str], tmp_path: Pa
             ("friction = 0.6", "friction = 0.001"),
             ("[0.0, -2.0]", "[-2.0, 0.0]"),
             ("orientations = 24", "orientations = 1"),
+            ("goal_degrees = 180.0", "goal_degrees = 0.0"),
         )
     )
     status, out, err = regrasp(capsys, "plan", path, "-o", tmp_path / "out")

@@ -24,10 +24,10 @@ def plan_regrasp(
 
     Every step is a removal, an exchange of one of two fingers that hold for the third, or an addition, while
     the object may turn; or it turns the object alone. All three fingers turn it where it has to turn by more
-    than one step may: before one leaves, after the last arrives and between. A finger moves where it goes, without
-    force, to another point; exchanges between the points where the three stand need no move. Of sequences of
-    as many moves and as wide a margin, to 1e-6 rad, that of fewest steps is taken, then of least turning.
-    With ``weights`` the one of least cost.
+    than one step may: before one leaves, after the last arrives and between. A finger moves where it goes,
+    without force, to another point; exchanges between the points where the three stand need no move. Of
+    sequences of as many moves and as wide a margin, to 1e-6 rad, that of fewest steps is taken, then of least
+    turning. With ``weights`` the one of least cost.
 
     outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
     ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
