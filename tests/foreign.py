@@ -113,6 +113,11 @@ def soft_pair(friction=0.5, torsion=0.25, limit=None):
     return grasp, load, np.array([[5, 1.5, 0, 1.0], [-5, 1.5, 0, 1.0]])
 
 
+def out_of_balance(grasp, residual):
+    """Changes of forces, the least ones, by which G f + w becomes larger by ``residual``, (n, d or 4)."""
+    return (np.linalg.pinv(grasp.matrix) @ residual).reshape(len(grasp), -1)
+
+
 def places(grasp: rg.Grasp, forces, load: rg.Wrench | None = None):
     """A plan for each place where a state stands in one: (where, plan), with the same state throughout."""
     d = grasp.dimension

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from foreign import Plan, Record, course, cross, places, turn
+from foreign import Plan, Record, course, cross, out_of_balance, places, turn
 from regrasp.verification import verify_setpoints
 
 pytestmark = pytest.mark.contract
@@ -70,11 +70,15 @@ def test_slack_and_residual_are_the_worst_of_all_instants() -> None:
 
 
 def test_a_residual_of_exactly_the_tolerance() -> None:
+    """Beside a load of 2^-20 across, which a finger in the middle holds."""
     grasp, forces = cross()
     forces[:, 1] = 0
-    for off, fine in (EPS, True), (nextafter(EPS, 1), False):
-        for load in ([off, 0], [-off, 0], [0, off], [0, -off]):
-            assert good(grasp, forces, rg.Wrench(load)) == {fine}
+    for across in (0, 1):
+        held = 2.0**-20 * np.eye(2)[across]
+        whole = rg.Grasp([*grasp, rg.Contact([0, 0], held, 0.5, name="E")])
+        for off, fine in (EPS, True), (nextafter(EPS, 1), False), (-EPS, True), (nextafter(-EPS, -1), False):
+            load = rg.Wrench(off * np.eye(2)[1 - across] - held)
+            assert good(whole, [*forces, held], load) == {fine}
 
 
 def test_torques_are_measured_by_the_farthest_contact() -> None:
@@ -86,7 +90,8 @@ def test_torques_are_measured_by_the_farthest_contact() -> None:
     scale = np.hypot(1, 0.5)
     for times, fine in (0.999, True), (1.001, False):
         torque = times * EPS * 4 * np.sqrt(2) * scale
-        assert good(grasp, forces, rg.Wrench([0, 0], torque)) == {fine}
+        off = forces + out_of_balance(grasp, [0, 0, torque])
+        assert good(grasp, off, rg.Wrench([0, 0])) == {fine}
 
 
 def test_torques_on_a_contact_at_the_centre_are_measured_by_1() -> None:

@@ -103,20 +103,29 @@ def test_one_finger_takes_no_other_load() -> None:
 
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("sign", [1, -1])
-def test_the_load_at_instants_is_the_plans(axis, sign) -> None:
-    plan = steady()
+@pytest.mark.parametrize(("held", "most"), [(2.0**-20, 2.0**-40), (2.0**-34, 2.0**-44)])
+def test_the_load_at_instants_is_the_plans(axis, sign, held, most) -> None:
+    """To 2^-40 of the forces, of 1, and to 2^-10 of the load."""
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, -held]), forces + np.array([0, held / 4]))
+    plan = Plan("rotation", None, state, state)
     size = sqrt(2) if axis == 2 else 1.0  # torque over the arm
     for at in (0.0, 1.0):
-        for off, good in (0.9 * 2.0**-40, True), (1.1 * 2.0**-40, False):
+        for off, good in (0.9 * most, True), (1.1 * most, False):
 
             def load(t, at=at, off=off):
-                vector = np.zeros(3)
-                vector[axis] = sign * off * size * (t == at)
+                vector = np.array([0, -held, 0])
+                vector[axis] += sign * off * size * (t == at)
                 return rg.Wrench.from_vector(vector)
 
             found = rg.verify(plan, load)
             assert found.ok == good
             assert good or f"at t = {at:g} s the load given differs from the plan's by" in found.violations[0]
+
+
+def test_a_small_load_given_is_not_that_of_a_plan_without_load() -> None:
+    assert not rg.verify(steady(), lambda t: rg.Wrench([0, 1e-13])).ok
+    assert rg.verify(steady(), lambda t: rg.Wrench([0, 0])).ok
 
 
 def test_gaps_are_measured_between_all_instants() -> None:

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 # Three tenths of a second added up are 0.30000000000000004 s.
 _ROUNDING = 2.0**-50
 
+_LARGEST = float(np.finfo(float).max)
+
 PAPER_CONTROL = (1.0, 1.0, 0.5, 0.0, 0.0)
 """Five control values with zero slope at both ends, as in Section V (values reconstructed)."""
 
@@ -62,6 +64,8 @@ class TimeScaling(ArrayValue):
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
         if not 1 <= whole(self.degree, "degree", least=0) < len(values):
             raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {shown(self.degree)}")
+        if duration * _LARGEST < len(values) ** 2:  # a bound on duration |T'|
+            raise InvalidInput(f"duration is {shown(duration)} s, in which T falls faster than any number")
         object.__setattr__(self, "degree", int(self.degree))
         object.__setattr__(self, "duration", duration)
         object.__setattr__(self, "control", values)

@@ -25,6 +25,9 @@ from regrasp.plans.turning import TurningPath
 if TYPE_CHECKING:
     import pandas
 
+_LARGEST = float(np.finfo(float).max)
+_SHORT = 1e-3  # [s]: forces above 1e300 N apart, no rate is too large in more time
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Transition(ArrayValue, Documented, Pictured):
@@ -73,6 +76,17 @@ class Transition(ArrayValue, Documented, Pictured):
                 f"path must be a StraightPath, a SampledPath or a TurningPath, got {shown(self.path)}"
             )
         self.path.check(self.start, self.end, self.scaling)
+        if self.duration < _SHORT:
+            self._refuse_endless_rates()
+
+    def _refuse_endless_rates(self) -> None:
+        """|T'| of a B-spline is at most (number of control values)^2 over the duration."""
+        largest = max(1.0, float(abs(self.start.forces).max()), float(abs(self.end.forces).max()))
+        if self.duration * (_LARGEST / largest) < len(self.scaling.control) ** 2:
+            raise InvalidInput(
+                f"forces up to {largest:.3g} N cannot change within {self.duration:.3g} s at a finite rate; "
+                f"give a longer duration"
+            )
 
     @property
     def kind(self) -> str:

@@ -3,9 +3,9 @@
 Shares no code with the planner: it imports mechanics only, and of these only the values.
 """
 
-from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.exact import HELD, RESOLUTION
 from regrasp.verification.plans import verify
 from regrasp.verification.sampling import verify_setpoints
 from regrasp.verification.verdict import Verification
 
-__all__ = ["RESOLUTION", "Verification", "verify", "verify_setpoints"]
+__all__ = ["HELD", "RESOLUTION", "Verification", "verify", "verify_setpoints"]

@@ -6,11 +6,13 @@ rounding and, for cones and limits, with zero tolerance:
     cone         f.n >= 0   and   |f|^2 |n|^2 <= (1 + mu^2) (f.n)^2
     soft finger  f.n >= 0   and   e^2 (|f|^2 |n|^2 - (f.n)^2) + mu^2 m^2 |n|^2 <= mu^2 e^2 (f.n)^2
     limit        |f|^2 <= max_force^2, of a soft finger |f|^2 + (mu m / e)^2
-    equilibrium  |sum f_i + F|^2 <= eps^2 s^2   and   |sum r_i x f_i + tau|^2 <= eps^2 s^2 l^2
+    equilibrium  |sum f_i + F|^2 <= a^2   and   |sum r_i x f_i + tau|^2 <= a^2 l^2
+    with         a = min(2^-40 s, 2^-10 w)
 
-with s the largest of |F|, |tau| / l and |f_i|, l the largest |r_i|, and eps = 2^-40: forces in doubles cannot
-cancel to nothing. Friction below 2^-40 counts as 2^-40, for the same reason: a double cannot express a
-direction more finely.
+where s is the largest of |F|, |tau| / l and |f_i|, l the largest |r_i|: forces in doubles cannot cancel to
+nothing. w is the largest |F| or |tau| / l that the plan has to hold at any time: forces 2^30 times the load
+and more, which round to a part of it, must hold it to a thousandth all the same. Where a plan has no load at
+all only s counts. Friction below 2^-40 counts as 2^-40: a double cannot express a direction more finely.
 """
 
 from collections.abc import Sequence
@@ -29,24 +31,36 @@ from regrasp.mechanics.value import one_line
 RESOLUTION = Fraction(1, 2**40)
 """eps above: largest residual relative to the forces, and the least friction told from none."""
 
+HELD = Fraction(1, 2**10)
+"""The largest residual relative to the load, however large the forces."""
+
 Vector = list[Fraction]
 
 
 def check_state(state: GraspState, label: str) -> tuple[float, float, list[str]]:
     """(residual, least cone slack, violations) of one state; ``label`` names it in the violations."""
-    return check_forces(state.grasp, state.forces, exact(state.load.vector.tolist()), label)
+    asked = load_size(state.grasp, state.load.vector[None])
+    return check_forces(state.grasp, state.forces, exact(state.load.vector.tolist()), asked, label)
 
 
-def check_forces(grasp: Grasp, forces: Array, load: Vector, label: str) -> tuple[float, float, list[str]]:
-    """The same of finite forces (n, d), or (n, 4) where a finger is soft, under a load (3,) or (6,)."""
+def check_forces(
+    grasp: Grasp, forces: Array, load: Vector, asked: float, label: str
+) -> tuple[float, float, list[str]]:
+    """The same of finite forces (n, d), or (n, 4) where a finger is soft, under a load (3,) or (6,).
+
+    ``asked`` is w above [N]; 0 for a plan without load.
+    """
     rows = [_Force(contact, force) for contact, force in zip(grasp.contacts, forces.tolist(), strict=True)]
-    residual, violations = _check_equilibrium(rows, load, label)
+    residual, violations = _check_equilibrium(rows, load, asked, label)
     slacks = [inf]
     for row in rows:
         slack, broken = _check_force(row, f"{label}: force of {one_line(str(row.contact.name))}")
         slacks.append(slack)
         violations += broken
     return residual, min(slacks), violations
+
+
+_LEAST, _MOST = 5e-324, float(np.finfo(float).max)
 
 
 class _Force:
@@ -80,7 +94,7 @@ def _check_force(row: _Force, what: str) -> tuple[float, list[str]]:
     return slack, broken
 
 
-def _check_equilibrium(rows: list[_Force], load: Vector, label: str) -> tuple[float, list[str]]:
+def _check_equilibrium(rows: list[_Force], load: Vector, asked: float, label: str) -> tuple[float, list[str]]:
     d = len(rows[0].f)
     force, torque = load[:d], load[d:]
     for row in rows:
@@ -102,7 +116,20 @@ def _check_equilibrium(rows: list[_Force], load: Vector, label: str) -> tuple[fl
             f"{label}: not in equilibrium, G f + w_ext is {relative:.3g} of the largest force "
             f"(allowed {float(RESOLUTION):.1e})"
         ]
+    if asked and residual2 > (HELD * Fraction(asked)) ** 2:
+        return relative, [
+            f"{label}: the load is not held, G f + w_ext is {root(residual2) / asked:.3g} of it (allowed "
+            f"{float(HELD):.1e}): forces {root(scale2) / asked:.3g} times the load round to more than that"
+        ]
     return relative, []
+
+
+@np.errstate(all="ignore")
+def load_size(grasp: Grasp, loads: Array) -> float:
+    """The largest |F| and |tau| / l of loads (m, 3) or (m, 6) [N]; 0 only where all of them are 0."""
+    d, arm = grasp.dimension, float(np.hypot.reduce(grasp.positions, axis=1).max()) or 1.0
+    size = float(max(np.hypot.reduce(part, axis=1).max() for part in (loads[:, :d], loads[:, d:] / arm)))
+    return min(max(size, _LEAST), _MOST) if loads.any() else 0.0
 
 
 @np.errstate(all="ignore")

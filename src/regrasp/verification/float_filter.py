@@ -8,7 +8,7 @@ tangential forces are within 16 u |f| of the true ones, so that
 
 prove a force inside its cone and limit, with 2^13 u where 16 u (1 + mu) would do. A sum of n forces, or of
 their torques over the largest arm l, is within 8 (n + 1)^2 u of the largest of |f_i|, |F|, |tau| / l and
-|m_i| / l: by that much less than 2^-40 a row must be in equilibrium.
+|m_i| / l: by that much less than min(2^-40 s, 2^-10 w) a row must be in equilibrium.
 """
 
 from math import inf
@@ -19,9 +19,9 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import torque
-from regrasp.verification.exact import RESOLUTION, check_forces, exact
+from regrasp.verification.exact import HELD, RESOLUTION, check_forces, exact, load_size
 
-_DOUBT = float(RESOLUTION)
+_DOUBT, _HELD = float(RESOLUTION), float(HELD) * (1 - float(RESOLUTION))
 _UNIT = 2.0**-53
 _LEAST, _MOST = 2.0**-480, 2.0**480
 
@@ -37,15 +37,18 @@ class Checked(NamedTuple):
 
 def check_rows(grasp: Grasp, forces: Array, loads: Array, labels: str) -> Checked:
     """Check forces (m, n, d) against loads (m, 3 or 6); ``labels`` names row k by ``labels.format(k)``."""
-    broken, *found = judge_rows(grasp, forces, loads, labels)
+    broken, *found = judge_rows(grasp, forces, loads, load_size(grasp, loads), labels)
     return Checked([violation for row in broken.values() for violation in row], *found)
 
 
 @np.errstate(all="ignore")
 def judge_rows(
-    grasp: Grasp, forces: Array, loads: Array, labels: str, first: int = 0
+    grasp: Grasp, forces: Array, loads: Array, asked: float, labels: str, first: int = 0
 ) -> tuple[dict[int, list[str]], float, float, float]:
-    """What is broken in each row that is not good, counted from ``first``, and the rest of ``Checked``."""
+    """What is broken in each row that is not good, counted from ``first``, and the rest of ``Checked``.
+
+    ``asked`` is the size of the plan's load [N].
+    """
     d, mu, limits = grasp.dimension, grasp.frictions, grasp.max_forces
     arm = grasp.size if grasp.positions.any() else 1.0
     pushed = forces[..., :d]
@@ -69,7 +72,8 @@ def judge_rows(
     inside |= ~forces.any(axis=-1)  # the apex
     total = pushed.sum(axis=1) + loads[:, :d], torques.sum(axis=1) + loads[:, d:] / arm
     off = np.maximum(*map(_length, total))
-    spare = _DOUBT * size - 8 * (len(grasp) + 1) ** 2 * _UNIT * most
+    allowed = np.minimum(_DOUBT * size, _HELD * asked) if asked else _DOUBT * size
+    spare = allowed - 8 * (len(grasp) + 1) ** 2 * _UNIT * most
     settled = inside.all(axis=1) & (off < spare) & (size > _LEAST) & (size < _MOST)
     settled &= _LEAST < arm < _MOST
     settled |= ~forces.any(axis=(1, 2)) & ~loads.any(axis=1)
@@ -79,7 +83,7 @@ def judge_rows(
     broken = {}
     for row in np.flatnonzero(~settled).tolist():
         load, label = exact(loads[row].tolist()), labels.format(first + row)
-        residual, slack, violations = check_forces(grasp, forces[row], load, label)
+        residual, slack, violations = check_forces(grasp, forces[row], load, asked, label)
         if violations:
             broken[first + row] = violations
         slacks.append(slack)

@@ -13,7 +13,7 @@ import numpy as np
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.wrench import Wrench
-from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.exact import HELD, RESOLUTION
 from regrasp.verification.protocols import Plan
 
 # Where between two instants the gap is measured: unevenly, so that no period hides.
@@ -36,8 +36,11 @@ def check_load(
         raise InvalidInput("a load function is checked for point contacts; a finger of these is soft")
     length = float(_lengths(grasp.positions).max()) or 1.0
     scale = max(_sizes(loads, length).max(), float(abs(forces).max()))
-    off = _sizes(_at(load, times, loads.shape[1]) - loads, length)
-    if (off > float(RESOLUTION) * scale).any():
+    given = _at(load, times, loads.shape[1])
+    off = _sizes(given - loads, length)
+    asked = max(_sizes(loads, length).max(), _sizes(given, length).max())
+    small = min(float(RESOLUTION) * scale, float(HELD) * asked)  # as little as may be out of balance
+    if (off > small).any():
         k = int(off.argmax())
         broken = f"at t = {times[k]:.6g} s the load given differs from the plan's by {off[k]:.3g}"
         return float(off[k]), False, [broken]
@@ -46,7 +49,7 @@ def check_load(
     gap = measured = float(_sizes(_at(load, between, loads.shape[1]) - chord, length).max())
     if curvature is not None:
         gap = curvature * float(np.diff(times).max()) ** 2 / 8
-        if measured > gap * (1 + 1e-6) + float(RESOLUTION) * scale:
+        if measured > gap * (1 + 1e-6) + small:
             broken = (
                 f"the load given bends more than the curvature {curvature:g} given: between instants it "
                 f"differs from the plan's by {measured:.3g}, more than {gap:.3g}"
@@ -61,7 +64,7 @@ def check_load(
     least = float(np.linalg.svd(matrix, compute_uv=False)[-1]) if columns >= rows else 0.0
     # Force and torque may both be off by the gap.
     change = np.sqrt(2) * gap / least if least > 1e-12 else np.inf
-    if gap > float(RESOLUTION) * scale and not change <= room:
+    if gap > small and not change <= room:
         broken = (
             f"between instants the load given differs from the plan's by up to {gap:.3g}: forces that "
             f"balance it may differ by {change:.3g}, more than the margins take ({room:.3g}); plan with "

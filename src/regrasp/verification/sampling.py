@@ -15,7 +15,7 @@ from regrasp.errors import shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
-from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.exact import RESOLUTION, load_size
 from regrasp.verification.float_filter import judge_rows
 from regrasp.verification.protocols import Plan
 from regrasp.verification.records import deciding_forces
@@ -61,11 +61,12 @@ def verify_setpoints(
     else:
         at = plan.course.times
         loads = np.stack([np.interp(times, at, column) for column in plan.course.loads.T], axis=-1)
+    asked = load_size(start.grasp, start.load.vector[None] if plan.course is None else plan.course.loads)
     broken: dict[int, list[str]] = {}
     residuals, angle_margins, slacks = [0.0], [inf], [inf]
     for first in range(0, len(forces), _BLOCK):
         rows = slice(first, first + _BLOCK)
-        found, *rest = judge_rows(start.grasp, forces[rows], loads[rows], "set-point {}", first)
+        found, *rest = judge_rows(start.grasp, forces[rows], loads[rows], asked, "set-point {}", first)
         broken |= found
         for known, value in zip((residuals, angle_margins, slacks), rest, strict=True):
             known.append(value)

@@ -32,6 +32,7 @@ from regrasp.verification.exact import (
     dot,
     exact,
     least_angle,
+    load_size,
     root,
 )
 from regrasp.verification.float_filter import Checked
@@ -73,8 +74,9 @@ def check_turn(plan: Plan, turn: Turn) -> Checked:
             (f"between {float(a):.6g} and {float(b):.6g} rad", turning.between(a, b), turn.middles[k])
             for k, (a, b) in enumerate(pairwise(angles))
         ]
+    asked = load_size(grasp, start.load.vector[None])
     for label, load, forces in states:
-        residual, slack, violations = check_forces(grasp, forces, load, label)
+        residual, slack, violations = check_forces(grasp, forces, load, asked, label)
         residuals.append(residual)
         slacks.append(slack)
         angle_margins.append(least_angle(grasp, forces))

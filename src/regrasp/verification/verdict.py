@@ -13,7 +13,8 @@ class Verification(ArrayValue):
 
     Args:
         violations: each broken condition in words; none for a valid plan.
-        worst_residual: largest equilibrium residual checked, relative to the forces [-].
+        worst_residual: largest equilibrium residual checked, relative to the forces [-]. A plan is not
+            verified above 2^-40, nor where the residual is more than 2^-10 of its largest load.
         least_angle: smallest angle margin of the contacts in use [rad], for information; infinite where none
             is.
         least_cone_slack: smallest (1 + mu^2) - |f|^2 / (f.n)^2 over forces, exact before rounding; >= 0

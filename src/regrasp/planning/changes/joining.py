@@ -15,6 +15,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.ends import Change
 from regrasp.planning.changes.given_ends import scaling_of
+from regrasp.planning.changes.lost_loads import refuse_lost, refuse_lost_load
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.options import INSTANTS, ChangeOptions, PlanOptions
@@ -106,7 +107,7 @@ def joined(
     leaving = tuple(grasp.names[i] for i in change.leaving)
     arriving = tuple(grasp.names[i] for i in change.arriving)
     if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
-        return Transition(start, end, scaling, record, leaving, arriving)
+        return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving))
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = ~np.isin(np.arange(len(grasp)), (*change.leaving, *change.arriving))
     least[~stays] = 0.0
@@ -119,7 +120,7 @@ def joined(
             plan = plan.fastest(rates)
         fast_enough = not has_rates or scaling is None or bool((plan.steepest <= rates * (1 + 1e-12)).all())
         if demands.path_objective is None and not demands.idle_times and fast_enough:
-            return plan
+            return refuse_lost_load(plan)
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
         scaling = plan.scaling
     assert scaling is not None  # a load in time brings its clock
@@ -135,6 +136,8 @@ def joined(
             f"path_objective {shown(objective)} would jump at both ends; give rate_limit as well"
         )
     backend = DEFAULT_BACKEND if demands.method == "auto" else demands.method
+    ends = load.vectors[[0, -1]]
+    refuse_lost(grasp, np.stack([start.forces, end.forces]), ends)  # before a program with numbers far apart
     path = _path(change, scaling, load, rates, least, stays, criteria, demands, backend)
     record = replace(
         record,
@@ -142,7 +145,7 @@ def joined(
         path_objective=objective,
         rate_limits=tuple(rates.tolist()) if has_rates else (),
     )
-    return Transition(start, end, scaling, record, leaving, arriving, path)
+    return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving, path))
 
 
 def _path(

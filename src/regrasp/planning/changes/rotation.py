@@ -26,6 +26,7 @@ from regrasp.planning.changes.given_ends import (
     scaling_of,
 )
 from regrasp.planning.changes.joining import refuse_weak_ends
+from regrasp.planning.changes.lost_loads import refuse_lost_load
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
 from regrasp.planning.states.objectives import Objective, recorded
@@ -135,7 +136,7 @@ def plan_rotation(
     _refuse_high_forces(plan)
     if criteria.presses:
         refuse_weak_ends(plan.start, plan.end, np.array(criteria.least_normals(grasp)))
-    return plan
+    return refuse_lost_load(plan)
 
 
 def _turn_asked(angle: float | None, degrees: float | None) -> float:

@@ -14,6 +14,7 @@ from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import eased
+from regrasp.planning.changes.lost_loads import refuse_lost_load
 from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.holds.stances import Places
 from regrasp.planning.states.choosing import choose_forces
@@ -220,7 +221,7 @@ def step_between(
     arriving = tuple(str(contacts[i].name) for i in places if i not in before.places)
     record = Record(reserve, (_choice("start", before), _choice("end", after)))
     path = STRAIGHT if turn == 0 else TurningPath([0.0, turn], [start.forces, end.forces], axis)
-    return Transition(start, end, scaling, record, leaving, arriving, path)
+    return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving, path))
 
 
 def _in_use(forces: Array) -> tuple[bool, ...]:

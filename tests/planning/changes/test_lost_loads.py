@@ -1,0 +1,109 @@
+"""No plan is handed out whose forces round to more than its load, or change at no finite rate."""
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+
+pytestmark = [pytest.mark.contract, pytest.mark.filterwarnings("error")]
+
+FLAT = rg.Grasp(
+    [
+        rg.Contact([-4, -4], normal=[1, 1], friction=0.3),
+        rg.Contact([4, -5], normal=[-1, 2], friction=0.3),
+        rg.Contact([0, 8], normal=[0, -1], friction=0.3),
+    ]
+)
+SOLID = rg.Grasp(
+    [
+        rg.Contact([-1, 0, 0.1], normal=[1, 0, 0], friction=0.5),
+        rg.Contact([1, 0.5, 0], normal=[-1, 0, 0], friction=0.5),
+        rg.Contact([1, -0.5, 0], normal=[-1, 0, 0], friction=0.5),
+        rg.Contact([0, 1, 0], normal=[0, -1, 0], friction=0.5),
+    ]
+)
+
+
+def planned(verb, grasp, load, **options):
+    last = grasp.names[-1]
+    if verb == "removal":
+        return rg.plan_removal(grasp, last, load=load, **options)
+    if verb == "addition":
+        return rg.plan_addition(grasp.without(last), grasp[last], load=load, **options)
+    if verb == "exchange":
+        new = rg.Contact(1.1 * grasp[last].position, grasp[last].normal, grasp[last].friction, name="new")
+        return rg.plan_exchange(grasp, last, new, load=load, **options)
+    axis = None if grasp.dimension == 2 else [1, 0, 0]
+    return rg.plan_rotation(grasp, 0.3, axis=axis, load=load, **options)
+
+
+def tried(*call, **options):
+    """(the plan, nothing), or (None, the words it was refused with)."""
+    try:
+        return planned(*call, **options), ""
+    except rg.InvalidInput as refusal:
+        return None, str(refusal)
+
+
+VERBS = ("removal", "addition", "exchange", "rotation")
+
+
+@pytest.mark.parametrize("grasp", [FLAT, SOLID], ids=["plane", "space"])
+@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("power", [-9, -12, -14, -16, -30, -300])
+def test_every_plan_holds_its_load_or_is_refused(grasp, verb, power) -> None:
+    weight = np.array([-1.5, -3.5]) if grasp.dimension == 2 else np.array([0, 0.3, -1.0])
+    plan, words = tried(verb, grasp, rg.Wrench(weight * 10.0**power), max_force=1.0)
+    if plan is None:
+        assert power <= -12
+        assert "times the load and round to" in words
+    else:
+        assert power >= -14
+        assert rg.verify(plan).ok
+
+
+@pytest.mark.parametrize("power", [-12, -16])
+def test_paths_through_instants_hold_their_load_or_are_refused(power) -> None:
+    load = rg.LoadSeries([0, 1], np.array([[-1.5, -3.5, 0], [1.5, -3.5, 0]]) * 10.0**power)
+    if power == -12:
+        assert rg.verify(rg.plan_removal(FLAT, "P3", load=load, max_force=1.0)).ok
+    else:
+        with pytest.raises(rg.InvalidInput, match="times the load and round to"):
+            rg.plan_removal(FLAT, "P3", load=load, max_force=1.0)
+
+
+def test_a_still_torque_lost_in_a_turn_is_refused() -> None:
+    with pytest.raises(rg.InvalidInput, match="times the load and round to"):
+        rg.plan_rotation(FLAT, 0.3, load=rg.Wrench([-1.5e-15, -3.5e-15], 1e-15), max_force=1.0)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("duration", [5e-324, 1e-320, 1e-309, 1e-307, 1e-306, 1e-300, 1e-30, 1e308])
+def test_every_duration_is_kept_or_refused(verb, duration) -> None:
+    for force in (1.0, 1e6):
+        load = rg.Wrench([-1.5 * force, -3.5 * force])
+        plan, words = tried(verb, FLAT, load, duration=duration)
+        if plan is None:
+            assert duration <= 1e-300
+            assert "falls faster than any number" in words or "at a finite rate" in words
+        else:
+            assert rg.verify(plan).ok
+
+
+def test_durations_at_their_limit() -> None:
+    largest = np.finfo(float).max
+    for count, degree in (2, 1), (5, 3):
+        control = tuple(np.linspace(1, 0, count))
+        least = count**2 / largest
+        assert rg.TimeScaling(least * 1.01, control, degree).steepest < np.inf
+        with pytest.raises(rg.InvalidInput, match="falls faster than any number"):
+            rg.TimeScaling(least * 0.99, control, degree)
+    plan = planned("removal", FLAT, rg.Wrench([-150, -350]))
+    peak = max(abs(plan.start.forces).max(), abs(plan.end.forces).max())
+    for times, good in (1.01, True), (0.99, False):
+        scaling = rg.TimeScaling.spline(times * 25 * peak / largest)
+        if good:
+            assert rg.verify(plan.retimed(scaling)).ok
+        else:
+            with pytest.raises(rg.InvalidInput, match="cannot change within"):
+                plan.retimed(scaling)
