@@ -159,3 +159,47 @@ def test_rational_cosines(angle):
 def test_bad_input(options, words):
     with pytest.raises(rg.InvalidInput, match=words):
         rg.plan_rotation(GRASP, **{"load": WEIGHT, **options})
+
+
+THREE = rg.Grasp([*GRASP, rg.Contact([0, -1], [0, 1], 0.5, name="C")])
+
+
+@pytest.mark.parametrize("torque", [0.0, 0.3])
+@pytest.mark.parametrize("turn", [0.3, 2.0, -3.0])
+def test_pieces_are_halved_until_limits_hold(turn, torque) -> None:
+    """A little above what holding needs at every angle; a little below, a state proves the limit too low."""
+    weight = rg.Wrench([0, -2], torque)
+    seen = [turned_load(weight, a) for a in np.linspace(0, turn, 241)]
+    needed = max(rg.choose_state(THREE, load, "peak").value for load in seen)
+    plan = rg.plan_rotation(THREE, turn, load=weight, max_force=1.001 * needed)
+    assert rg.verify(plan).ok
+    assert plan.peak <= 1.001 * needed
+    with pytest.raises(rg.Infeasible, match="no forces of A, B, C") as refused:
+        rg.plan_rotation(THREE, turn, load=weight, max_force=0.99 * needed)
+    assert refused.value.certificate.is_proof
+
+
+@pytest.mark.parametrize("objective", ["angle", "effort"])
+def test_halving_goes_to_a_millionth_of_a_limit(objective) -> None:
+    """Both fingers carry half of what is across; one pushes against the rest, and against the other."""
+    pair = rg.Grasp([rg.Contact([-1, 0], [1, 0], 2.0, name="A"), rg.Contact([1, 0], [-1, 0], 2.0, name="B")])
+    s, c = np.sin(np.linspace(0, 2, 100_001)), np.cos(np.linspace(0, 2, 100_001))
+    needed = np.hypot(2 * abs(s) + abs(c) / 2, c).max()
+    options = {"load": rg.Wrench([0, -2]), "objective": objective}
+    plan = rg.plan_rotation(pair, 2.0, **options, max_force=needed * (1 + 1e-6))
+    assert rg.verify(plan).ok
+    with pytest.raises(rg.Infeasible, match=r"after a turn of|above its limit"):
+        rg.plan_rotation(pair, 2.0, **options, max_force=needed * (1 - 1e-6))
+
+
+@pytest.mark.parametrize("torque", [0.0, 0.3])
+def test_solvers_without_cones_plan_turns_with_facets(torque) -> None:
+    weight = rg.Wrench([0, -2], torque)
+    options = {"load": weight, "max_force": 6.0, "method": "daqp", "objective": "effort"}
+    with pytest.raises(rg.InvalidInput, match="facets"):
+        rg.plan_rotation(THREE, 1.0, **options)
+    plan = rg.plan_rotation(THREE, 1.0, **options, facets=16)
+    assert rg.verify(plan).ok
+    assert {choice.method for choice in plan.record.choices} == {"daqp"}
+    with pytest.raises(rg.InvalidInput, match="facets must be"):
+        rg.plan_rotation(THREE, 1.0, **options, facets=2)

@@ -22,6 +22,7 @@ class Task(Strict):
 
     objective: ObjectiveName = Field("angle", description="what states are chosen for")
     method: Method = option(PlanOptions, "method")
+    facets: int | None = option(PlanOptions, "facets", ge=3)
     duration: Positive | None = option(PlanOptions, "duration")
     rate: Positive = Field(1000.0, description="set-points per second")
     scaling: Literal["spline", "minimum_jerk", "linear"] = Field("spline", description="shape of T(t)")
@@ -63,7 +64,6 @@ class Change(Task):
     rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
     path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
     instants: int = option(ChangeOptions, "instants", ge=3)
-    facets: int | None = option(ChangeOptions, "facets", ge=3)
 
     @property
     def leaving(self) -> tuple[str, ...]:

@@ -95,6 +95,15 @@ class Change(NamedTuple):
         )
 
 
+def shared(criteria: Criteria, *ends: End) -> Criteria:
+    """The criteria of a path: the loosest limit and the least reserve of its ends, between which it lies."""
+    limits, reserve = [end.criteria.max_force for end in ends], min(end.criteria.reserve for end in ends)
+    loosest = None if None in limits else max(limit for limit in limits if limit is not None)
+    if (loosest, reserve) == (criteria.max_force, criteria.reserve):
+        return criteria
+    return replace(criteria, max_force=loosest, reserve=reserve)
+
+
 def state_among(
     state: GraspState, grasp: Grasp, load: Wrench, gone: tuple[int, ...], label: str
 ) -> GraspState:

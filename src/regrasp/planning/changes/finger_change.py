@@ -9,7 +9,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.ends import Change, End, state_among
+from regrasp.planning.changes.ends import Change, End, shared, state_among
 from regrasp.planning.changes.given_ends import grasp_and_load, kept_limits, limited
 from regrasp.planning.changes.joining import Demands, LoadFunction, joined, series_and_clock
 from regrasp.planning.states.criteria import Criteria
@@ -51,7 +51,8 @@ def plan_removal(
         end: the state without it, of the whole grasp or of the remaining contacts; chosen if not given.
         objective: what the state without the finger is chosen for.
         whole_objective: what the state with it is chosen for. The widest force margin, ``force``, gives every
-            finger work; the others may leave one idle.
+            finger work; the others may leave one idle. ``Criteria`` hold limits of their own for that state;
+            the path between keeps the looser ones.
         idle_from: time from which the leaving finger carries no force [s]; the end if not given.
         options
 
@@ -72,6 +73,7 @@ def plan_removal(
     given_end = None if end is None else state_among(end, grasp, last, gone, "end")
     whole = End("start", first, given_start, with_objective(criteria, whole_objective), ())
     rest = End("end", last, given_end, criteria, gone)
+    criteria = shared(criteria, whole, rest)
     change = Change.between(limited(grasp, criteria.max_force), whole, rest, options)
     return joined(change, clock, series, criteria, demands)
 
@@ -122,6 +124,7 @@ def plan_addition(
     new = tuple(range(len(before), len(grasp)))
     rest = End("start", first, given_start, criteria, new)
     whole = End("end", last, end, with_objective(criteria, whole_objective), ())
+    criteria = shared(criteria, rest, whole)
     change = Change.between(limited(grasp, criteria.max_force), rest, whole, options)
     return joined(change, clock, series, criteria, demands)
 
@@ -172,6 +175,7 @@ def plan_exchange(
     chosen_for = criteria if start_objective is None else with_objective(criteria, start_objective)
     held = End("start", first, given_start, chosen_for, tuple(range(len(before), len(grasp))))
     after = End("end", last, given_end, criteria, gone)
+    criteria = shared(criteria, held, after)
     change = Change.between(limited(grasp, criteria.max_force), held, after, options)
     return joined(change, clock, series, criteria, demands)
 

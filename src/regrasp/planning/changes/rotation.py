@@ -1,12 +1,8 @@
 """Planning the turn of an object in its fingers' hold."""
 
 import warnings
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
-from itertools import pairwise
 from math import ceil, cos, pi, radians
-from typing import NamedTuple, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -14,12 +10,11 @@ from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.rotations import unit_axis
-from regrasp.mechanics.rotated_loads import load_between, still_part, turned_load
+from regrasp.mechanics.rotated_loads import still_part, turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import (
     balanced_start,
-    eased,
     grasp_and_load,
     kept_limits,
     limited,
@@ -27,21 +22,23 @@ from regrasp.planning.changes.given_ends import (
 )
 from regrasp.planning.changes.joining import refuse_weak_ends
 from regrasp.planning.changes.lost_loads import refuse_lost_load
-from regrasp.planning.states.choosing import choose_forces
-from regrasp.planning.states.criteria import ChosenForces, Criteria
+from regrasp.planning.changes.turn_states import (
+    STEP,
+    Between,
+    Chooser,
+    halved,
+    middle,
+    on_the_way,
+    reached,
+    within_limits,
+)
+from regrasp.planning.states.choosing import check_facets
+from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import Objective, recorded
 from regrasp.planning.states.options import BALANCE_TOLERANCE, PlanOptions, criteria_of, takes
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.transition import Transition
-from regrasp.plans.turning import TurningPath
 
-STEP = pi / 3
-"""Largest angle between two states of a turn if there are any: forces grow by 1 / cos(pi / 6) = 1.155."""
-
-# How often the step is halved where a state between two angles does not exist.
-_HALVINGS = 4
-# A step this near to pi lets forces grow without bound.
-_NEARLY_PI = 0.95 * pi
 MOST_TURN = 1000.0
 """[rad]: each piece of a turn is planned, so that time grows with it."""
 
@@ -65,8 +62,8 @@ def plan_rotation(
     Two states less than pi apart hold everything between them (docs/facts.md, 6). States are chosen every
     ``STEP`` and left out where none exists, as long as the gap is below pi. Where a part of the load does not
     turn (a torque in the plane, a load along the axis in space), every one of them must exist, and one more
-    between each two, under a turning part that is larger by 1 / cos(step / 2); steps are halved down to
-    ``STEP`` / 16 until it does.
+    between each two, under a turning part that is larger by 1 / cos(step / 2). Steps between which that one
+    does not exist, or forces exceed a limit, are halved, down to ``FINEST``.
 
     Args:
         start: the state to start from; or a grasp, whose state is then chosen under ``load``.
@@ -90,12 +87,13 @@ def plan_rotation(
     turn = _turn_asked(angle, degrees)
     tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
     clock = scaling_of(options.get("duration"), options.get("scaling"))
-    method = options.get("method", "auto")
     given, load = grasp_and_load(start, load)
     about = _axis(axis, given)
     grasp = limited(given, criteria.max_force)
     count = max(ceil(abs(turn) / STEP - 1e-9), 1)
-    chooser = _Chooser(grasp, load, criteria, method, cos(turn / count / 2) * (1 - 1e-9), about)
+    check_facets(options.get("facets"))
+    how = options.get("method", "auto"), options.get("facets")
+    chooser = Chooser(grasp, load, criteria, how, cos(turn / count / 2) * (1 - 1e-9), about)
     choices: list[Choice] = []
     change = 0.0
     first: Array
@@ -118,9 +116,12 @@ def plan_rotation(
         balanced = balanced_start(state, criteria, tolerance, "end")
         last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
     if still_part(load, about) is None:
-        knots = TurningPath(*_on_the_way(chooser, turn, count, first, last), about)
+        states = on_the_way(chooser, turn, count, first, last)
+        between: Between = within_limits
     else:
-        knots = _along_arcs(chooser, turn, count, first, last)
+        angles = [turn * k / count for k in range(1, count)]
+        states = [(0.0, first), *((a, reached(chooser, a)) for a in angles), (turn, last)]
+        between = middle
     plan = Transition(
         GraspState(grasp, load, first),
         GraspState(grasp, last_load, last),
@@ -131,7 +132,7 @@ def plan_rotation(
             change,
             least_normals=tuple(criteria.least_normals(grasp)) if criteria.presses else (),
         ),
-        path=knots,
+        path=halved(chooser, states, between),
     )
     _refuse_high_forces(plan)
     if criteria.presses:
@@ -168,81 +169,6 @@ def _refuse_other_end(end: GraspState, grasp: Grasp, load: Wrench) -> None:
             f"object, {shown(load)}; "
             f"got {shown(end)}"
         )
-
-
-class _Chooser(NamedTuple):
-    """Chooses states of one grasp at angles of the object."""
-
-    grasp: Grasp
-    load: Wrench
-    criteria: Criteria
-    method: str
-    ease: float
-    """Fraction of the force limits that leaves room for the growth of forces between two states."""
-    axis: Array | None
-
-    def at(self, angle: float) -> ChosenForces:
-        """The best forces after a turn by ``angle``, within eased limits if there are any."""
-        return self.under(turned_load(self.load, angle, self.axis))
-
-    def under(self, load: Wrench) -> ChosenForces:
-        """The best forces under a load, within eased limits if there are any."""
-        grasp, criteria = self.grasp, self.criteria
-        if any(contact.max_force is not None for contact in grasp):
-            less = eased(grasp, self.ease)
-            try:
-                return choose_forces(less, load, replace(criteria, max_force=None), self.method)
-            except Infeasible:
-                pass  # the whole limits may do, and the path is checked in the end
-        return choose_forces(grasp, load, criteria, self.method)
-
-
-def _on_the_way(
-    chooser: _Chooser, turn: float, count: int, first: Array, last: Array
-) -> tuple[list[float], list[Array]]:
-    """Angles and forces at ``count`` equal steps, without those at which no state exists."""
-    knots, forces = [0.0], [first]
-    reason: Infeasible | None = None
-    for k in range(1, count):
-        angle = turn * k / count
-        try:
-            best = chooser.at(angle)
-        except Infeasible as refusal:
-            reason = reason or Infeasible(f"after a turn of {angle:.6g} rad: {refusal}", refusal.certificate)
-            continue
-        knots.append(angle)
-        forces.append(np.array(best.forces))
-    knots.append(turn)
-    forces.append(last)
-    widest = max(abs(b - a) for a, b in pairwise(knots))
-    if widest > _NEARLY_PI and reason is not None:
-        raise reason
-    return knots, forces
-
-
-def _along_arcs(chooser: _Chooser, turn: float, count: int, first: Array, last: Array) -> TurningPath:
-    """States at equal steps and one between each two, in halved steps until all exist."""
-    for halved in range(_HALVINGS + 1):
-        angles = [turn * k / (count << halved) for k in range((count << halved) + 1)]
-        forces = [first, *(_reached(chooser.at, a) for a in angles[1:-1]), last]
-        try:
-            middles = [_reached(partial(_between, chooser, b - a), (a + b) / 2) for a, b in pairwise(angles)]
-        except Infeasible as refusal:
-            reason = refusal
-            continue
-        return TurningPath(angles, forces, chooser.axis, middles)
-    raise reason
-
-
-def _between(chooser: _Chooser, step: float, middle: float) -> ChosenForces:
-    return chooser.under(load_between(chooser.load, middle - step / 2, middle + step / 2, chooser.axis))
-
-
-def _reached(choose: Callable[[float], ChosenForces], angle: float) -> Array:
-    try:
-        return np.array(choose(angle).forces)
-    except Infeasible as refusal:
-        raise Infeasible(f"after a turn of {angle:.6g} rad: {refusal}", refusal.certificate) from None
 
 
 def _axis(axis: ArrayLike | None, grasp: Grasp) -> Array | None:

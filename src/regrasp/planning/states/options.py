@@ -86,6 +86,9 @@ class PlanOptions(LimitOptions, total=False):
     min_normal: Annotated[float | None, Option(None, "least normal force of the fingers that stay [N]")]
 
     method: Annotated[str, Option("auto", "'auto', 'closed-form' or a back end's name, as for choose_state")]
+    facets: Annotated[
+        int | None, Option(None, "sides of polygons in the place of circles, as for choose_state")
+    ]
     duration: Annotated[float | None, Option(None, "of the whole plan [s]; 1 unless something else sets it")]
     scaling: Annotated[TimeScaling | None, Option(None, "a whole time function, in the place of a duration")]
     balance_tolerance: Annotated[
@@ -117,9 +120,6 @@ class ChangeOptions(PlanOptions, total=False):
         ),
     ]
     instants: Annotated[int, Option(INSTANTS, "instants of a path that is not straight, at least 3")]
-    facets: Annotated[
-        int | None, Option(None, "sides of polygons in the place of circles, as for choose_state")
-    ]
 
 
 @cache
