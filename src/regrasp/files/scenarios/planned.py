@@ -22,10 +22,11 @@ from regrasp.plans.transition import Transition
 
 # Keys of a task that the planner takes under the same name.
 _CLOCK = ("duration", "scaling", "rate_limit")  # which the task works out together
-_STATE_OPTIONS = ("objective", *(name for name in described(PlanOptions) if name not in _CLOCK))
+_SET = ("disturbance", "stiffness")  # which stands beside the load, and by contacts
+_STATE_OPTIONS = ("objective", *(name for name in described(PlanOptions) if name not in (*_CLOCK, *_SET)))
 _CHANGE_OPTIONS = (
     "objective",
-    *(name for name in described(ChangeOptions) if name not in _CLOCK),
+    *(name for name in described(ChangeOptions) if name not in (*_CLOCK, *_SET)),
 )
 _REGRASP_OPTIONS = (
     "orientations",
@@ -59,8 +60,8 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
     if isinstance(task, Rotation):
         return _rotation(scenario, task)
     own = "start_objective" if isinstance(task, Exchange) else "whole_objective"
-    options = _taken(task, (*_CHANGE_OPTIONS, own))
-    rate_limit = _per_finger(scenario, task)
+    options = _taken(task, (*_CHANGE_OPTIONS, own)) | _withstood(scenario, task)
+    rate_limit = _per_finger(scenario, task, task.rate_limit)
     options["load"], options["rate_limit"] = load, rate_limit
     options["scaling"] = task.time_scaling
     if isinstance(load, LoadSeries):
@@ -71,13 +72,22 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
     return _planned(scenario, task, **options, **_idle_times(task))
 
 
-def _per_finger(scenario: Scenario, task: Change) -> float | list[float] | None:
-    """The rate limit in the order of the plan's fingers, in which the one that arrives is the last."""
-    limits = task.rate_limit
-    if not isinstance(limits, list) or not task.arriving:
-        return limits
+def _per_finger(
+    scenario: Scenario, task: Change, values: float | list[float] | None
+) -> float | list[float] | None:
+    """Values in the order of the plan's fingers, in which the one that arrives is the last."""
+    if not isinstance(values, list) or not task.arriving:
+        return values
     arriving = scenario.grasp.index(task.arriving[0])
-    return [*limits[:arriving], *limits[arriving + 1 :], limits[arriving]]
+    return [*values[:arriving], *values[arriving + 1 :], values[arriving]]
+
+
+def _withstood(scenario: Scenario, task: Change | Rotation) -> dict[str, Any]:
+    """The set of deviations and the stiffness of the plan's fingers."""
+    springs = task.stiffness
+    if isinstance(task, Change):
+        springs = _per_finger(scenario, task, springs)
+    return {"disturbance": scenario.disturbance, "stiffness": springs}
 
 
 def _idle_times(task: Change) -> dict[str, float | None]:
@@ -130,6 +140,7 @@ def _rotation(scenario: Scenario, task: Rotation) -> Transition:
         end=_given(scenario, whole, "end_force"),
         scaling=task.time_scaling,
         **_taken(task, _STATE_OPTIONS),
+        **_withstood(scenario, task),
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, TypeAdapter, model_validator
 
 from regrasp.errors import InvalidInput, shown
+from regrasp.files.scenarios.disturbance import DisturbedLoad
 from regrasp.files.scenarios.keys import (
     AnyForce,
     AnyVector,
@@ -27,6 +28,7 @@ from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.checks import file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.plans.loads import LoadSeries
@@ -102,7 +104,7 @@ class Scenario(Strict):
 
     title: str | None = Field(None, description="shown above the plan")
     load: Annotated[
-        Annotated[Load, Tag("table")] | Annotated[list[LoadEntry], Tag("list"), Field(min_length=2)],
+        Annotated[DisturbedLoad, Tag("table")] | Annotated[list[LoadEntry], Tag("list"), Field(min_length=2)],
         Discriminator(lambda load: "list" if isinstance(load, list) else "table"),
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
@@ -114,6 +116,11 @@ class Scenario(Strict):
         """Every contact in play, in the file's order."""
         mesh = None if self.object is None else self.object.value
         return Grasp(entry.on(mesh) for entry in self.contacts)
+
+    @property
+    def disturbance(self) -> LoadSet | None:
+        """Deviations that states withstand on top of a constant load."""
+        return self.load.deviations if isinstance(self.load, DisturbedLoad) else None
 
     @cached_property
     def external(self) -> Wrench | LoadSeries:
@@ -155,12 +162,13 @@ class Scenario(Strict):
         except InvalidInput as error:
             raise ValueError(f"load: {error}") from None
         problems = self._unfit_load(external)
-        limits = task.rate_limit if isinstance(task, Change) else None
-        if isinstance(limits, list) and len(limits) != len(self.contacts):
-            problems.append(
-                f"task.rate_limit: expected a number, or {len(self.contacts)} numbers, one for each contact; "
-                f"got {len(limits)}"
-            )
+        for key in ("rate_limit", "stiffness"):
+            values = getattr(task, key, None)
+            if isinstance(values, list) and len(values) != len(self.contacts):
+                problems.append(
+                    f"task.{key}: expected a number, or {len(self.contacts)} numbers, one for each contact; "
+                    f"got {len(values)}"
+                )
         leaving, arriving = (task.leaving, task.arriving) if isinstance(task, Change) else ((), ())
         problems += [*self._gaps("force", arriving), *self._gaps("end_force", leaving)]
         if problems:
@@ -176,7 +184,7 @@ class Scenario(Strict):
             for i, entry in enumerate(self.contacts)
             for key in ("position", "normal")
         ]
-        loads = [("load", self.load)] if isinstance(self.load, Load) else []
+        loads: list[tuple[str, Load]] = [("load", self.load)] if isinstance(self.load, Load) else []
         if not isinstance(self.load, Load):
             loads = [(f"load[{i}]", entry) for i, entry in enumerate(self.load)]
         vectors += [(f"{name}.force", entry.force) for name, entry in loads]

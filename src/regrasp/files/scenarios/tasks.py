@@ -36,6 +36,8 @@ class Task(Strict):
     balance_tolerance: float = option(PlanOptions, "balance_tolerance", ge=0)
     min_normal: Annotated[float, Field(ge=0)] | None = option(PlanOptions, "min_normal")
 
+    stiffness: PerFinger | None = option(PlanOptions, "stiffness")
+
     @cached_property
     def time_scaling(self) -> TimeScaling:
         """T(t) over the duration asked for."""
@@ -63,6 +65,7 @@ class Change(Task):
     objective: ObjectiveName = Field("angle", description="what the state without the finger is chosen for")
     rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
     path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
+    early_loss: bool = option(ChangeOptions, "early_loss")
     instants: int = option(ChangeOptions, "instants", ge=3)
 
     @property

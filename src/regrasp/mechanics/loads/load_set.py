@@ -9,6 +9,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, number, numbers_in, read_only
+from regrasp.mechanics.loads.caps import around_cap
 from regrasp.mechanics.loads.nearest import nearest_mean
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mechanics.wrench import Wrench
@@ -106,6 +107,25 @@ class LoadSet(ArrayValue, ABC):
         """Of a hull the loads (m, 3) or (m, 6) that span it, scaled; None of round sets."""
         return None
 
+    @property
+    def half_axes(self) -> Array | None:
+        """Of a ball or an ellipsoid the A of center + A z, |z| <= 1, scaled: (3, k) or (6, k); else None."""
+        return None
+
+    @property
+    def cover(self) -> Array | None:
+        """(m, 3) or (m, 6) loads whose hull holds the set, None for ellipsoids.
+
+        A hull's vertices; around a tilt a polytope that is larger by 1e-3 at most in the plane, by 0.03 in
+        space.
+        """
+        return self.vertices
+
+    @property
+    def deviations(self) -> "LoadSet":
+        """The same set moved so that its center is no load: what may come on top of the center."""
+        return self._moved(Wrench.from_vector(np.zeros_like(self.center.vector)))
+
     def scaled(self, factor: float) -> "LoadSet":
         """The set with deviations from the center ``factor`` times as large.
 
@@ -170,6 +190,8 @@ class LoadSet(ArrayValue, ABC):
         return y
 
     @abstractmethod
+    def _moved(self, center: Wrench) -> "LoadSet": ...
+    @abstractmethod
     def _support(self, y: Array) -> Array: ...
     @abstractmethod
     def _extreme(self, y: Array) -> Array: ...
@@ -195,6 +217,9 @@ class _Hull(LoadSet):
         """(m, 3) or (m, 6) the loads that span the hull, scaled; some may lie inside."""
         return self.center.vector + self.factor * (self.points - self.center.vector)
 
+    def _moved(self, center: Wrench) -> LoadSet:
+        return _Hull(center, self.factor, read_only(self.points + (center.vector - self.center.vector)))
+
     def _support(self, y: Array) -> Array:
         result: Array = (y @ self.points.T).max(axis=-1)
         return result
@@ -215,6 +240,14 @@ class _Hull(LoadSet):
 @dataclass(frozen=True, eq=False, repr=False)
 class _Ellipsoid(LoadSet):
     axes: Array
+
+    @property
+    def half_axes(self) -> Array:
+        """(3, k) or (6, k) the half axes, scaled [N, N m]."""
+        return self.factor * self.axes
+
+    def _moved(self, center: Wrench) -> LoadSet:
+        return _Ellipsoid(center, self.factor, self.axes)
 
     def _support(self, y: Array) -> Array:
         result: Array = y @ self.center.vector + np.linalg.norm(y @ self.axes, axis=-1)
@@ -243,6 +276,17 @@ class _Cap(LoadSet):
     """The hull of a cap of a circle or sphere: {|f| <= m, f . a >= m cos(angle)}, a the load's direction."""
 
     angle: float
+
+    @property
+    def cover(self) -> Array:
+        """(m, 3) or (m, 6) loads whose hull holds the cap."""
+        (size, axis), middle = self._force, self.center.vector
+        forces = size * around_cap(axis, self.angle) if size else np.zeros((1, self.dimension))
+        torques = np.broadcast_to(self.center.torque, (len(forces), self.center.torque.size))
+        return middle + self.factor * (np.hstack([forces, torques]) - middle)
+
+    def _moved(self, center: Wrench) -> LoadSet:
+        return _Moved(center, self.factor, self)
 
     @property
     def _force(self) -> tuple[float, Array]:
@@ -291,6 +335,39 @@ class _Cap(LoadSet):
         if self.angle == pi:
             return f"{self.center!r}, its force in every direction"
         return f"{self.center!r}, its force tilted by up to {np.degrees(self.angle):.6g} deg"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Moved(LoadSet):
+    """Another set, moved so that its center is this one's."""
+
+    inner: LoadSet
+
+    @property
+    def _by(self) -> Array:
+        return self.center.vector - self.inner.center.vector
+
+    @property
+    def cover(self) -> Array | None:
+        """(m, 3) or (m, 6) loads whose hull holds the set."""
+        around = replace(self.inner, factor=self.factor).cover
+        return None if around is None else around + self._by
+
+    def _moved(self, center: Wrench) -> LoadSet:
+        return replace(self, center=center)
+
+    def _support(self, y: Array) -> Array:
+        result: Array = self.inner._support(y) + y @ self._by
+        return result
+
+    def _extreme(self, y: Array) -> Array:
+        return self.inner._extreme(y) + self._by
+
+    def _contains(self, load: Array, slack: Array) -> bool:
+        return self.inner._contains(load - self._by, slack)
+
+    def _words(self) -> str:
+        return f"{self.inner._words()}, less the center"
 
 
 def _wrench(value: Wrench, what: str) -> Wrench:

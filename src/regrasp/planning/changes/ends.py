@@ -9,7 +9,7 @@ from regrasp.mechanics.checks import number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.given_ends import balanced_start
+from regrasp.planning.changes.given_ends import balanced_start, refuse_what_gives
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenForces, Criteria
 from regrasp.planning.states.objectives import recorded
@@ -37,20 +37,23 @@ class End(NamedTuple):
         if self.idle:
             rest = grasp.without(self.idle[0]) if len(self.idle) == 1 else _without(grasp, self.idle)
         if self.given is None:
-            best = choose_forces(rest, self.load, self._pressing(grasp, moving), method, facets)
+            best = choose_forces(rest, self.load, self._asked(grasp, moving), method, facets)
             choice = Choice(self.label, recorded(self.criteria.objective), best.method, best.force_limits)
             return best, choice, 0.0
         given = self.given if self.given.grasp is rest else GraspState(rest, self.load, self.given.forces)
         state = balanced_start(given, self.criteria, tolerance, self.label)
+        refuse_what_gives(state, self._asked(grasp, moving), self.label)
         return state, None, 0.0 if state is given else float(abs(state.forces - given.forces).max())
 
-    def _pressing(self, grasp: Grasp, moving: set[int]) -> Criteria:
-        """The criteria, with which the fingers that leave or arrive need not push."""
-        least = self.criteria.least_normal
-        if not least:
-            return self.criteria
-        at_work = (i for i in range(len(grasp)) if i not in self.idle)
-        return replace(self.criteria, min_normal=tuple(0.0 if i in moving else least for i in at_work))
+    def _asked(self, grasp: Grasp, moving: set[int]) -> Criteria:
+        """The criteria: fingers that leave or arrive need not push and are force-controlled."""
+        criteria, least = self.criteria, self.criteria.least_normal
+        at_work = [i for i in range(len(grasp)) if i not in self.idle]
+        if least:
+            criteria = replace(criteria, min_normal=tuple(0.0 if i in moving else least for i in at_work))
+        if criteria.demands:
+            criteria = criteria.of_some(grasp, at_work, moving)
+        return criteria
 
     def among(self, grasp: Grasp, found: GraspState | ChosenForces) -> GraspState:
         """The state of all contacts, the idle ones without force."""

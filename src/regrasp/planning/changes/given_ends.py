@@ -3,6 +3,8 @@
 from functools import lru_cache
 from typing import TypeVar
 
+import numpy as np
+
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import number
 from regrasp.mechanics.contact import Contact
@@ -34,6 +36,29 @@ def balanced_start(state: GraspState, criteria: Criteria, tolerance: float, labe
             f"{largest:.4g}; correct them, or allow more by balance_tolerance"
         )
     return balanced
+
+
+def refuse_set_without_none(criteria: Criteria, grasp: Grasp) -> None:
+    """Raise ``InvalidInput`` for a set without zero: forces of a turn grow between states."""
+    none = Wrench.from_vector(np.zeros(len(grasp.matrix)))
+    if criteria.disturbance is not None and not criteria.disturbance.contains(none):
+        raise InvalidInput(
+            f"a disturbance of a turn must hold the deviation zero, besides others; got "
+            f"{criteria.disturbance}"
+        )
+
+
+def refuse_what_gives(state: GraspState, criteria: Criteria, label: str) -> None:
+    """Raise ``InvalidInput`` for a given state that does not withstand the criteria's disturbance."""
+    demand = criteria.demand(state.grasp) if criteria.withstands else None
+    if demand is None:
+        return
+    spare = demand.spare(state.grasp.cones.measured(state.forces), np.array(criteria.limits(state.grasp)))
+    if spare < 0:
+        raise InvalidInput(
+            f"{label}: the forces do not withstand the disturbance, some finger misses its cone or limit by "
+            f"{-spare:.3g} N; give another state, or the grasp, whose state is then chosen"
+        )
 
 
 def grasp_and_load(start: GraspState | Grasp, load: Wrench | None) -> tuple[Grasp, Wrench]:

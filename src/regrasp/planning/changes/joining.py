@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput, shown
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, choice, limits, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -19,6 +19,7 @@ from regrasp.planning.changes.lost_loads import refuse_lost, refuse_lost_load
 from regrasp.planning.states.choosing import DEFAULT_BACKEND, check_facets
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.options import INSTANTS, ChangeOptions, PlanOptions
+from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.plans.loads import MOST_INSTANTS, LoadSeries
 from regrasp.plans.sampled import SampledPath
 from regrasp.plans.timing import TimeScaling
@@ -169,6 +170,10 @@ def _path(
             raise InvalidInput(
                 f"the finger's idle time must lie inside (0, {scaling.duration:g}) s, got {idle:g}"
             )
+    demand = None
+    if criteria.withstands:
+        moving = {*change.leaving, *change.arriving}
+        demand = criteria.of_some(grasp, range(len(grasp)), moving).demand(grasp)
     fine = load.refined(demands.instants, *demands.idle_times)
     times = fine.times
     active = np.ones((times.size, len(grasp)), dtype=bool)
@@ -197,9 +202,24 @@ def _path(
         least_normals=least,
         stays=stays,
         unit=largest or float(max(start.magnitudes.max(), end.magnitudes.max())) or 1.0,
+        set_back=None if demand is None or d == 3 else demand.set_back(),
     )
     forces = planned_path(task, demands.path_objective or "change", criteria, backend, demands.facets)
+    if demand is not None:
+        refuse_giving_path(demand, forces, times, np.array(criteria.limits(grasp)))
     return SampledPath(times, forces, fine.vectors)
+
+
+def refuse_giving_path(demand: Demand, forces: Array, times: Array, limits: Array) -> None:
+    """Raise ``Infeasible`` where forces (K, n, d) between the ends do not withstand what they must."""
+    spares = [demand.spare(f, limits, on_the_way=True) for f in forces[1:-1]]
+    least = int(np.argmin(spares))
+    if spares[least] < 0:
+        raise Infeasible(
+            f"the path that bends does not withstand the disturbance at t = {times[1 + least]:.4g} s: some "
+            f"finger misses its cone or limit by {-spares[least]:.3g} N; a straight path between the same "
+            f"ends does, under a constant load and without rate limits and idle times"
+        )
 
 
 def refuse_weak_ends(start: GraspState, end: GraspState, least: Array) -> None:

@@ -42,7 +42,8 @@ class PathTask:
     times: (K,) [s]. loads: (K, 3 or 6) [N, N m]. start, end: (n, d) forces at the ends [N]. active: (K, n),
     false where a finger carries no force. phases: (K,) rising from 0 to 1. frictions, limits [N], rates
     [N/s] and least_normals [N]: (n,), infinite or 0 for none. stays: (n,), the fingers whose margin counts.
-    unit: the size of a force [N].
+    unit: the size of a force [N]. set_back: in the plane (n, 2), what the edges mu n -+ t of the cones of
+    fingers keep for a disturbance, g . f at least so much [N]; None for nothing.
     """
 
     grasp: Grasp
@@ -58,6 +59,7 @@ class PathTask:
     least_normals: Array
     stays: NDArray[np.bool_]
     unit: float
+    set_back: Array | None = None
 
     @property
     def end_margin(self) -> float:
@@ -182,7 +184,11 @@ class _Builder:
             if is_round:
                 self.rows.second_order(wide, -least_margin * per_margin, size=3)
             else:
-                self.rows.at_least_zero(wide, -least_margin * per_margin)
+                offset = -least_margin * per_margin
+                if self.task.set_back is not None:
+                    edge = np.arange(place.size) % each.shape[1]
+                    offset = offset - self.task.set_back[rough][place, edge] / self.task.unit
+                self.rows.at_least_zero(wide, offset)
         if self.objective == "force":
             none = sparse.csr_matrix((1, self.columns.shape[1]))
             self.rows.at_least_zero(self._wide(none, -1.0), self.task.end_margin / self.task.unit)

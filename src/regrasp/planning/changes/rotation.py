@@ -18,6 +18,8 @@ from regrasp.planning.changes.given_ends import (
     grasp_and_load,
     kept_limits,
     limited,
+    refuse_set_without_none,
+    refuse_what_gives,
     scaling_of,
 )
 from regrasp.planning.changes.joining import refuse_weak_ends
@@ -88,6 +90,8 @@ def plan_rotation(
     tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
     clock = scaling_of(options.get("duration"), options.get("scaling"))
     given, load = grasp_and_load(start, load)
+    if criteria.demands:
+        refuse_set_without_none(criteria, given)
     about = _axis(axis, given)
     grasp = limited(given, criteria.max_force)
     count = max(ceil(abs(turn) / STEP - 1e-9), 1)
@@ -100,6 +104,7 @@ def plan_rotation(
     if isinstance(start, GraspState):
         state = GraspState(grasp, load, start.forces)
         balanced = balanced_start(state, criteria, tolerance, "start")
+        refuse_what_gives(balanced, criteria, "start")
         first, change = balanced.forces, float(abs(balanced.forces - start.forces).max())
     else:
         best = chooser.at(0.0)
@@ -114,6 +119,7 @@ def plan_rotation(
         _refuse_other_end(end, given, last_load)
         state = GraspState(grasp, last_load, end.forces)
         balanced = balanced_start(state, criteria, tolerance, "end")
+        refuse_what_gives(balanced, criteria, "end")
         last, change = balanced.forces, max(change, float(abs(balanced.forces - end.forces).max()))
     if still_part(load, about) is None:
         states = on_the_way(chooser, turn, count, first, last)

@@ -68,6 +68,10 @@ def choose_forces(
         raise InvalidInput(f"method must be text, such as 'auto', got {shown(method)}")
     planar_pair = len(grasp) == 2 and grasp.dimension == 2
     closed = planar_pair and criteria.objective.closed_form is not None
+    if criteria.withstands and method == "closed-form":
+        raise InvalidInput("the closed form knows no disturbance; use method='auto'")
+    if criteria.withstands:
+        closed = False
     if criteria.presses:
         if method == "closed-form":
             raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")

@@ -1,7 +1,7 @@
 """What a state is chosen for, and under which limits."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 from typing import NamedTuple
@@ -9,12 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, ArrayLike, instance, items, number, whole
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
+from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness, stiffness_matrices
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.objectives import ANGLE, Objective, objective_of
+from regrasp.planning.states.objectives import ANGLE, Objective, WithstoodFactor, objective_of
+from regrasp.planning.states.withstanding.demand import Demand
 
 PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least peak force that holds the load."""
@@ -39,6 +42,16 @@ class Criteria:
             to a contact's own limit if that is smaller.
         reserve: fraction of every friction coefficient kept back [-].
         min_normal: least normal force of every finger [N], or (n,) one for each contact; 0 for none.
+        disturbance: a set of load deviations that the forces must withstand on top of the load: f + R d
+            inside cones and limits for each of its members d, R the response of the fingers' stiffness
+            (docs/robustness.md); for the objective ``wrench`` the set whose factor is made widest. None for
+            none.
+        stiffness: of the fingers [N/m]: a number; (n,); (n, 2) along the normal and across it; (n, 3) for
+            soft fingers, the last about the normal [N m/rad]; or (n, w, w) matrices in the object's frame;
+            all alike if not given.
+        controlled: places of fingers whose force is controlled, as of those that leave or arrive: the others
+            withstand the set without them, and all of them with them.
+        early_loss: whether forces withstand the set, too, after a controlled finger lost contact early.
 
     Raises:
         InvalidInput: For anything else.
@@ -49,6 +62,10 @@ class Criteria:
     peak_ratio: float = PEAK_RATIO
     reserve: float = RESERVE
     min_normal: float | tuple[float, ...] = 0.0
+    disturbance: LoadSet | None = None
+    stiffness: Stiffness = 1.0
+    controlled: tuple[int, ...] = ()
+    early_loss: bool = False
 
     def __init__(
         self,
@@ -57,8 +74,28 @@ class Criteria:
         peak_ratio: float = PEAK_RATIO,
         reserve: float = RESERVE,
         min_normal: float | Sequence[float] | Array | None = 0.0,
+        disturbance: LoadSet | None = None,
+        stiffness: ArrayLike | Stiffness | None = None,
+        controlled: Sequence[int] = (),
+        early_loss: bool = False,
     ) -> None:
-        object.__setattr__(self, "objective", objective_of(objective))
+        sought = objective_of(objective)
+        if disturbance is not None:
+            instance(disturbance, "disturbance", LoadSet, "; make one by LoadSet.ball, .hull or another")
+        if not isinstance(early_loss, bool):
+            raise InvalidInput(f"early_loss must be True or False, got {shown(early_loss)}")
+        answered = checked_stiffness(stiffness)
+        if isinstance(sought, WithstoodFactor):
+            sought = replace(sought, disturbance=disturbance, stiffness=answered)
+        object.__setattr__(self, "objective", sought)
+        object.__setattr__(self, "disturbance", disturbance)
+        object.__setattr__(self, "stiffness", answered)
+        object.__setattr__(
+            self,
+            "controlled",
+            tuple(whole(i, "each of controlled", least=0) for i in items(controlled, "controlled")),
+        )
+        object.__setattr__(self, "early_loss", early_loss)
         if max_force is not None:
             number(max_force, "max_force", above=0)
         number(peak_ratio, "peak_ratio", least=1)
@@ -98,6 +135,44 @@ class Criteria:
         """Whether any finger must push with a least normal force."""
         return bool(self.min_normal) and (not isinstance(self.min_normal, tuple) or any(self.min_normal))
 
+    @property
+    def withstands(self) -> bool:
+        """Whether forces must withstand a set, rather than the widest factor of it."""
+        return self.disturbance is not None and not isinstance(self.objective, WithstoodFactor)
+
+    @property
+    def demands(self) -> bool:
+        """Whether a set counts, as it is or by its factor."""
+        return self.disturbance is not None or isinstance(self.objective, WithstoodFactor)
+
+    def of_some(self, grasp: Grasp, at_work: Sequence[int], controlled: Collection[int]) -> "Criteria":
+        """The criteria for some contacts of a grasp, with their stiffness.
+
+        Args:
+            grasp: the contacts in play, one for each row of the stiffness.
+            at_work: the places of those that are asked for.
+            controlled: the places of those that are force-controlled.
+        """
+        stiffness = self.stiffness
+        if isinstance(stiffness, tuple):
+            stiffness_matrices(grasp, stiffness)  # which says what is wrong
+            stiffness = tuple(stiffness[i] for i in at_work)
+        places = tuple(k for k, i in enumerate(at_work) if i in controlled)
+        return replace(self, stiffness=stiffness, controlled=places)
+
+    def demand(self, grasp: Grasp) -> Demand | None:
+        """What forces must withstand, or the set whose factor is made widest; None for neither.
+
+        Args:
+            grasp: the contacts that hold.
+        """
+        if isinstance(self.objective, WithstoodFactor):
+            loads = self.objective.deviations(grasp)
+            return Demand(grasp, loads, self.stiffness, self.controlled, self.early_loss, is_kept=False)
+        if self.disturbance is None:
+            return None
+        return Demand(grasp, self.disturbance, self.stiffness, self.controlled, self.early_loss)
+
     def least_normals(self, grasp: Grasp) -> list[float]:
         """Least normal force of each finger [N].
 
@@ -128,6 +203,10 @@ class Criteria:
         """
         if self.presses:
             raise InvalidInput(f"{what} keeps no least normal force; leave min_normal out of the Criteria")
+        if self.demands:
+            raise InvalidInput(
+                f"{what} withstands no disturbance; leave it out, and objective 'wrench' with it"
+            )
 
     def demand_limit(self, grasp: Grasp, load: Wrench) -> None:
         """Raise ``InvalidInput`` where a multiple of the least peak force says nothing: the load is zero.

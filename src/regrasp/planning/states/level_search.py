@@ -125,7 +125,9 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     the level rises most. Without ``known`` forces it is the force margin.
     """
     grasp = chooser.grasp
-    if chooser.least is not None and any(chooser.least[i] > 0 for i in range(len(grasp)) if i not in cones):
+    idle = [i for i in range(len(grasp)) if i not in cones]
+    pressed = chooser.least is not None and any(chooser.least[i] > 0 for i in idle)
+    if pressed or (idle and chooser.demand is not None):
         return _Level(None, True, True)  # a finger that must push has no cone left
     used = chooser if len(cones) == len(grasp) else chooser.of(cones)
     frictions, bounds = list(cones.values()), [limits[i] for i in cones]

@@ -42,7 +42,7 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
-    if criteria.presses:
+    if criteria.presses or criteria.demand(grasp) is not None:
         return _pressed(grasp, load, criteria, backend, facets)
     objective = criteria.objective
     if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
@@ -68,16 +68,23 @@ def solved_forces(
 def _pressed(
     grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
 ) -> ChosenForces:
-    """The best forces with which every finger keeps its least normal force."""
+    """The best forces with which every finger keeps its least normal force and withstands what it must."""
+    demand = criteria.demand(grasp)
+    if demand is not None and facets is not None:
+        raise InvalidInput(
+            "facets stand for circles of a load that is known; leave them out with a disturbance"
+        )
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     least = np.array(criteria.least_normals(grasp))
-    chooser = Chooser(grasp, load, backend, facets, limits, least)
+    if demand is not None and criteria.withstands:
+        least = np.maximum(least, demand.least_normals())
+    chooser = Chooser(grasp, load, backend, facets, limits, least, demand)
     if any(load.plain) and least.max() > _BALANCED * chooser.load_size:
         raise InvalidInput(
             f"min_normal must be at most {_BALANCED:g} times the load of {chooser.load_size:.6g} N, got "
             f"{least.max():g}: rounding of such forces is as large as the load"
         )
-    chooser.rescale(max(chooser.load_size, float(least.max())))
+    chooser.rescale(max(chooser.load_size, float(least.max())) or chooser.unit)
     objective = criteria.objective
     if not criteria.unbounded:
         chooser.loose = LOOSE * chooser.unit
@@ -99,9 +106,18 @@ def _pressed(
 
 def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """Why no forces with these least normal forces exist."""
-    reason = verdict(grasp, load, replace(criteria, min_normal=0.0)) if any(load.plain) else None
+    alone = replace(criteria, min_normal=0.0, disturbance=None)
+    reason = verdict(grasp, load, alone) if any(load.plain) else None
     if reason is not None and reason.certificate is not None:
         return reason
+    if criteria.withstands:
+        pressing = " and push with their least normal forces" if criteria.presses else ""
+        return Infeasible(
+            f"no forces of {', '.join(grasp.names)} that balance {load!r}{pressing} and withstand "
+            f"deviations in the {criteria.disturbance} were found, within cones and force limits; a smaller "
+            f"disturbance, or objective 'wrench', says how much of it they withstand; higher force limits "
+            "let them squeeze more"
+        )
     least = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, criteria.least_normals(grasp), strict=True))
     return Infeasible(
         f"no forces of {', '.join(grasp.names)} that balance {shown(load)} and push along the normals with "

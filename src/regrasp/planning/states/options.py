@@ -15,6 +15,7 @@ from typing import Annotated, Any, NamedTuple, ParamSpec, TypedDict, TypeVar, ge
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import ArrayLike
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import Objective, objective_of
@@ -34,6 +35,17 @@ class Option(NamedTuple):
 
     default: Any
     words: str
+
+
+_DISTURBANCE = Option(
+    None,
+    "load deviations that the forces withstand on top of the load when the fingers answer with their "
+    "stiffness; for objective 'wrench' the set whose factor is made widest (a unit ball, torque divided by "
+    "the grasp's size)",
+)
+_STIFFNESS = Option(
+    None, "of the fingers that answer, a number or an array by contact as in Criteria [N/m]; all alike"
+)
 
 
 class LimitOptions(TypedDict, total=False):
@@ -60,6 +72,8 @@ class StateOptions(LimitOptions, total=False):
         ArrayLike | None,
         Option(None, "least normal force of every finger [N], or (n,) one for each contact"),
     ]
+    disturbance: Annotated[LoadSet | None, _DISTURBANCE]
+    stiffness: Annotated[ArrayLike | None, _STIFFNESS]
 
     method: Annotated[
         str,
@@ -84,6 +98,8 @@ class PlanOptions(LimitOptions, total=False):
     """How the ends of a plan are chosen, and its clock."""
 
     min_normal: Annotated[float | None, Option(None, "least normal force of the fingers that stay [N]")]
+    disturbance: Annotated[LoadSet | None, _DISTURBANCE]
+    stiffness: Annotated[ArrayLike | None, _STIFFNESS]
 
     method: Annotated[str, Option("auto", "'auto', 'closed-form' or a back end's name, as for choose_state")]
     facets: Annotated[
@@ -117,6 +133,13 @@ class ChangeOptions(PlanOptions, total=False):
             None,
             "what the path is planned for, instant by instant: 'change', 'effort', 'peak' or 'force'; "
             "Eq. 1-3 if not given and enough",
+        ),
+    ]
+    early_loss: Annotated[
+        bool,
+        Option(
+            False,
+            "whether the disturbance is withstood, too, when a finger that leaves or arrives loses contact",
         ),
     ]
     instants: Annotated[int, Option(INSTANTS, "instants of a path that is not straight, at least 3")]
@@ -179,7 +202,7 @@ def _with_words(text: str, options: Mapping[str, tuple[Any, Option]]) -> str:
     return sub(r"(?m)^    options$", lambda _: "\n".join(entries), text)
 
 
-_LIMITS = (*LimitOptions.__annotations__, "min_normal")
+_LIMITS = (*LimitOptions.__annotations__, "min_normal", "disturbance", "stiffness", "early_loss")
 
 
 def criteria_of(objective: "str | Objective | Criteria", options: Mapping[str, Any]) -> Criteria:

@@ -23,6 +23,8 @@ def pressing(program: Program, grasp: Grasp, least: Array, unit: float, size: fl
     unit: of the program's forces [N]. size: how large its forces may be [N].
     """
     pressed = np.flatnonzero(least > 0)
+    if not pressed.size:
+        return program
     asked = least[pressed] + _SPARE * np.maximum(least[pressed], min(size, LARGE * unit))
     width = grasp.width
     columns = (pressed[:, None] * width + np.arange(width)).ravel()

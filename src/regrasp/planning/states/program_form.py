@@ -93,7 +93,7 @@ def state_form(
     varying += moving
     rows, columns, constants = places.all(varying)
     q = np.zeros(unknowns)
-    q[t:] = -1.0 if bound is Bound.MARGIN else 1.0
+    q[t:] = -1.0 if bound in (Bound.MARGIN, Bound.FACTOR) else 1.0
     q.setflags(write=False)  # all programs of this form have it in common
     return StateForm(
         Pattern((places.rows, unknowns), rows, columns),

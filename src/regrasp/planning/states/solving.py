@@ -16,6 +16,7 @@ from regrasp.planning.states.escape import escape_twist
 from regrasp.planning.states.objectives import Bound, ConvexObjective, recorded
 from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
+from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Solution, Status, solve
 
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
@@ -58,8 +59,9 @@ class Chooser:
         facets: int | None,
         limits: list[float],
         least: Array | None = None,
+        demand: Demand | None = None,
     ) -> None:
-        self.least = least
+        self.least, self.demand = least, demand
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
         self.unit = self.load_size = force_unit(grasp, load)
@@ -123,6 +125,13 @@ class Chooser:
         )
         if self.least is None:
             return program
+        demand = self.demand
+        if demand is not None and (demand.is_kept or objective.bound is Bound.FACTOR):
+            from regrasp.planning.states.withstanding.rows import with_rows
+
+            mu, bounds = [kept * mu for mu in frictions], [kept * limit for limit in limits]
+            by_factor = objective.bound is Bound.FACTOR
+            program = with_rows(program, demand, mu, bounds, self.unit, by_factor)
         ends = (limit for limit in limits if limit < inf) if self.loose == inf else ()
         return pressing(program, self.grasp, self.least, self.unit, max(ends, default=self.unit))
 
@@ -169,9 +178,13 @@ class Chooser:
         found = self.shifted(wanted, frictions, limits)
         if found is None and np.isfinite(wanted).all():
             found = self.nearest(wanted, frictions, limits)
-        if found is None or self.least is None or presses(found, self.grasp, self.least):
+        if found is None or self.least is None:
             return found
-        return None
+        if not presses(found, self.grasp, self.least):
+            return None
+        demand = self.demand
+        is_kept = demand is None or not demand.is_kept or demand.spare(found, np.array(limits)) >= 0
+        return found if is_kept else None
 
     def shifted(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Forces (n, d) changed least into equilibrium, idle fingers left idle; None if they leave a cone."""

@@ -10,6 +10,7 @@ from regrasp.planning.states.objectives.known import (
     PEAK,
     PEAK_NORMAL,
     SUM_NORMAL,
+    WRENCH,
     ObjectiveName,
     objective_of,
     recorded,
@@ -20,6 +21,7 @@ from regrasp.planning.states.objectives.objective import (
     LevelObjective,
     Objective,
 )
+from regrasp.planning.states.objectives.withstood import WithstoodFactor
 
 __all__ = [
     "ANGLE",
@@ -30,12 +32,14 @@ __all__ = [
     "PEAK",
     "PEAK_NORMAL",
     "SUM_NORMAL",
+    "WRENCH",
     "Bound",
     "ConvexObjective",
     "ForceCost",
     "LevelObjective",
     "Objective",
     "ObjectiveName",
+    "WithstoodFactor",
     "objective_of",
     "recorded",
 ]

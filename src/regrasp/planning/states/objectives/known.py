@@ -18,8 +18,11 @@ from regrasp.planning.states.objectives.objective import (
     LevelObjective,
     Objective,
 )
+from regrasp.planning.states.objectives.withstood import WithstoodFactor
 
-ObjectiveName = Literal["angle", "force", "effort", "peak", "peak_normal", "friction_use", "sum_normal"]
+ObjectiveName = Literal[
+    "angle", "force", "effort", "peak", "peak_normal", "friction_use", "sum_normal", "wrench"
+]
 
 
 class _Margin(ConvexObjective):
@@ -126,15 +129,21 @@ FRICTION_USE = _FrictionUse(
 SUM_NORMAL = _Normal(
     "sum_normal", "least sum of normal forces", "normal force", "sum", "N", closed_form=closed.SUM_NORMAL
 )
+WRENCH = WithstoodFactor(
+    "wrench", "widest factor of a disturbance withstood", "factor withstood", "least", "-",
+    unbounded=True, bound=Bound.FACTOR,
+)  # fmt: skip
 
 OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
-    {o.name: o for o in (ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE, SUM_NORMAL)}
+    {o.name: o for o in (ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE, SUM_NORMAL, WRENCH)}
 )
 """The objectives that words name."""
 
 
 def recorded(objective: Objective) -> str:
     """The word for an objective in the record of a plan; one of a user's own is marked as such."""
+    if isinstance(objective, WithstoodFactor):
+        return objective.name
     return objective.name if objective == OBJECTIVES.get(objective.name) else f"own:{objective.name}"
 
 

@@ -77,6 +77,7 @@ class Bound(Enum):
     MARGIN = "every force margin from below"
     FORCE = "every force from above"
     NORMAL = "every normal force from above"
+    FACTOR = "the factor of a set that is withstood from below"
 
 
 @dataclass(frozen=True, eq=False)

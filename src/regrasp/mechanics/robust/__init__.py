@@ -1,0 +1,1 @@
+"""What fixed forces withstand when fingers answer with their stiffness."""

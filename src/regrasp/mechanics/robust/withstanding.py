@@ -1,0 +1,159 @@
+"""By how much a set of load deviations may be scaled before a finger slips, opens or exceeds its limit.
+
+Forces f change by R d (``stiffness``). With e scaled by s beside members d of a set that stays, f + R (d + s
+e) is inside the cone of friction mu and within the limit L for all members exactly where, for unit vectors u,
+
+    g . f >= sigma(-R' g)        with g = mu n - u, u across n, besides
+    L - u . f >= sigma(R' u)     for all u,
+
+sigma(y) = sigma_D(y) + s sigma_S(y) the most work of members along y. The factor is the least ratio.
+"""
+
+from dataclasses import dataclass, replace
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.cones import Cones
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.robust.spheres import least_over
+from regrasp.mechanics.wrench import Wrench
+
+SLIPS, OPENS, EXCEEDS = "slips", "opens", "exceeds its limit"
+
+_OPEN = 1e-6  # of the normal force before: what is left counts as none
+_NOTHING = 1e-14
+_LEAST_FRICTION = 2.0**-40
+"""Doubles do not express a direction more finely: less friction than that is none."""
+
+
+class Worst(NamedTuple):
+    """The least ratio of each contact (n,), the deviation that reaches it, and how the finger then fails."""
+
+    factors: Array
+    deviations: list[Wrench | None]
+    hows: list[str]
+
+    @property
+    def first(self) -> int:
+        """Whose is least."""
+        return int(self.factors.argmin())
+
+
+@dataclass(frozen=True)
+class Withstanding:
+    """Forces that answer with stiffness.
+
+    forces: (n, w) and responses: (n, w, q) as the cones measure them. frictions, limits: (n,), infinite for
+    none. base: a set that is withstood besides, whatever else is scaled; None for none.
+    """
+
+    cones: Cones
+    forces: Array
+    responses: Array
+    frictions: Array
+    limits: Array
+    base: LoadSet | None = None
+
+    def factors(self, scaled: LoadSet) -> Worst:
+        """How far ``scaled``, around no load, may be scaled; below 0 where ``base`` fails."""
+        n, w = self.forces.shape
+        least, where = least_over(lambda u: self._slipping(u, scaled), n, w - 1)
+        gs = self._edges(where[:, None])[:, 0]
+        deviations = [self._deviation(-self.responses[i].T @ gs[i], scaled, least[i]) for i in range(n)]
+        hows = [self._how(i, deviations[i]) for i in range(n)]
+        limited = np.flatnonzero(self.limits < inf)
+        if limited.size:
+            some = replace(
+                self,
+                forces=self.forces[limited],
+                responses=self.responses[limited],
+                limits=self.limits[limited],
+            )
+            reached, us = least_over(lambda u: some._exceeding(u, scaled), limited.size, w)
+            for k, i in enumerate(limited.tolist()):
+                if reached[k] < least[i]:
+                    least[i], hows[i] = reached[k], EXCEEDS
+                    deviations[i] = self._deviation(self.responses[i].T @ us[k], scaled, reached[k])
+        return Worst(least, deviations, hows)
+
+    def spare(self) -> Array:
+        """(n,) the least distance of forces to the edge of the cone and to the limit over ``base`` [N]."""
+        n, w = self.forces.shape
+        still = np.zeros((n, 1))
+        slack = 1 / np.sqrt(1 + self.frictions**2)
+        least, _ = least_over(lambda u: self._room(self._edges(u), still) * slack[:, None], n, w - 1)
+        if (self.limits < inf).any():
+            ample = np.where(self.limits < inf, self.limits, 0.0)[:, None]
+            reached, _ = least_over(lambda u: self._room(-u, ample), n, w)
+            least = np.where(self.limits < inf, np.minimum(least, reached), least)
+        return least
+
+    def _room(self, g: Array, constant: Array) -> Array:
+        """(n, m) constant + g . f - sigma_base(-R' g)."""
+        room: Array = constant + np.einsum("nmw,nw->nm", g, self.forces)
+        if self.base is None:
+            return room
+        return room - self.base.support(-np.einsum("nmw,nwq->nmq", g, self.responses))
+
+    def _edges(self, u: Array) -> Array:
+        """(n, m, w) g = mu n - u for u (n, m, w - 1) by the cones' tangents."""
+        across = np.einsum("nmk,nkw->nmw", u, self.cones.tangents)
+        friction = np.maximum(self.frictions, _LEAST_FRICTION)[:, None]
+        result: Array = (friction * self.cones.normals)[:, None] - across
+        return result
+
+    def _slipping(self, u: Array, scaled: LoadSet) -> Array:
+        return self._ratio(self._edges(u), np.zeros((1, 1)), scaled)
+
+    def _exceeding(self, u: Array, scaled: LoadSet) -> Array:
+        return self._ratio(-u, self.limits[:, None], scaled)
+
+    def _ratio(self, g: Array, constant: Array, scaled: LoadSet) -> Array:
+        """(n, m) (constant + g . f - sigma_base) / sigma_scaled, both at -R' g."""
+        twists = -np.einsum("nmw,nwq->nmq", g, self.responses)
+        room = self._room(g, constant)
+        work = scaled.support(twists)
+        size = np.abs(twists) @ np.abs(_reach(scaled))
+        known = work > _NOTHING * size
+        ratio = np.divide(room, work, out=np.full(room.shape, inf), where=known)
+        lost = ~known & (room < -_NOTHING * np.abs(self.forces).max())
+        result: Array = np.where(lost, -inf, ratio)
+        return result
+
+    def _deviation(self, twist: Array, scaled: LoadSet, factor: float) -> Wrench | None:
+        if not np.isfinite(factor):
+            return None
+        total = factor * scaled.extreme(twist).vector
+        if self.base is not None:
+            total = total + self.base.extreme(twist).vector
+        return Wrench.from_vector(total)
+
+    def _how(self, i: int, deviation: Wrench | None) -> str:
+        if deviation is None:
+            return ""
+        after = self.forces[i] + self.responses[i] @ deviation.vector
+        left = float(after @ self.cones.normals[i])
+        return OPENS if left <= _OPEN * abs(float(self.forces[i] @ self.cones.normals[i])) else SLIPS
+
+
+def around_center(loads: LoadSet) -> tuple[LoadSet | None, LoadSet]:
+    """What of a set stays when it is scaled, None for nothing, and the deviations from it that are scaled."""
+    stays = LoadSet.hull([loads.center]) if loads.center.vector.any() else None
+    return stays, loads.deviations
+
+
+def measured_response(grasp: Grasp, response: Array) -> Array:
+    """R (n w, q) as (n, w, q), as the cones measure forces."""
+    columns = response.T.reshape(-1, len(grasp), grasp.width)
+    return np.moveaxis(grasp.cones.measured(columns), 0, -1)
+
+
+def _reach(loads: LoadSet) -> Array:
+    """(3,) or (6,) the largest work along each axis."""
+    axes = np.eye(loads.center.vector.size)
+    result: Array = np.maximum(loads.support(axes), loads.support(-axes))
+    return result

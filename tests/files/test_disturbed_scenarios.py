@@ -1,0 +1,80 @@
+"""Scenarios with a disturbance: planned so that it is withstood, and refused in one line where they are "
+"wrong."""
+
+import pytest
+
+import regrasp as rg
+from regrasp.files import parse_scenario, plan_scenario
+
+pytestmark = pytest.mark.contract
+
+TEXT = """
+[load]
+force = [-1.5, -3.5]
+[load.disturbance]
+{set}
+[[contacts]]
+name = "P1"
+position = [-4.0, -4.0]
+normal = [1.0, 1.0]
+friction = 0.3
+[[contacts]]
+name = "P2"
+position = [4.0, -5.0]
+normal = [-1.0, 2.0]
+friction = 0.3
+[[contacts]]
+name = "P3"
+position = [0.0, 8.0]
+normal = [0.0, -1.0]
+friction = 0.3
+[task]
+{task}
+max_force = 20.0
+"""
+REMOVAL = 'kind = "removal"\ncontact = "P3"\nstiffness = [1000, 800, 600]\nearly_loss = true'
+
+
+@pytest.mark.parametrize(
+    ("words", "loads"),
+    [
+        ("force = 0.1\ntorque = 0.4", rg.LoadSet.ball(rg.Wrench([0, 0]), force=0.1, torque=0.4)),
+        ("tilt_degrees = 2.0", rg.LoadSet.tilted(rg.Wrench([-1.5, -3.5]), 0.0349).deviations),
+        (
+            "hull = [{force = [0.1, 0.0]}, {force = [0.0, 0.0], torque = 0.5}]",
+            rg.LoadSet.hull([rg.Wrench([0.1, 0]), rg.Wrench([0, 0], 0.5)]),
+        ),
+    ],
+)
+def test_a_plan_of_a_scenario_withstands_its_set(words: str, loads: rg.LoadSet) -> None:
+    scenario = parse_scenario(TEXT.format(set=words, task=REMOVAL))
+    plan = plan_scenario(scenario)
+    assert rg.verify(plan, disturbance=loads, stiffness=[1000, 800, 600], early_loss=True).ok
+    calm = TEXT.format(set=words, task=REMOVAL).replace("[load.disturbance]\n" + words, "")
+    without = plan_scenario(parse_scenario(calm))
+    assert not rg.verify(without, disturbance=loads, stiffness=[1000, 800, 600], early_loss=True).ok
+
+
+def test_arriving_fingers_bring_their_stiffness_and_objects_turn() -> None:
+    addition = 'kind = "addition"\ncontact = "P3"\nstiffness = [1000, 800, 600]'
+    loads = rg.LoadSet.ball(rg.Wrench([0, 0]), force=0.01)
+    plan = plan_scenario(parse_scenario(TEXT.format(set="force = 0.01", task=addition)))
+    assert rg.verify(plan, disturbance=loads, stiffness=[1000, 800, 600]).ok
+    rotation = 'kind = "rotation"\ndegrees = 20.0'
+    turned = plan_scenario(parse_scenario(TEXT.format(set="force = 0.01", task=rotation)))
+    assert rg.verify(turned, disturbance=loads).ok
+
+
+@pytest.mark.parametrize(
+    ("words", "task", "said"),
+    [
+        ("", REMOVAL, "load.disturbance: expected force or torque above 0, tilt_degrees or hull"),
+        ("force = 0.1\ntilt_degrees = 3.0", REMOVAL, "one of these three"),
+        ("force = -0.1", REMOVAL, "load.disturbance.force"),
+        ("hull = [{force = [0.1, 0.0, 0.0]}]", REMOVAL, "disturbance.hull: expected forces of 2 numbers"),
+        ("force = 0.1", REMOVAL.replace("[1000, 800, 600]", "[1, 2]"), "task.stiffness: expected a number"),
+    ],
+)
+def test_wrong_sets_are_refused(words: str, task: str, said: str) -> None:
+    with pytest.raises(rg.InvalidInput, match="(?s)" + said.replace(".", r"\.").replace("[", r"\[")):
+        parse_scenario(TEXT.format(set=words, task=task))
