@@ -1,5 +1,8 @@
 """The nearest forces in exact equilibrium inside the friction cones.
 
+Of all f with G f + w = 0 the nearest to f0 is f0 - G' y with (G G') y = G f0 + w. Where it lies inside the
+cones and limits, it is the nearest there, too (``shifted``). Otherwise ``nearest_equilibrium`` asks
+
     minimise 1/2 |f - f0|^2   subject to   G f + w = 0,   f_i in K_i = {cone, |f_i| <= limit_i}
 
 Its Lagrange dual has one unknown per wrench component (3 or 6) and f(y) = proj_K(f0 - G'y) as its inner
@@ -8,11 +11,12 @@ cone cut by a ball is a closed form, so every iterate lies inside the cones and 
 to reach: one step when no cone is touched. (Semismooth Newton: Qi and Sun, Math. Programming 58, 1993.)
 """
 
-from math import hypot, sqrt
+from functools import lru_cache
 
 import numpy as np
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.grasp import Grasp
 
 _STEPS = 200
 # Equilibrium counts as reached at this residual relative to the largest force; a few times rounding.
@@ -27,6 +31,73 @@ _RAY = 0.05
 _STUCK = 1e14
 # A rise of the dual function below this fraction of its value is lost in rounding.
 _ROUNDING = 1e-11
+
+
+# A direction in which G G' is less than this fraction of its largest entry is no direction of G.
+_FLAT = 1e-13
+# A force below this fraction of the largest is a solver's noise at a finger that carries none.
+_IDLE = 1e-8
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def shifted(grasp: Grasp, load: Array, forces: Array, frictions: Array, limits: Array) -> Array | None:
+    """Forces (n, w) moved least into equilibrium, idle fingers left idle; None where that is no answer.
+
+    Forces are as the cones measure them. load: (3,) or (6,), torques divided by the size. frictions, limits:
+    (n,). An answer is in equilibrium, inside every cone and limit, and finite.
+    """
+    sizes = np.maximum.reduce(np.abs(forces), axis=1)
+    used = sizes >= _IDLE * np.maximum.reduce(sizes)
+    f, g, normals = forces.ravel(), grasp.scaled_matrix, grasp.cones.normals
+    if np.logical_and.reduce(used):
+        back = _back(grasp)
+    else:
+        whole = np.repeat(used, forces.shape[1])
+        f, g = np.where(whole, f, 0.0), g * whole
+        back = g.T @ _inverse(g @ g.T)
+    off, heaviest = g @ f + load, np.maximum.reduce(np.abs(load))
+    for _ in range(3):  # the second time takes away the rounding of the first
+        f = f - back @ off
+        off = g @ f + load
+        largest = max(np.maximum.reduce(np.abs(f)), heaviest)
+        is_balanced = np.maximum.reduce(np.abs(off)) <= _ENOUGH * largest < np.inf
+        if is_balanced:
+            break
+    if not is_balanced:
+        return None
+    answer: Array = f.reshape(forces.shape)
+    along = np.einsum("ij,ij->i", answer, normals)
+    across = answer - along[:, None] * normals
+    inside = np.sqrt(np.einsum("ij,ij->i", across, across)) <= frictions * along
+    inside &= (np.einsum("ij,ij->i", answer, answer) <= limits * limits) & (along >= 0)
+    return answer if np.logical_and.reduce(inside) else None
+
+
+@lru_cache(maxsize=64)
+def _back(grasp: Grasp) -> Array:
+    """G' (G G')^-1: the least forces (n w, 3 or 6) that make a wrench."""
+    g = grasp.scaled_matrix
+    return read_only(g.T @ _inverse(g @ g.T))
+
+
+def _inverse(gram: Array) -> Array:
+    """The inverse of G G' (r, r); zero in flat directions, where the pivots of L L' = G G' vanish."""
+    flat = _FLAT * np.maximum.reduce(gram, axis=None)
+    try:
+        lower = np.linalg.cholesky(gram)
+        if np.minimum.reduce(lower.diagonal()) ** 2 > flat:
+            return np.asarray(np.linalg.inv(gram), dtype=float)
+    except np.linalg.LinAlgError:
+        pass
+    keep: list[int] = []
+    left = gram.copy()
+    for k in range(len(gram)):  # a row whose pivot vanishes follows from those before it
+        if left[k, k] > flat:
+            left = left - np.outer(left[:, k], left[k] / left[k, k])
+            keep.append(k)
+    inverse = np.zeros_like(gram)
+    inverse[np.ix_(keep, keep)] = np.linalg.inv(gram[np.ix_(keep, keep)])
+    return inverse
 
 
 def nearest_equilibrium(
@@ -45,6 +116,7 @@ def nearest_equilibrium(
     if scale == 0:
         return np.zeros_like(forces)
 
+    parts = np.ascontiguousarray(g.reshape(-1, n, d).transpose(1, 0, 2))  # (n, r, d)
     y, damping, stride = np.zeros(w.size), 0.0, 1.0
     f, derivative = _project(forces, normals, frictions, limits)
     residual = g @ f.ravel() + w
@@ -53,10 +125,7 @@ def nearest_equilibrium(
             return f
         if abs(residual).max() <= _ENOUGH * scale:  # as near as beside such large forces; go on from here
             return nearest_equilibrium(f, matrix, load, normals, frictions, limits, length)
-        curvature = sum(
-            (g[:, i * d : i * d + d] @ derivative[i] @ g[:, i * d : i * d + d].T for i in range(n)),
-            start=np.zeros((w.size, w.size)),
-        )
+        curvature = np.add.reduce(parts @ derivative @ parts.transpose(0, 2, 1))
         # A contact that pushes nothing adds no curvature; the shift keeps the step finite there.
         step = stride * np.linalg.solve(curvature + (1e-12 * n + damping) * np.eye(w.size), residual)
         trial = y + step
@@ -89,31 +158,35 @@ def _dual(f: Array, wanted: Array, residual: Array, y: Array) -> float:
 
 def _project(forces: Array, normals: Array, frictions: Array, limits: Array) -> tuple[Array, Array]:
     """Nearest points of K to (n, d) forces and the derivatives (n, d, d) of that map."""
-    n, d = forces.shape
-    points, derivatives = np.zeros((n, d)), np.zeros((n, d, d))
-    for i in range(n):
-        p, dp = _onto_cone(forces[i], normals[i], float(frictions[i]))
-        magnitude = sqrt(float(p @ p))
-        if magnitude > limits[i]:  # onto the ball: the composition is the projection onto cone and ball
-            direction = p / magnitude
-            dp = (limits[i] / magnitude) * (dp - np.outer(direction, direction @ dp))
-            p = limits[i] * direction
-        points[i], derivatives[i] = p, dp
+    identity = np.eye(forces.shape[1])
+    normal = np.einsum("ij,ij->i", forces, normals)
+    tangent = forces - normal[:, None] * normals
+    tangential = np.hypot.reduce(tangent, axis=1)  # squares of tiny forces would vanish
+    # Without friction, a pull along the normal is no push.
+    inside = (normal >= 0) & (tangential <= frictions * normal)
+    apex = ~inside & (frictions * tangential <= -normal)
+    t = tangent / np.where(tangential > 0, tangential, 1.0)[:, None]
+    root = np.sqrt(1 + frictions * frictions)
+    edge = (normals + frictions[:, None] * t) / root[:, None]
+    along = np.maximum(np.einsum("ij,ij->i", forces, edge), 0.0)
+    share = np.where(inside, 0.0, along * frictions / root / np.where(tangential > 0, tangential, 1.0))
+    # The rim of the cone; nothing in the plane.
+    around = identity - _squares(normals) - _squares(t)
+    flat = inside[:, None]
+    points = np.where(flat, forces, along[:, None] * edge)
+    derivatives = np.where(flat[:, None], identity, _squares(edge) + share[:, None, None] * around)
+    points[apex], derivatives[apex] = 0.0, 0.0
+    size = np.sqrt(np.einsum("ij,ij->i", points, points))
+    for i in np.flatnonzero(size > limits):  # the composition is the projection onto cone and ball
+        direction = points[i] / size[i]
+        derivatives[i] = (limits[i] / size[i]) * (
+            derivatives[i] - np.outer(direction, direction @ derivatives[i])
+        )
+        points[i] = limits[i] * direction
     return points, derivatives
 
 
-def _onto_cone(f: Array, n: Array, mu: float) -> tuple[Array, Array]:
-    normal = float(f @ n)
-    tangent = f - normal * n
-    tangential = hypot(*tangent)  # squares of tiny forces would vanish
-    identity = np.eye(f.size)
-    if normal >= 0 and tangential <= mu * normal:  # without friction, a pull along the normal is no push
-        return f, identity
-    if mu * tangential <= -normal:
-        return np.zeros_like(f), np.zeros_like(identity)
-    t = tangent / tangential
-    edge = (n + mu * t) / sqrt(1 + mu * mu)
-    along = max(float(f @ edge), 0.0)
-    around = identity - np.outer(n, n) - np.outer(t, t)  # the rim of the cone; nothing in the plane
-    rim = along * mu / sqrt(1 + mu * mu) / tangential
-    return along * edge, np.outer(edge, edge) + rim * around
+def _squares(vectors: Array) -> Array:
+    """(n, d, d) each of the (n, d) vectors times itself."""
+    result: Array = vectors[:, :, None] * vectors[:, None]
+    return result

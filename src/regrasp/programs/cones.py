@@ -23,6 +23,7 @@ class Cones:
         kind = np.concatenate([*kinds, np.zeros(0, dtype=int)])
         self.zero: NDArray[np.bool_] = kind == 0
         self.nonnegative: NDArray[np.bool_] = kind == 1
+        self._least = np.where(self.nonnegative, 0.0, -np.inf)
         self.has_round = bool((kind == 2).any())
         self._round: list[tuple[slice, int]] = []  # rows of a run of second-order cones, and their size
         row = 0
@@ -40,7 +41,7 @@ class Cones:
 
     def excess(self, s: Array) -> Array:
         """(m,) how far s (m,) lies outside: |s| of zero rows, -s of negative ones, |v| - t of a cone."""
-        outside: Array = np.where(self.zero, np.abs(s), np.maximum(-s, 0.0))
+        outside: Array = np.maximum(-s, np.where(self.zero, s, 0.0))
         for rows, size in self._round:
             each, out = s[rows].reshape(-1, size), outside[rows].reshape(-1, size)
             out[:] = 0.0
@@ -80,7 +81,7 @@ class Cones:
         """The point of the dual cone nearest to z (m,); the zero cone's dual is everything."""
         if self.has_round and _HUGE < (size := float(np.abs(z).max())) < np.inf:
             return size * self.dual(z / size)
-        nearest: Array = np.where(self.nonnegative & (z > -np.inf), np.maximum(z, 0.0), z)
+        nearest: Array = np.where(z > -np.inf, np.maximum(z, self._least), z)
         for rows, size in self._round:
             each = nearest[rows].reshape(-1, size)
             t, length = each[:, 0], _length(each[:, 1:])
@@ -96,5 +97,5 @@ class Cones:
 def _length(rows: Array) -> Array:
     if not rows.shape[1]:
         return np.zeros(rows.shape[0])
-    length: Array = np.sqrt(np.cumsum(rows * rows, axis=1)[:, -1])  # as compiled loops sum
+    length: Array = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     return length

@@ -72,7 +72,8 @@ class Program:
         if b.shape != self.b.shape:
             raise InvalidInput(f"b must have shape {self.b.shape}, got {b.shape}")
         _check_finite("b", b)
-        _ = self.has_second_order, self.codes, self.cones, self.why_not_convex  # the same for any b
+        _ = self.has_second_order, self.codes, self.terms, self.why_not_convex  # the same for any b
+        _ = self.given_units
         same = object.__new__(Program)
         same.__dict__.update(self.__dict__)
         object.__setattr__(same, "b", b)
@@ -142,6 +143,13 @@ class Program:
     def terms(self) -> Terms:
         """The matrices, for products."""
         return Terms(self.P, self.A, self.cones)
+
+    @cached_property
+    def given_units(self) -> tuple[Array, Array, Array]:
+        """Of unknowns, rows and columns where ``size`` gives them; see ``units``."""
+        from regrasp.programs.judging.units import given_units
+
+        return given_units(self)
 
     @cached_property
     def why_not_convex(self) -> str:

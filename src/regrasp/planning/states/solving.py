@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput, SolverFailed, shown
-from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
+from regrasp.mechanics.balance import nearest_equilibrium, shifted
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
@@ -188,12 +188,8 @@ class Chooser:
 
     def shifted(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Forces (n, d) changed least into equilibrium, idle fingers left idle; None if they leave a cone."""
-        from regrasp.closed_form.compiled.shift import shifted_inside
-
         mu, limit = np.array(frictions), np.array(limits)
-        given = wanted, self.matrix, self.vector, self.grasp.cones.normals, mu, limit
-        forces, is_answer = shifted_inside(*given, EQUILIBRIUM / 2)
-        return forces if is_answer else None
+        return shifted(self.grasp, self.vector, wanted, mu, limit)
 
     def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """The forces nearest to ``forces`` in equilibrium, inside cones and limits; None if none are."""

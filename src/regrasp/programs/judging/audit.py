@@ -14,13 +14,12 @@ objective, and no number elsewhere makes a miss look small. z is taken where it 
 moves shows in the columns.
 """
 
-from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.programs.judging.terms import largest, reciprocal, total
-from regrasp.programs.judging.units import units_of_columns, units_of_unknowns, weight_of_terms
+from regrasp.programs.judging.terms import largest, most, reciprocal
+from regrasp.programs.judging.units import own_units_of_columns, units_of_unknowns, weight_of_terms
 from regrasp.programs.program import Array, Program
 
 
@@ -43,53 +42,38 @@ class Audit(NamedTuple):
     absolute_gap: float
 
 
-_COLD = 200
-"""Answers measured before the compiled measures are loaded, or compiled: fewer take longer that way."""
-_measured = count()
-
-
 def audited(program: Program, x: Array, z: Array) -> Audit:
     """The measures of an answer x (n,), z (m,)."""
-    if next(_measured) < _COLD:
-        return measured(program, x, z)
-    from regrasp.programs.judging.compiled_audit import measures
-
-    P, A = program.P, program.A
-    data = P.indptr, P.indices, P.data, program.q, A.indptr, A.indices, A.data, program.b
-    return Audit(*measures(*data, program.codes, program.size, x, z))
-
-
-def measured(program: Program, x: Array, z: Array) -> Audit:
-    """The same by NumPy alone, which needs nothing compiled; objective and gap to the last bit."""
     terms, cones, b, q = program.terms, program.cones, program.b, program.q
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        weight = weight_of_terms(program)
         unknowns, floors = units_of_unknowns(program)
-        sizes = np.maximum(np.abs(x), unknowns)
-        own_rows = terms.abs_A @ np.abs(x)
-        of_rows = cones.units(np.abs(b) + floors + weight * own_rows)
-        whole_rows = cones.units(np.abs(b) + floors + own_rows)
+        weight = weight_of_terms(program)
+        size_x, size_b = np.abs(x), np.abs(b)
+        sizes = np.maximum(size_x, unknowns)
+        own_rows = terms.abs_A @ size_x
+        of_rows = whole_rows = cones.units(size_b + floors + own_rows)
+        if weight < 1:
+            of_rows = cones.units(size_b + floors + weight * own_rows)
         s = b - terms.A @ x
-        excess = cones.excess(s)
-        inside = cones.dual(z)
-        px, abs_px = program.P @ x, terms.abs_P @ np.abs(x)
-        pulls = terms.abs_P @ unknowns + np.abs(q)
-        gradient = np.abs(px + q + terms.A.T @ inside)
-        own = abs_px + terms.abs_A.T @ np.abs(inside)
-        of_columns = pulls + units_of_columns(program, pulls)
+        excess, inside = cones.excess(s), cones.dual(z)
+        size_z = np.abs(inside)
+        px = terms.P @ x
+        gradient = np.abs(px + q + inside @ terms.A)
+        own = terms.abs_P @ size_x + size_z @ terms.abs_A
+        of_columns = own_units_of_columns(program, unknowns)
         per_dual = cones.units(terms.in_rows(reciprocal(of_columns + own)))
         both = np.abs(cones.products(s, inside)) * per_dual
-        quadratic, linear = total(x * px), total(q * x)
-        gap = abs(quadratic + linear + total(b * inside))
-        of_gap = float(sizes @ (terms.abs_P @ sizes + np.abs(q)) + np.abs(b) @ np.abs(inside))
+        quadratic, linear = float(x @ px), float(q @ x)
+        gap = abs(quadratic + linear + float(b @ inside))
+        of_gap = float(sizes @ (terms.abs_P @ sizes + np.abs(q)) + size_b @ size_z)
         return Audit(
             largest(excess, of_rows),
             largest(gradient, of_columns + weight * own),
             largest(both, whole_rows),
             gap / of_gap if gap else 0.0,
             quadratic / 2 + linear,
-            float(excess.max(initial=0.0)),
-            float(np.abs(z - inside).max(initial=0.0)),
-            float(gradient.max(initial=0.0)),
+            most(excess),
+            most(np.abs(z - inside)),
+            most(gradient),
             gap,
         )

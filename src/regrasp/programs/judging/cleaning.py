@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.linalg import lsmr
 
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.judging.terms import reciprocal
@@ -125,6 +124,8 @@ def _least(rows: list[Any], wanted: list[Array], weights: Array) -> Array:
     if matrix.shape[0] * matrix.shape[1] <= _DENSE:
         step = np.linalg.lstsq(matrix.toarray(), target, rcond=1e-13)[0]
     else:
+        from scipy.sparse.linalg import lsmr
+
         step = lsmr(matrix, target, atol=1e-15, btol=1e-15, conlim=1e15)[0]
     result: Array = weights * step
     return result

@@ -1,5 +1,6 @@
 """The matrices of a program and of the sizes of their terms, in the layout in which products are fastest."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,10 +27,10 @@ class Terms:
         self.P, self.A = (_dense(M) if self.is_dense else M.tocsr() for M in (P, A))
         self.abs_P, self.abs_A = abs(self.P), abs(self.A)
         self.of_rows = cones.largest(self.in_rows(np.ones(A.shape[1])))
-        self.inverse_A = self._inverse()
         self.diagonal = P.diagonal()
 
-    def _inverse(self) -> Any:
+    @cached_property
+    def inverses(self) -> Any:
         """1 / |a_ij|, zero where an entry is, or is the rounding of a row's largest."""
         largest = self.of_rows
         if self.is_dense:
@@ -49,17 +50,17 @@ class Terms:
 
     def back_in_rows(self, of_columns: Array) -> Array:
         """(m,) the largest of_columns_j / |a_ij| of each row; of_columns: (n,)."""
-        return self._largest(self.inverse_A, of_columns, 1)
+        return self._largest(self.inverses, of_columns, 1)
 
     def back_in_columns(self, of_rows: Array) -> Array:
         """(n,) the largest of_rows_i / |a_ij| of each column; of_rows: (m,)."""
-        return self._largest(self.inverse_A, of_rows, 0)
+        return self._largest(self.inverses, of_rows, 0)
 
     def _largest(self, matrix: Any, factors: Array, axis: int) -> Array:
         if 0 in matrix.shape:
             return np.zeros(matrix.shape[1 - axis])
         if self.is_dense:
-            found: Array = (matrix * (factors if axis else factors[:, None])).max(axis=axis)
+            found: Array = np.maximum.reduce(matrix * (factors if axis else factors[:, None]), axis=axis)
         else:
             scaled = matrix @ sparse.diags(factors) if axis else sparse.diags(factors) @ matrix
             found = scaled.max(axis=axis).toarray().ravel()
@@ -72,16 +73,20 @@ def _dense(matrix: sparse.csc_matrix) -> Any:
 
 def largest(amounts: Array, units: Array) -> float:
     """The largest of amounts / units; nothing counts as zero of whatever unit, and NaN is passed on."""
-    ratios = np.divide(amounts, units, out=np.zeros_like(amounts), where=amounts != 0)
-    return float(ratios.max(initial=0.0))
+    worst = most(amounts / units)
+    if worst == worst:
+        return worst
+    return most(np.divide(amounts, units, out=np.zeros_like(amounts), where=amounts != 0))
+
+
+def most(sizes: Array) -> float:
+    """The largest of sizes, zero of none."""
+    return float(np.maximum.reduce(sizes)) if sizes.size else 0.0
 
 
 def reciprocal(units: Array) -> Array:
     """1 / units, and zero where a unit is: there all terms are."""
+    if np.logical_and.reduce(units, axis=None):
+        return 1.0 / units
     inverse: Array = np.divide(1.0, units, out=np.zeros_like(units), where=units != 0)
     return inverse
-
-
-def total(values: Array) -> float:
-    """The sum, taken one after the other as compiled loops do, so that both are equal to the last bit."""
-    return float(np.cumsum(values)[-1]) if values.size else 0.0

@@ -31,14 +31,29 @@ def units_of_unknowns(program: Program) -> tuple[Array, Array]:
     """X (n,), and of each row (m,) the least |a_ij| X_j, or the largest where all X are given."""
     terms, cones = program.terms, program.cones
     if program.size > 0:
-        given = np.full(program.q.size, program.size)
-        return given, terms.in_rows(given)
+        return program.given_units[:2]
     sides = reciprocal(cones.units(np.abs(program.b)))
     inverse = np.maximum(terms.in_columns(sides), terms.diagonal * reciprocal(np.abs(program.q)))
     for number in range(PASSES):
         rows = np.where(sides > 0, sides, cones.largest(terms.back_in_rows(inverse)))
         inverse = _passed(inverse, terms.in_columns(rows), number)
     return reciprocal(inverse), reciprocal(terms.back_in_rows(inverse))
+
+
+def given_units(program: Program) -> tuple[Array, Array, Array]:
+    """The same where ``size`` is given, and V (n,) of columns besides: whatever b is."""
+    terms = program.terms
+    given = np.full(program.q.size, program.size)
+    pulls = terms.abs_P @ given + np.abs(program.q)
+    return given, terms.in_rows(given), pulls + units_of_columns(program, pulls)
+
+
+def own_units_of_columns(program: Program, unknowns: Array) -> Array:
+    """V (n,) of columns without the weighted terms, for X (n,)."""
+    if program.size > 0:
+        return program.given_units[2]
+    pulls: Array = program.terms.abs_P @ unknowns + np.abs(program.q)
+    return pulls + units_of_columns(program, pulls)
 
 
 def units_of_columns(program: Program, pulls: Array) -> Array:

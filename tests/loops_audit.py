@@ -1,18 +1,14 @@
-"""The measures of ``audit`` in loops compiled by Numba: a twentieth of the time for small programs."""
+"""The measures of ``audit`` once more, number by number."""
 
 from math import inf, sqrt
 
 import numpy as np
 
-from regrasp.compilation import kept
 from regrasp.programs.judging.terms import ROUNDING
 from regrasp.programs.judging.units import OWN, PASSES
 
-# Numba keeps what it compiled until this file changes: touch it when one of these numbers does.
 
-
-@kept()
-def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped-def]
+def _products(indptr, indices, data, x, sizes, rows):
     """A x, |A| sizes."""
     result, terms = np.zeros(rows), np.zeros(rows)
     for j in range(x.size):
@@ -22,16 +18,14 @@ def _products(indptr, indices, data, x, sizes, rows):  # type: ignore[no-untyped
     return result, terms
 
 
-@kept()
-def _length(values, start, stop):  # type: ignore[no-untyped-def]
+def _length(values, start, stop):
     squares = 0.0
     for i in range(start, stop):
         squares += values[i] * values[i]
     return sqrt(squares)
 
 
-@kept()
-def _inverse(values):  # type: ignore[no-untyped-def]
+def _inverse(values):
     inverse = np.zeros(values.size)
     for i in range(values.size):
         if values[i] != 0:
@@ -39,8 +33,7 @@ def _inverse(values):  # type: ignore[no-untyped-def]
     return inverse
 
 
-@kept()
-def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
+def _of_cones(codes, values, together):
     """The values of rows, of each second-order cone the length of its own, or the largest."""
     row = 0
     for kind, size, count in codes:
@@ -56,8 +49,7 @@ def _of_cones(codes, values, together):  # type: ignore[no-untyped-def]
     return values
 
 
-@kept()
-def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignore[no-untyped-def]
+def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):
     """Inverse units of columns, or of rows, passed on through rows, or columns, that have none: ``units``."""
     fixed = rows > 0 if of_rows else columns > 0
     for number in range(PASSES):
@@ -93,8 +85,7 @@ def _passed_on(ap, ai, ad, noise, codes, rows, columns, of_rows):  # type: ignor
             break
 
 
-@kept()
-def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[no-untyped-def]
+def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):
     rows, columns = _inverse(_of_cones(codes, np.abs(b), True)), np.zeros(q.size)
     for j in range(q.size):
         for k in range(pp[j], pp[j + 1]):
@@ -106,8 +97,7 @@ def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):  # type: ignore[
     return columns
 
 
-@kept()
-def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore[no-untyped-def]
+def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):
     rows, columns = np.zeros(m), _inverse(pulls)
     for j in range(pulls.size):
         for k in range(ap[j], ap[j + 1]):
@@ -117,21 +107,18 @@ def _inverse_units_of_duals(ap, ai, ad, noise, pulls, codes, m):  # type: ignore
     return rows
 
 
-@kept()
-def _ratio(amount, unit):  # type: ignore[no-untyped-def]
+def _ratio(amount, unit):
     if amount == 0:
         return 0.0
     return amount / unit if unit != 0 else inf
 
 
-@kept()
-def _worse(worst, value):  # type: ignore[no-untyped-def]
+def _worse(worst, value):
     """The larger one, and NaN once there is one."""
     return worst if worst != worst or value <= worst else value
 
 
-@kept()
-def _into_dual(codes, z):  # type: ignore[no-untyped-def]
+def _into_dual(codes, z):
     inside, row = z.copy(), 0
     for kind, size, count in codes:
         if kind == 1:
@@ -154,8 +141,7 @@ def _into_dual(codes, z):  # type: ignore[no-untyped-def]
     return inside
 
 
-@kept()
-def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):  # type: ignore[no-untyped-def]
+def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):
     """The fields of ``Audit``."""
     n, m = q.size, b.size
     noise = np.zeros(m)
