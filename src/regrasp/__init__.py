@@ -10,20 +10,8 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
-from regrasp.planning.changes.rotation import plan_rotation
-from regrasp.planning.states.batch import best_squeezes, locus_intervals
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState, Criteria
-from regrasp.planning.states.objectives import ForceCost
-from regrasp.planning.states.two_fingers import EquilibriumLocus
-from regrasp.plans.loads import LoadSeries
-from regrasp.plans.sampled import SampledPath
-from regrasp.plans.straight import StraightPath
-from regrasp.plans.timing import TimeScaling
-from regrasp.plans.transition import Transition
-from regrasp.plans.turning import TurningPath
-from regrasp.verification import Verification, verify
 
 if TYPE_CHECKING:
     from regrasp.measures.closure import Closure, closure
@@ -33,12 +21,17 @@ if TYPE_CHECKING:
     from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
+    from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
+    from regrasp.planning.changes.rotation import plan_rotation
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
     from regrasp.planning.holds.weights import RegraspWeights
     from regrasp.planning.regrasps.planar import RegraspProblem
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
+    from regrasp.planning.states.batch import best_squeezes, locus_intervals
+    from regrasp.planning.states.objectives import ForceCost
+    from regrasp.planning.states.two_fingers import EquilibriumLocus
     from regrasp.planning.surveys.extremes.held_centres import HeldCentres, held_centres
     from regrasp.planning.surveys.extremes.largest_load import LargestLoad, largest_load
     from regrasp.planning.surveys.extremes.least_friction import LeastFriction, least_friction
@@ -47,47 +40,70 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.pyramid_loss import PyramidLosses, pyramid_losses
     from regrasp.planning.surveys.sensitivity import Sensitivity, sensitivity
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
+    from regrasp.plans.loads import LoadSeries
     from regrasp.plans.regrasp_plan import RegraspPlan
+    from regrasp.plans.sampled import SampledPath
     from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+    from regrasp.plans.straight import StraightPath
+    from regrasp.plans.timing import TimeScaling
+    from regrasp.plans.transition import Transition
+    from regrasp.plans.turning import TurningPath
+    from regrasp.verification import Verification, verify
 __version__ = "0.1.0"
 
-# Loaded when they are asked for, so that `import regrasp` stays fast: whole regrasps, shapes and surveys.
+# Loaded when they are asked for, so that `import regrasp` stays fast: all but the choice of a state.
 _LATER = {
-    "Closure": "regrasp.measures.closure",
-    "closure": "regrasp.measures.closure",
-    "LoadSet": "regrasp.mechanics.loads.load_set",
-    "Measure": "regrasp.measures.measure",
-    "Quality": "regrasp.measures.measure",
-    "quality": "regrasp.measures.quality",
-    "WrenchBall": "regrasp.measures.wrench_ball",
-    "wrench_ball": "regrasp.measures.wrench_ball",
-    "Mesh": "regrasp.mesh.mesh",
-    "Outline": "regrasp.outline.outline",
+    "best_squeezes": "regrasp.planning.states.batch",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
     "bottleneck": "regrasp.planning.holds.bottleneck",
-    "HeldCentres": "regrasp.planning.surveys.extremes.held_centres",
+    "Closure": "regrasp.measures.closure",
+    "closure": "regrasp.measures.closure",
+    "EquilibriumLocus": "regrasp.planning.states.two_fingers",
+    "ForceCost": "regrasp.planning.states.objectives",
     "held_centres": "regrasp.planning.surveys.extremes.held_centres",
-    "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
-    "largest_load": "regrasp.planning.surveys.extremes.largest_load",
-    "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
-    "least_friction": "regrasp.planning.surveys.extremes.least_friction",
-    "HeldDirections": "regrasp.planning.surveys.held_directions",
     "held_directions": "regrasp.planning.surveys.held_directions",
-    "HeldSphere": "regrasp.planning.surveys.held_sphere",
     "held_sphere": "regrasp.planning.surveys.held_sphere",
-    "RegraspObstacle": "regrasp.planning.regrasps.why_not",
-    "PyramidLosses": "regrasp.planning.surveys.pyramid_loss",
+    "HeldCentres": "regrasp.planning.surveys.extremes.held_centres",
+    "HeldDirections": "regrasp.planning.surveys.held_directions",
+    "HeldSphere": "regrasp.planning.surveys.held_sphere",
+    "largest_load": "regrasp.planning.surveys.extremes.largest_load",
+    "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
+    "least_friction": "regrasp.planning.surveys.extremes.least_friction",
+    "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
+    "LoadSeries": "regrasp.plans.loads",
+    "LoadSet": "regrasp.mechanics.loads.load_set",
+    "locus_intervals": "regrasp.planning.states.batch",
+    "Measure": "regrasp.measures.measure",
+    "Mesh": "regrasp.mesh.mesh",
+    "Outline": "regrasp.outline.outline",
+    "plan_addition": "regrasp.planning.changes.finger_change",
+    "plan_exchange": "regrasp.planning.changes.finger_change",
+    "plan_regrasp": "regrasp.planning.regrasps.verbs",
+    "plan_regrasps": "regrasp.planning.regrasps.verbs",
+    "plan_removal": "regrasp.planning.changes.finger_change",
+    "plan_rotation": "regrasp.planning.changes.rotation",
     "pyramid_losses": "regrasp.planning.surveys.pyramid_loss",
+    "PyramidLosses": "regrasp.planning.surveys.pyramid_loss",
+    "Quality": "regrasp.measures.measure",
+    "quality": "regrasp.measures.quality",
+    "RegraspObstacle": "regrasp.planning.regrasps.why_not",
     "RegraspPlan": "regrasp.plans.regrasp_plan",
     "RegraspProblem": "regrasp.planning.regrasps.planar",
     "RegraspWeights": "regrasp.planning.holds.weights",
-    "plan_regrasp": "regrasp.planning.regrasps.verbs",
-    "plan_regrasps": "regrasp.planning.regrasps.verbs",
+    "SampledPath": "regrasp.plans.sampled",
     "Sensitivity": "regrasp.planning.surveys.sensitivity",
     "sensitivity": "regrasp.planning.surveys.sensitivity",
     "SpaceRegraspPlan": "regrasp.plans.space_regrasp_plan",
     "SpaceRegraspProblem": "regrasp.planning.regrasps.spatial",
     "SqueezeLocus": "regrasp.planning.surveys.squeeze_locus",
+    "StraightPath": "regrasp.plans.straight",
+    "TimeScaling": "regrasp.plans.timing",
+    "Transition": "regrasp.plans.transition",
+    "TurningPath": "regrasp.plans.turning",
+    "Verification": "regrasp.verification",
+    "verify": "regrasp.verification",
+    "wrench_ball": "regrasp.measures.wrench_ball",
+    "WrenchBall": "regrasp.measures.wrench_ball",
 }
 
 __all__ = [
