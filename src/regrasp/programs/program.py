@@ -146,10 +146,8 @@ class Program:
 
     @cached_property
     def given_units(self) -> tuple[Array, Array, Array]:
-        """Of unknowns, rows and columns where ``size`` gives them; see ``units``."""
-        from regrasp.programs.judging.units import given_units
-
-        return given_units(self)
+        """Units of unknowns (n,), rows (m,) and columns (n,) where ``size`` gives the first."""
+        return self.terms.given_units(self.size, self.q)
 
     @cached_property
     def why_not_convex(self) -> str:

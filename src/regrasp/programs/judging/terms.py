@@ -40,6 +40,12 @@ class Terms:
         inverse.data = np.where(inverse.data > ROUNDING * largest[rows], reciprocal(inverse.data), 0.0)
         return inverse
 
+    def given_units(self, size: float, q: Array) -> tuple[Array, Array, Array]:
+        """Units of unknowns (n,) where each is ``size``; with them those of rows (m,) and columns (n,)."""
+        given = np.full(q.size, size)
+        pulls = self.abs_P @ given + np.abs(q)
+        return given, self.in_rows(given), pulls + most(pulls)
+
     def in_columns(self, of_rows: Array) -> Array:
         """(n,) the largest |a_ij| of_rows_i of each column; of_rows: (m,)."""
         return self._largest(self.abs_A, of_rows, 0)

@@ -40,14 +40,6 @@ def units_of_unknowns(program: Program) -> tuple[Array, Array]:
     return reciprocal(inverse), reciprocal(terms.back_in_rows(inverse))
 
 
-def given_units(program: Program) -> tuple[Array, Array, Array]:
-    """The same where ``size`` is given, and V (n,) of columns besides: whatever b is."""
-    terms = program.terms
-    given = np.full(program.q.size, program.size)
-    pulls = terms.abs_P @ given + np.abs(program.q)
-    return given, terms.in_rows(given), pulls + units_of_columns(program, pulls)
-
-
 def own_units_of_columns(program: Program, unknowns: Array) -> Array:
     """V (n,) of columns without the weighted terms, for X (n,)."""
     if program.size > 0:
