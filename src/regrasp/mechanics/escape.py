@@ -11,7 +11,7 @@ from regrasp.display import Pictured
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, instance, limits, read_only
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.opposition import dot, exact, oppositions
+from regrasp.mechanics.opposition import dot, exact, oppositions, surely_wins
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mechanics.wrench import Wrench
 
@@ -92,6 +92,10 @@ class EscapeTwist(ArrayValue, Pictured):
     @property
     def is_proof(self) -> bool:
         """Whether no forces within cones and limits, and below 1e9 times the load, balance the load."""
+        if inf not in self.limits:
+            given = self.grasp, self.load.vector, self.twist, self.frictions, self.limits
+            if surely_wins(*given):
+                return True
         return self.least_force > self._never
 
     @cached_property

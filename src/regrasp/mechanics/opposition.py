@@ -4,8 +4,13 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import isqrt
 
+import numpy as np
+
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+
+# Roundings of a product with the grasp matrix and what follows, each of at most 2^-53 of the terms.
+_ROUNDING = 64 * 2.0**-53
 
 
 def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple[Fraction, ...]:
@@ -34,6 +39,35 @@ def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple
         else:
             result.append((mu * _sqrt_above(tangential) - vn) * _sqrt_above(1 / (nn * (1 + mu * mu))))
     return tuple(result)
+
+
+def surely_wins(
+    grasp: Grasp, load: Array, twist: Array, frictions: Sequence[float], limits: Sequence[float]
+) -> bool:
+    """Whether a load does more work along a motion than forces within finite limits can oppose, for sure.
+
+    In doubles, with room for their rounding; where this cannot tell, ``oppositions`` decides.
+    """
+    cones, mu, limit = grasp.cones, np.array(frictions), np.array(limits)
+    velocities = (twist @ cones.matrix).reshape(len(grasp), -1)
+    sizes = (np.abs(twist) @ np.abs(cones.matrix)).reshape(velocities.shape)
+    work = limit * opposed(*parts(velocities, cones.normals), mu)
+    terms = float(np.abs(load) @ np.abs(twist) + (limit * np.add.reduce(sizes, axis=1)) @ (1 + mu))
+    return bool(load @ twist - np.add.reduce(work) > _ROUNDING * terms)
+
+
+def parts(velocities: Array, normals: Array) -> tuple[Array, Array]:
+    """(n,) v_n and |v_t| of velocities (n, w)."""
+    along = np.einsum("ij,ij->i", velocities, normals)
+    across = velocities - along[:, None] * normals
+    return along, np.sqrt(np.einsum("ij,ij->i", across, across))
+
+
+def opposed(along: Array, across: Array, frictions: Array) -> Array:
+    """(n,) the most work that one newton in each cone can do against v_n (n,) and |v_t| (n,)."""
+    edge = np.maximum(frictions * across - along, 0.0) / np.sqrt(1 + frictions * frictions)
+    whole: Array = np.where(across <= -frictions * along, np.hypot(along, across), edge)
+    return whole
 
 
 def exact(values: Array) -> list[Fraction]:

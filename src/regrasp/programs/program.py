@@ -64,7 +64,7 @@ class Program:
             _check_finite(name, values)
 
     def with_right_side(self, b: Array) -> "Program":
-        """The same program with another b (m,), at little cost: nothing but b is looked at again.
+        """The same program with another b (m,), at little cost: what is known of the rest is kept.
 
         Args:
             b: (m,).
@@ -72,8 +72,6 @@ class Program:
         if b.shape != self.b.shape:
             raise InvalidInput(f"b must have shape {self.b.shape}, got {b.shape}")
         _check_finite("b", b)
-        _ = self.has_second_order, self.codes, self.terms, self.why_not_convex  # the same for any b
-        _ = self.given_units
         same = object.__new__(Program)
         same.__dict__.update(self.__dict__)
         object.__setattr__(same, "b", b)

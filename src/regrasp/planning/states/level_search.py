@@ -1,6 +1,6 @@
 """The highest level of a narrowing that forces reach, from below and from above; see ``narrowing``."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from math import inf
 from typing import NamedTuple
 
@@ -23,6 +23,11 @@ _CLEAR = 1e-6
 # A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
 # root of its tolerance, where the optimum is flat.
 _NOISE = 1e-4
+# Of the largest normal force: what the first step asks for at every finger at least.
+_FIRST = 0.05
+_STEPS = 12
+# The level from which on a motion is a proof is found to this.
+_NARROW = 1e-10
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -31,10 +36,19 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
     Of the states within the tolerance, that of the widest force margin is taken. Raises ``SolverFailed``
     where the back end cannot tell what the highest level is.
     """
-    if narrowing.objective.may_reach_top:  # four contacts and more often need none
+    lost = narrowing.top
+    if chooser.least is None and inf not in limits:
+        straight = _along_normals(chooser, narrowing, limits)
+        if straight is not None and narrowing.level(straight) > narrowing.level(forces):
+            forces = straight
+        forces, lost, is_widest = _by_newton(chooser, narrowing, forces, limits)
+        if is_widest:
+            forces = _without_noise(chooser, narrowing, forces, limits)
+            return Found(forces, max(lost - narrowing.level(forces), 0.0))
+    elif narrowing.objective.may_reach_top:  # four contacts and more often need none
         straight = _at_level(chooser, narrowing.narrowed(narrowing.top), limits, None).forces
         forces = forces if straight is None else straight
-    held, lost = narrowing.level(forces), narrowing.top
+    held = narrowing.level(forces)
     proven, sure, gained, climbs = lost, lost, inf, True
     while lost - held > LEVEL_TOLERANCE / 2 * (1 + 1e-6):
         middle = (held + lost) / 2
@@ -65,6 +79,69 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
     if chooser.least is None:
         forces = _without_noise(chooser, narrowing, forces, limits)
     return Found(forces, max(proven - narrowing.level(forces), 0.0))
+
+
+def _along_normals(chooser: Chooser, narrowing: Narrowing, limits: list[float]) -> Array | None:
+    """Forces of the highest level of all, which many contacts often reach; None if there are none."""
+    cones = narrowing.narrowed(narrowing.top)
+    if len(cones) <= chooser.vector.size:
+        return None
+    used, bound = chooser.of(cones), [limits[i] for i in cones]
+    step = used.depth(list(cones.values()), bound, None)
+    found = None if step is None else used.settled(step.forces, list(cones.values()), bound)
+    return None if found is None else _whole(chooser.grasp, cones, found)
+
+
+def _by_newton(
+    chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]
+) -> tuple[Array, float, bool]:
+    """Forces of a high level, a level proven out of reach, and whether both are near and the margin widest.
+
+    The depth t to which forces reach inside the cones of a level falls with it; the duals say how fast, so
+    that Newton's method finds the level where it is zero. Where cones are too narrow the duals are a motion
+    that proves so. Once the level is known well, one program just above it and one just below end with the
+    proof and with the forces. Nothing of it needs answers audited: forces are moved into equilibrium inside
+    the cones, and what the motion is worth is decided by itself.
+    """
+    grasp, top, tolerance = chooser.grasp, narrowing.top, LEVEL_TOLERANCE
+    held, lost, motion, bounds = max(narrowing.level(forces), 0.0), top, np.zeros(0), np.array(limits)
+    known = np.maximum(grasp.cones.normal(forces), 0.0) / chooser.unit
+    known = np.maximum(known, _FIRST * known.max())  # a finger idle so far may be needed
+    level, is_near, is_widest = held, False, False
+    for _ in range(_STEPS if held < lost and known.any() else 0):
+        cones = narrowing.narrowed(level)
+        used = _of(chooser, cones)
+        mu, bound = list(cones.values()), [limits[i] for i in cones]
+        step = used.depth(mu, bound, None if is_near else known[list(cones)])
+        if step is None:
+            break
+        fall = narrowing.falls(level)[list(cones)] @ (step.weights * step.normals)
+        best = float(level + step.depth / fall) if fall > 0 else level
+        found = used.shifted(step.forces, mu, bound) if step.depth > -FEASIBLE else None
+        if found is not None:
+            forces, is_widest = _whole(grasp, cones, found), is_near
+            held = max(narrowing.level(forces), level)
+            known = np.maximum(grasp.cones.normal(forces), 0.0) / chooser.unit
+            best = max(best, held)
+            error = (best - level) ** 2
+            following = best + max(error, tolerance / 4)
+        else:
+            ceiling = narrowing.ceiling(chooser.load.vector, step.motion, bounds, held, lost, _NARROW)
+            if ceiling >= lost:
+                break
+            lost, motion = ceiling, step.motion
+            error = (best - level) ** 2
+            following = best - tolerance / 2 if error < tolerance / 16 else best + error
+        is_near = bool(error < tolerance / 16)
+        if lost - held <= tolerance:
+            break
+        level = following if held < following < lost else (held + lost) / 2
+    if motion.size:
+        sure = min(lost + _NARROW, top)
+        cones = narrowing.narrowed(sure)
+        if _of(chooser, cones).proves(motion, list(cones.values()), [limits[i] for i in cones]):
+            return forces, sure, is_widest and lost - held <= tolerance
+    return forces, top, False
 
 
 def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
@@ -129,7 +206,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     pressed = chooser.least is not None and any(chooser.least[i] > 0 for i in idle)
     if pressed or (idle and chooser.demand is not None):
         return _Level(None, True, True)  # a finger that must push has no cone left
-    used = chooser if len(cones) == len(grasp) else chooser.of(cones)
+    used = _of(chooser, cones)
     frictions, bounds = list(cones.values()), [limits[i] for i in cones]
     weights = None
     if known is not None:
@@ -161,6 +238,11 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     if known is not None and chooser.least is None:
         forces = used.nearest(known[list(cones)][:, :width], frictions, bounds)
     return _Level(None if forces is None else _whole(grasp, cones, forces))
+
+
+def _of(chooser: Chooser, contacts: Collection[int]) -> Chooser:
+    """The same for some contacts, itself for all."""
+    return chooser if len(contacts) == len(chooser.grasp) else chooser.of(contacts)
 
 
 def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:

@@ -199,13 +199,11 @@ def _solved(
             chooser.rescale(peak)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     objective = criteria.objective
-    try:
-        convex = objective if isinstance(objective, ConvexObjective) else FORCE
-        found = chooser.best(convex, frictions, limits)
-    except SolverFailed:
-        if least is None or not isinstance(objective, LevelObjective):
-            raise
-        found = least  # forces far larger than the load; the search goes on from the smallest
+    found = least  # from which a search for levels goes on
+    if least is None or isinstance(objective, ConvexObjective):
+        found = chooser.best(
+            objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits
+        )
     if found is None:
         raise infeasible(grasp, load, criteria)
     forces, gap = found

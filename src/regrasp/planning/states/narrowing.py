@@ -13,17 +13,19 @@ decided in exact arithmetic. So the best level lies between that of forces in ha
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import isnan
+from math import hypot, isnan, sqrt
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import margins
+from regrasp.mechanics.opposition import parts
 from regrasp.planning.states.objectives import LevelObjective
 
 LEVEL_TOLERANCE = 1e-7
 """The chosen angle margin [rad] or friction use [-] is within this of the best one."""
+_PARTS = 40
 
 
 @dataclass(frozen=True)
@@ -52,3 +54,53 @@ class Narrowing:
         """The level of forces (n, d), over the contacts that carry any."""
         level = self.objective.level(margins(forces, self.grasp.cones.normals, np.array(self.frictions)))
         return self.top if isnan(level) else level  # nothing is used of nothing
+
+    def falls(self, level: float) -> Array:
+        """(n,) how fast the friction of each cone falls with the level."""
+        left = [self.objective.narrowed(mu, level) or 0.0 for mu in self.frictions]
+        return self.objective.slopes(np.array(self.frictions), np.array(left), level)[1]
+
+    def ceiling(
+        self, load: Array, twist: Array, limits: Array, low: float, high: float, within: float
+    ) -> float:
+        """The least level from ``low`` up at which a motion proves that no forces balance a load.
+
+        limits: (n,) [N]. The level is found to ``within``, never below where the proof begins; ``high`` where
+        the motion proves nothing there.
+        """
+        cones = self.grasp.cones
+        velocities = (twist @ cones.matrix).reshape(len(self.grasp), -1)
+        along, across = (part.tolist() for part in parts(velocities, cones.normals))
+        power, bounds = float(load @ twist), limits.tolist()
+
+        def won(level: float) -> float:
+            """Work of the load beyond what the cones of a level can oppose; it rises with the level."""
+            work = power
+            for i, mu in self.narrowed(level).items():
+                n, t = along[i], across[i]
+                if t <= -mu * n:
+                    work -= bounds[i] * hypot(n, t)
+                elif mu * t > n:
+                    work -= bounds[i] * (mu * t - n) / sqrt(1 + mu * mu)
+            return work
+
+        below, above = won(low), won(high)
+        if not above > 0:
+            return high
+        if below > 0:
+            return low
+        side = 0
+        for _ in range(_PARTS):  # regula falsi (Illinois)
+            if high - low <= within:
+                break
+            level = float(high - above * (high - low) / (above - below))
+            if not low < level < high:
+                level = (low + high) / 2
+            value = won(level)
+            if value > 0:
+                high, above = level, value
+                below, side = (below / 2 if side > 0 else below), 1
+            else:
+                low, below = level, value
+                above, side = (above / 2 if side < 0 else above), -1
+        return high

@@ -128,6 +128,7 @@ def _new_rows(
     )
 
 
+@lru_cache(maxsize=64)
 def _cost(
     objective: ConvexObjective, grasp: Grasp, unit: float, form: StateForm
 ) -> tuple[sparse.csc_matrix, Array]:
@@ -143,8 +144,20 @@ def _cost(
     return P, q
 
 
-# Loads change more often than grasps.
-_rows = lru_cache(maxsize=64)(_new_rows)
+@lru_cache(maxsize=64)
+def _rows(
+    grasp: Grasp,
+    objective: ConvexObjective,
+    unit: float,
+    frictions: tuple[float, ...],
+    limited: tuple[bool, ...],
+    facets: int | None,
+) -> _Rows:
+    """Kept, with what audits need: loads change more often than grasps."""
+    rows = _new_rows(grasp, objective, unit, frictions, limited, facets)
+    program = rows.program
+    _ = program.has_second_order, program.given_units, program.why_not_convex
+    return rows
 
 
 def _torque_entries(grasp: Grasp) -> Array:

@@ -1,7 +1,7 @@
 """Forces by a back end: every answer is moved into exact equilibrium inside the cones, or refused."""
 
 from collections.abc import Iterable
-from math import inf
+from math import cos, inf, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -11,13 +11,16 @@ from regrasp.mechanics.balance import nearest_equilibrium, shifted
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.opposition import surely_wins
+from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.escape import escape_twist
-from regrasp.planning.states.objectives import Bound, ConvexObjective, recorded
+from regrasp.planning.states.objectives import FORCE, Bound, ConvexObjective, recorded
 from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Solution, Status, solve
+from regrasp.programs.backends import asked
 
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
 # 1e-10 and less, is inside the reserve and not beyond it.
@@ -43,6 +46,20 @@ class Found(NamedTuple):
 
     forces: Array
     gap: float
+
+
+class Depth(NamedTuple):
+    """How deep inside the cones forces reach, in units.
+
+    forces: (n, w) that reach it [N]. normals: (n,) their normal forces in units. weights: (n,) what a unit of
+    depth at each contact is worth. motion: (3,) or (6,) that the duals are.
+    """
+
+    depth: float
+    forces: Array
+    normals: Array
+    weights: Array
+    motion: Array
 
 
 class Chooser:
@@ -103,6 +120,26 @@ class Chooser:
                 raise
             self.unit = size
         return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+
+    def depth(self, frictions: list[float], limits: list[float], weights: Array | None) -> Depth | None:
+        """How deep inside the cones forces reach, as the back end says it, not audited; None if it does not.
+
+        weights: (n,) how deep a unit is at each contact; sqrt(1 + mu^2) if not given: a distance.
+        """
+        program = self._program(FORCE, frictions, limits, weights, SLACK)
+        answer = asked(program, self.backend, {})
+        if not (np.isfinite(answer.value).all() and np.isfinite(answer.duals).all()):
+            return None
+        rows = program.A.indices[program.A.indptr[-2] :]  # of the cones: those that the depth stands in
+        forces = self.wanted(answer)
+        normals = self.grasp.cones.normal(forces) / self.unit
+        rough = np.array(frictions) > NEGLIGIBLE
+        shares = np.zeros(len(self.grasp))
+        if rough.any():
+            shares[rough] = answer.duals[rows].reshape(int(rough.sum()), -1).sum(axis=1)
+        if self.facets is not None and self.grasp.dimension == 3:
+            shares *= cos(pi / self.facets)  # the faces are nearer to the axis than the cone
+        return Depth(float(answer.value[-1]), forces, normals, shares, self.twist_of(answer))
 
     def _program(
         self,
@@ -204,6 +241,8 @@ class Chooser:
 
     def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:
         """Whether no forces exist, proven by this motion."""
+        if inf not in limits and surely_wins(self.grasp, self.load.vector, twist, frictions, limits):
+            return True
         return EscapeTwist(self.grasp, self.load, twist, tuple(frictions), tuple(limits)).is_proof
 
     def is_lost(self, frictions: list[float], limits: list[float]) -> bool:
@@ -212,8 +251,12 @@ class Chooser:
 
     def wanted(self, answer: Solution) -> Array:
         """The answer's forces (n, w), as the cones measure them [N]."""
+        return self.in_newtons(answer.value)
+
+    def in_newtons(self, unknowns: Array) -> Array:
+        """The forces (n, w) of a program's unknowns, as the cones measure them [N]."""
         w = self.grasp.width
-        wanted: Array = answer.value[: w * len(self.grasp)].reshape(-1, w)
+        wanted: Array = unknowns[: w * len(self.grasp)].reshape(-1, w)
         if w == 4:  # a point contact makes no torque, whatever a solver says of a number that does nothing
             wanted = self.grasp.cones.measured(self.grasp.cones.forces(wanted))
         return wanted * self.unit
