@@ -119,7 +119,7 @@ def schedule(plan: Transition | RegraspPlan, setup: Setup, units: Units) -> Sche
     if motions is not None and motions.plan != plan:
         raise InvalidInput("motions must be those of the plan that is simulated")
     for phase in phases(plan, units, motions):
-        ways = _Ways(tips, {str(c.name): c.normal for c in contacts}, lift, motions, max(done, 0.0))
+        ways = _Ways(tips, {str(c.name): c.normal for c in contacts}, lift, motions, done)
         local, *rest = _block(plan, phase, contacts, ways, dt)
         done = 0.0 if done < 0 else done + phase.length
         blocks.append((starts[phase.step] + local, *rest))
@@ -171,7 +171,8 @@ def _block(
 class _Ways:
     """Where tips are in the object's frame: at contacts, off them, on ways of their own or of ``motions``.
 
-    tips, normals: by contact. lift: how far off. begins: of this phase, on the clock of the motions [s].
+    tips, normals: by contact. lift: how far off. begins: of this phase, on the clock of the motions, below
+    zero while fingers settle [s].
     """
 
     tips: dict[str, Array]
@@ -184,9 +185,9 @@ class _Ways:
         """(m, d) where a tip is in the object's frame, and the contact it may touch there."""
         if self.motions is None:
             return _way(a, b, self.tips, self.normals, self.lift, s)
-        t = np.minimum(self.begins + (s * length if a != b else np.zeros_like(s)), self.motions.duration)
-        where = self.motions.positions(t)[:, finger]
-        near = {p.name: np.linalg.norm(where - self.tips[p.name], axis=1) for p in (a, b) if p.touches}
+        t = np.zeros_like(s) if self.begins < 0 else self.begins + s * length
+        where = self.motions.positions(np.minimum(t, self.motions.duration))[:, finger]
+        near = {name: np.linalg.norm(where - tip, axis=1) for name, tip in self.tips.items()}
         reach = self.motions.tip_radius
         at = [next((n for n, away in near.items() if away[m] < reach), "") for m in range(s.size)]
         return where, at

@@ -12,10 +12,13 @@ from regrasp.motions.apart import apart
 from regrasp.motions.planar_space import PlanarSpace
 from regrasp.motions.solid_space import SolidSpace
 from regrasp.motions.stands import Place, Space, Stand
+from regrasp.motions.traffic import Traffic
 from regrasp.motions.value import Motion
-from regrasp.motions.ways import way_between
+from regrasp.motions.ways import Found, Stop, way_between
 from regrasp.outline.outline import Outline
 from regrasp.plans.transition import Transition
+
+_ASIDE = (1.5, 3.0, 6.0, 12.0)  # heights over contacts where fingers wait, of how far two keep apart
 
 
 class Air:
@@ -52,11 +55,6 @@ class Air:
             self._stands[key] = Stand(name, self._contacts[name], self._spaces[finger])
         return self._stands[key]
 
-    def others(self, finger: int, now: list[Place]) -> Array:
-        """(j, 2, d) where all other fingers are, and their capsules."""
-        found = [(self.stand(j, n).tip(on), self.capsules[j]) for j, (n, on) in enumerate(now) if j != finger]
-        return np.array(found).reshape(-1, 2, self.capsules.shape[1])
-
     def check_held(self, k: int, stop: tuple[Place, ...]) -> None:
         """Raise ``Infeasible`` where two fingers are in one another during a step."""
         radius = self._spaces[0].tip_radius
@@ -75,33 +73,109 @@ class Air:
         before: tuple[Place, ...],
         after: tuple[Place, ...],
         limits: tuple[float, float],
-        clock: float,
-    ) -> Iterator[Motion]:
-        """The motions of one pause, each finger when its way is free."""
-        now = list(before)
-        waiting = [i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]
-        while waiting:
-            for i in waiting:
-                a, b = self.stand(i, now[i][0]), self.stand(i, after[i][0])
-                found = way_between(a, now[i][1], b, after[i][1], self.others(i, now), self._spaces[i])
-                if found is not None:
-                    break
-            else:
-                raise Infeasible(self._shut_in(k, waiting[0], now, after[waiting[0]]))
-            way, *gaps = found
-            duration = way.shortest_time(*limits)
-            yield Motion(k, i, now[i][0], after[i][0], way, duration, clock, *gaps)
-            clock += duration
-            now[i] = after[i]
-            waiting.remove(i)
+        window: tuple[float, float],
+    ) -> list[Motion]:
+        """The motions before a step, at once where they keep clear in time, else one after the other.
 
-    def _shut_in(self, k: int, i: int, now: list[Place], target: Place) -> str:
+        limits: speed and acceleration. window: when the step before begins, during which fingers in the air
+            may
+        move, and when it ends [s].
+        """
+        now = [self._stop(i, p) for i, p in enumerate(before)]
+        space = self._spaces[0]
+        traffic = Traffic([s.point for s in now], self.capsules, space.apart, space.clearance)
+        found = []
+        for i, target, name, (way, gaps) in self._legs(k, before, after, now):
+            lands = target.contact is not None
+            duration = way.shortest_time(*limits)
+            begun, over = window
+            if before[i][1]:
+                begun = over  # it holds until the step has ended
+            elif lands:
+                begun = max(begun, over - duration * way.part_before(way.length - target.landing))
+            begun = max([begun, *(leg.end for leg in traffic.lines[i].legs)])
+            leg = traffic.add(i, way, duration, begun, max(over, traffic.end))
+            found.append((i, name, leg, gaps))
+        motions = []
+        last = {i: before[i][0] for i in range(len(before))}
+        for i, name, leg, (to_object, to_tips) in found:
+            near = min(to_tips, traffic.gap(i, leg) - 2 * space.tip_radius)
+            motions.append(Motion(k, i, last[i], name, leg.way, leg.duration, leg.start, to_object, near))
+            last[i] = name
+        return motions
+
+    def _stop(self, finger: int, place: Place) -> Stop:
+        name, touches = place
+        stand = self.stand(finger, name)
+        return Stop(stand.tip(touches), stand if touches else None)
+
+    def _legs(
+        self, k: int, before: tuple[Place, ...], after: tuple[Place, ...], now: list[Stop]
+    ) -> Iterator[tuple[int, Stop, str, Found]]:
+        """The fingers' ways, in an order in which each is clear of where the others are; ``now`` changes.
+
+        Where nobody finds a way, one that is to move waits aside.
+        """
+        waiting = [i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]
+        names = [name for name, _ in before]
+        aside: set[int] = set()
+        while waiting:
+            i, found = self._first(waiting, after, now)
+            if found is None:
+                i, stop, found = self._aside(waiting, aside, after, now)
+                if found is None:
+                    raise Infeasible(self._shut_in(k, waiting[0], names[waiting[0]], after[waiting[0]], now))
+                aside.add(i)
+                now[i] = stop
+                yield i, stop, names[i], found
+                continue
+            now[i] = self._stop(i, after[i])
+            names[i] = after[i][0]
+            waiting.remove(i)
+            yield i, now[i], names[i], found
+
+    def _first(
+        self, waiting: list[int], after: tuple[Place, ...], now: list[Stop]
+    ) -> tuple[int, Found | None]:
+        """The first finger that finds its way."""
+        for i in waiting:
+            found = way_between(now[i], self._stop(i, after[i]), self._others(i, now), self._spaces[i])
+            if found is not None:
+                return i, found
+        return waiting[0], None
+
+    def _aside(
+        self, waiting: list[int], aside: set[int], after: tuple[Place, ...], now: list[Stop]
+    ) -> tuple[int, Stop, Found | None]:
+        """A finger and where it waits, high over its contact or its next, so that another finds its way."""
+        if len(waiting) > 1:
+            for i in (i for i in waiting if i not in aside):
+                space = self._spaces[i]
+                for height in _ASIDE:
+                    stand = self.stand(i, after[i][0])
+                    for over in (now[i].contact or stand, stand):
+                        point = over.tip(False) - height * space.apart * over.contact.normal
+                        stop = Stop(point)
+                        if (found := way_between(now[i], stop, self._others(i, now), space)) is None:
+                            continue
+                        then = [*now[:i], stop, *now[i + 1 :]]
+                        if self._first([j for j in waiting if j != i], after, then)[1] is not None:
+                            return i, stop, found
+        return waiting[0], now[waiting[0]], None
+
+    def _others(self, finger: int, now: list[Stop]) -> Array:
+        """(j, 2, d) where all other fingers are, and their capsules."""
+        found = [(stop.point, v) for stop, v in zip(now, self.capsules, strict=True)]
+        return np.array(found[:finger] + found[finger + 1 :]).reshape(-1, 2, self.capsules.shape[1])
+
+    def _shut_in(self, k: int, i: int, origin: str, target: Place, now: list[Stop]) -> str:
         """Which finger finds no way and where it is shut in."""
-        said = f"before step {k + 1} finger {i + 1} finds no way from {now[i][0]} to {target[0]}: "
-        for place in (now[i][0], target[0]):
+        said = f"before step {k + 1} finger {i + 1} finds no way from {origin} to {target[0]}: "
+        for place in (origin, target[0]):
             stand = self.stand(i, place)
             piece = np.array([stand.tip(True), stand.tip(False)])
-            for j, other in zip((j for j in range(len(now)) if j != i), self.others(i, now), strict=True):
+            numbers = (j for j in range(len(now)) if j != i)
+            for j, other in zip(numbers, self._others(i, now), strict=True):
                 if not self._spaces[i].keeps_apart(piece, other[None]):
                     return f"{said}at {place}, {stand.where}, the tip of finger {j + 1} is too near"
         return f"{said}the object and other tips shut {target[0]} in, {stand.where}"

@@ -27,13 +27,14 @@ def plan_motions(
 ) -> Motions:
     """The ways of the fingers that are free, from contact to contact in the object's frame.
 
-    Each finger lifts off along the normal, goes around the object and the fingers that stand, and touches
-    down along the normal; fingers that move before the same step do so one after the other, in an order in
-    which each finds its way. A finger that is not needed stands off its last contact. In the plane ways are
-    the shortest around the offset outline, in space those of a roadmap off the surface, drawn tight. Away
-    from its contacts a finger keeps the clearance from the object and the others: proven of the rounded way's
-    hulls, in space by distances that change no faster than points move. Speed and acceleration, in the
-    object's frame, stay within limits all the way.
+    Each finger lifts off along the normal, goes around the object and the others, and touches down along the
+    normal. Fingers move at once where they keep clear in time, one after the other where they cross, one
+    aside where they change places; one that is in the air moves while the others take a step. A finger that
+    is not needed stands off its last contact. In the plane ways are the shortest around the offset outline,
+    in space those of a roadmap off the surface, drawn tight. Away from its contacts a finger keeps the
+    clearance from the object and the others: proven of the rounded way's hulls, in space and in time by
+    distances that change no faster than points move. Speed and acceleration, in the object's frame, stay
+    within limits all the way.
 
     Args:
         plan: a ``Transition`` or a ``RegraspPlan``.
@@ -65,12 +66,11 @@ def plan_motions(
     for k, stop in enumerate(places[1:-1]):
         air.check_held(k, stop)
     motions: list[Motion] = []
-    clock = 0.0
+    begun = over = 0.0  # of the step before
     for k, (before, after) in enumerate(pairwise(places)):
-        for motion in air.moved(k, before, after, limits, clock):
-            motions.append(motion)
-            clock += motion.duration
-        clock += steps[k].duration if k < len(steps) else 0.0
+        motions += air.moved(k, before, after, limits, (begun, over))
+        begun = max([over, *(m.end for m in motions if m.step == k)])
+        over = begun + (steps[k].duration if k < len(steps) else 0.0)
     tips = np.array([[air.stand(i, n).tip(on) for i, (n, on) in enumerate(p)] for p in places[1:]])
     touching = np.array([[on for _, on in p] for p in places[1:]])
     return Motions(plan, tuple(motions), tips, touching, radius, keep, air.capsules)

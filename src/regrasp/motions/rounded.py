@@ -15,7 +15,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import ArrayValue
 
-_FASTEST, _HARDEST = 15 / 8, 10 / sqrt(3)
+FASTEST, _HARDEST = 15 / 8, 10 / sqrt(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +67,13 @@ class RoundedWay(ArrayValue):
 
     def shortest_time(self, speed: float, acceleration: float) -> float:
         """A time that keeps both limits all the way [s]; bends count as passed at the largest speed."""
-        fast = _FASTEST * self.length
+        fast = FASTEST * self.length
         return max(fast / speed, sqrt((_HARDEST * self.length + fast**2 * self.bend) / acceleration))
+
+    def part_before(self, s: float) -> float:
+        """The part of its duration that goes by up to a length of the polygon [m], in steps of 1 / 1024."""
+        x = np.arange(1025) / 1024
+        return float(x[np.searchsorted(x**3 * (10 - 15 * x + 6 * x**2), s / self.length, side="right") - 1])
 
     def over_time(self, x: Array, duration: float) -> tuple[Array, Array]:
         """Places (m, d) [m] and velocities (m, d) [m/s] at parts x (m,) of the duration [s]."""

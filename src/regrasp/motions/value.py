@@ -16,10 +16,11 @@ from regrasp.plans.transition import Transition
 
 @dataclass(frozen=True, eq=False)
 class Motion(ArrayValue):
-    """One finger's way before a step, in the object's frame; others stand still meanwhile.
+    """One finger's way before a step, in the object's frame; others may move meanwhile.
 
-    step: the step before which it moves; the number of steps for what follows the last. finger: its number.
-    origin, target: contacts between which it goes, the same for one that lifts off or touches down only.
+    step: the step before which it arrives; the number of steps for what follows the last. finger: its number.
+    origin, target: contacts between which it goes, the same for one that lifts off, waits or touches down
+    only.
     way: of the tip's centre. duration: [s]. start: when it begins, on the clock of ``Motions`` [s].
     to_object, to_tips: how far the tip's surface keeps from the object away from its own contacts, and from
     other tips, exact for the rounded way or less; infinite where there is nothing [m].
@@ -34,6 +35,11 @@ class Motion(ArrayValue):
     start: float
     to_object: float
     to_tips: float
+
+    @property
+    def end(self) -> float:
+        """When it is over, on the clock of ``Motions`` [s]."""
+        return self.start + self.duration
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,16 +68,16 @@ class Motions(ArrayValue):
     @cached_property
     def starts(self) -> Array:
         """(steps + 1,) when each step begins on this clock, and when everything has ended [s]."""
-        pauses = np.zeros(len(self.steps) + 1)
-        for motion in self.motions:
-            pauses[motion.step] += motion.duration
-        lengths = np.array([0.0, *(step.duration for step in self.steps)])
-        result: Array = np.cumsum(pauses + lengths)
-        return result
+        begun, over = [], 0.0
+        for k, length in enumerate([*(step.duration for step in self.steps), 0.0]):
+            begun.append(max([over, *(m.end for m in self.motions if m.step == k)]))
+            over = begun[-1] + length
+        return np.array(begun)
 
     def pause(self, step: int) -> float:
-        """How long fingers move before a step, or after the last [s]."""
-        return sum(motion.duration for motion in self.motions if motion.step == step)
+        """How long the plan's clock stands before a step, or after the last, while fingers move [s]."""
+        over = self.starts[step - 1] + self.steps[step - 1].duration if step else 0.0
+        return float(self.starts[step] - over)
 
     @property
     def duration(self) -> float:
@@ -111,16 +117,20 @@ class Motions(ArrayValue):
         times, k = self._places(t)
         positions, velocities = self.tips[k], np.zeros((times.size, *self.tips.shape[1:]))
         touching = self.contacts[k]
-        for motion in self.motions:
-            x = (times - motion.start) / motion.duration
-            before, during = (k == motion.step) & (x <= 0), (x > 0) & (x < 1)
-            positions[before, motion.finger] = motion.way.points[0]
-            touching[before, motion.finger] = (
-                self.contacts[motion.step - 1][motion.finger] if motion.step else False
-            )
-            place, velocity = motion.way.over_time(x[during], motion.duration)
-            positions[during, motion.finger], velocities[during, motion.finger] = place, velocity
-            touching[during, motion.finger] = False
+        for i in range(self.tips.shape[1]):
+            own = [m for m in self.motions if m.finger == i]
+            for first, motion, last in zip([None, *own], own, [*own[1:], None], strict=False):
+                s, a, b = motion.step, motion.start, motion.end
+                before, during = (k == s) & (times <= a), (times > a) & (times < b)
+                after = (times >= b) & (k <= s)
+                if first is None or first.step != s:
+                    positions[before, i] = motion.way.points[0]
+                    touching[before, i] = s > 0 and self.contacts[s - 1][i]
+                x = (times[during] - a) / motion.duration
+                positions[during, i], velocities[during, i] = motion.way.over_time(x, motion.duration)
+                positions[after, i] = motion.way.points[-1]
+                touching[during, i] = False
+                touching[after, i] = (last is None or last.step != s) and self.contacts[s][i]
         return positions, velocities, touching
 
     def __str__(self) -> str:

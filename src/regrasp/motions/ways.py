@@ -1,32 +1,58 @@
 """A finger's way from one place to another: along the normal, around, along the normal, corners rounded."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.motions.rounded import RoundedWay
 from regrasp.motions.stands import Space, Stand
 
+Found = tuple[RoundedWay, tuple[float, float]]
+"""A way, and the gaps that it keeps to the object and to fingers that stand [m]."""
+
 _HALVINGS = 30  # of a rounding that is not clear
 
 
-def way_between(
-    a: Stand, lifts: bool, b: Stand, lands: bool, others: Array, space: Space
-) -> tuple[RoundedWay, float, float] | None:
+@dataclass(frozen=True)
+class Stop:
+    """Where a tip's centre is at an end of a way: free in the air, or at a contact that it lifts off."""
+
+    point: Array
+    contact: Stand | None = None
+
+    @property
+    def free(self) -> Array:
+        """(d,) where it is free in the air [m]."""
+        return self.point if self.contact is None else self.contact.tip(False)
+
+    @property
+    def lift(self) -> float:
+        """How far from here it is near the object [m]."""
+        return 0.0 if self.contact is None else self.contact.exit
+
+    @property
+    def landing(self) -> float:
+        """How far from here the way is along the normal [m]."""
+        return float(np.linalg.norm(self.point - self.free))
+
+
+def way_between(a: Stop, b: Stop, others: Array, space: Space) -> Found | None:
     """The way and the gaps it keeps to the object and to others [m]; None where there is none.
 
-    lifts, lands: whether it starts and ends at the contact itself. others: (j, 2, d) tips and capsules that
-    stand.
+    others: (j, 2, d) tips and capsules that stand.
     """
-    over = space.way(a.tip(False), b.tip(False), others) if a is not b else a.tip(False)[None]
+    if np.allclose(a.free, b.free, rtol=0, atol=1e-9 * space.clearance):
+        over: Array | None = a.free[None]
+    else:
+        over = space.way(a.free, b.free, others)
     if over is None:
         return None
-    points = np.vstack([*([a.tip(True)] if lifts else []), over, *([b.tip(True)] if lands else [])])
-    return rounded(points, a.exit if lifts else 0.0, b.exit if lands else 0.0, others, space)
+    ends = [[stop.point] if stop.contact is not None else [] for stop in (a, b)]
+    return rounded(np.vstack([*ends[0], over, *ends[1]]), a.lift, b.lift, others, space)
 
 
-def rounded(
-    points: Array, lifted: float, landed: float, others: Array, space: Space
-) -> tuple[RoundedWay, float, float] | None:
+def rounded(points: Array, lifted: float, landed: float, others: Array, space: Space) -> Found | None:
     """A polygon (k, d) with its corners rounded as far as that is clear, and its gaps; None without.
 
     lifted, landed: how much of it at both ends is at a contact, and so near the object [m].
@@ -51,7 +77,7 @@ def rounded(
         cuts[i] = most
     way = RoundedWay(points, cuts)
     gaps = space.gaps(*_pieces(way, lifted, landed), others)
-    return None if min(gaps) < space.clearance * (1 - 1e-9) else (way, *gaps)
+    return None if min(gaps) < space.clearance * (1 - 1e-9) else (way, gaps)
 
 
 def _pieces(way: RoundedWay, lifted: float, landed: float) -> tuple[list[Array], list[Array]]:
