@@ -91,6 +91,15 @@ WEIGHT = rg.Wrench([0, 0, -1.0])
 PAIR = GRASP.without("P3")
 SQUARE = [[0, 0], [4, 0], [4, 3], [0, 3]]
 
+SQUARE_OUTLINE = rg.Outline(SQUARE)
+WEIGHT_IN_PLANE = rg.Wrench([0, -1.0])
+
+
+@cache
+def placed() -> rg.ChosenGrasp:
+    return rg.choose_grasp(SQUARE_OUTLINE, 2, rg.LoadSet.tilted(WEIGHT_IN_PLANE, 1.0), friction=0.5)
+
+
 VALUES: dict[str, Callable[[], Any]] = {
     "Contact": lambda: rg.Contact([1, 2], [3, 4], 0.5, max_force=2.0, name="thumb"),
     "soft Contact": lambda: rg.Contact([1, 2, 0], [3, 4, 0], 0.5, torsion=0.01),
@@ -134,6 +143,9 @@ VALUES: dict[str, Callable[[], Any]] = {
     "LeastFriction": lambda: rg.least_friction(PAIR, LOAD),
     "LargestLoad": lambda: rg.largest_load(PAIR, LOAD, max_force=20.0),
     "HeldCentres": lambda: rg.held_centres(PAIR, rg.Wrench(LOAD.force), max_force=20.0),
+    "ChosenGrasp": placed,
+    "OtherGrasp": lambda: placed().others[0],
+    "PlacementProof": lambda: placed().certificate,
     "LoadSet": lambda: rg.LoadSet.ball(LOAD, force=1.0, torque=0.1),
     "LoadSet, hull": lambda: rg.LoadSet.hull([LOAD, rg.Wrench([0, -1.0])]),
     "LoadSet, tilted": lambda: rg.LoadSet.tilted(LOAD, 0.3).scaled(2.0),

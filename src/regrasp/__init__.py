@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from regrasp.planning.changes.rotation import plan_rotation
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
     from regrasp.planning.holds.weights import RegraspWeights
+    from regrasp.planning.placement.choosing import choose_grasp
+    from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.planning.regrasps.planar import RegraspProblem
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
@@ -56,6 +58,8 @@ _LATER = {
     "best_squeezes": "regrasp.planning.states.batch",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
     "bottleneck": "regrasp.planning.holds.bottleneck",
+    "ChosenGrasp": "regrasp.planning.placement.chosen",
+    "choose_grasp": "regrasp.planning.placement.choosing",
     "Closure": "regrasp.measures.closure",
     "closure": "regrasp.measures.closure",
     "EquilibriumLocus": "regrasp.planning.states.two_fingers",
@@ -108,6 +112,7 @@ _LATER = {
 
 __all__ = [
     "Bottleneck",
+    "ChosenGrasp",
     "ChosenState",
     "Closure",
     "Contact",
@@ -153,6 +158,7 @@ __all__ = [
     "WrenchBall",
     "best_squeezes",
     "bottleneck",
+    "choose_grasp",
     "choose_state",
     "closure",
     "held_centres",

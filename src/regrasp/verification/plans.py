@@ -19,10 +19,12 @@ from regrasp.mechanics.checks import ArrayLike, function, number
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.verification.chosen_grasps import Chosen, verify_chosen, verify_proof
 from regrasp.verification.exact import check_state, exact, least_angle, rounded
 from regrasp.verification.float_filter import Checked, check_rows
 from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
+from regrasp.verification.placements import Proof
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
 from regrasp.verification.regrasps import Regrasp, check_joints
@@ -35,7 +37,7 @@ _NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "
 
 
 def verify(
-    plan: Plan | Regrasp,
+    plan: Plan | Regrasp | Chosen | Proof,
     load: Callable[[float], Wrench] | None = None,
     *,
     curvature: float | None = None,
@@ -48,10 +50,11 @@ def verify(
 ) -> Verification:
     """Check a transition in exact arithmetic: the ends, the path between them and the idle finger.
 
-    Of a regrasp every step is checked, and every joint between two steps.
+    Of a regrasp every step is checked, and every joint between two steps; of a chosen grasp its states, and
+    every box of the proof that no placement is better.
 
     Args:
-        plan: a transition or a regrasp, whoever made it.
+        plan: a transition, a regrasp or a chosen grasp, whoever made it; or the proof of a bound alone.
         load: a function of time [s] that the plan was made for. The plan's load is linear between its
             instants and is what the forces balance exactly; the function may differ from it between them.
             That gap must be less than the margins can take: forces that balance the function must exist
@@ -73,6 +76,13 @@ def verify(
     Raises:
         InvalidInput: For what is no plan, no load function or no curvature.
     """
+    if hasattr(plan, "certificate") or hasattr(plan, "twists"):
+        more_asked = (load, curvature, disturbance, stiffness, friction, position, surface)
+        if early_loss or any(value is not None for value in more_asked):
+            raise InvalidInput("a chosen grasp holds its own loads: verify takes nothing else beside it")
+        if hasattr(plan, "certificate"):
+            return verify_chosen(cast(Chosen, plan))
+        return verify_proof(cast(Proof, plan))
     if hasattr(plan, "steps") and hasattr(plan, "orientations"):
         if load is not None:
             raise InvalidInput("a regrasp holds the load it was planned for; leave load out")

@@ -22,6 +22,8 @@ class Verification(ArrayValue):
         load_gap: largest difference of the plan's load from the load function given [N], torque divided by
             the grasp's size; None where none was given.
         load_gap_is_proven: from a bound on the load's curvature, and not measured between the instants.
+        excluded: boxes of placements that a proof excludes, of a chosen grasp; None of others.
+        bound: no placement has a smaller value than this, of a chosen grasp; None of others.
     """
 
     violations: tuple[str, ...]
@@ -30,6 +32,8 @@ class Verification(ArrayValue):
     least_cone_slack: float
     load_gap: float | None = None
     load_gap_is_proven: bool = False
+    excluded: int | None = None
+    bound: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -49,5 +53,12 @@ class Verification(ArrayValue):
             lines.append(
                 f"the plan's load is within {self.load_gap:.3g} of the load given ({how}), "
                 f"which the margins can take"
+            )
+        if self.excluded is not None:
+            if not isfinite(self.least_cone_slack):  # the proof alone
+                lines = []
+            lines.append(
+                f"no placement has a value below {self.bound:.6g}: {self.excluded} boxes cover all of them, "
+                f"each excluded by its twist"
             )
         return "\n".join(lines)

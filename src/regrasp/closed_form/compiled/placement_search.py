@@ -1,0 +1,350 @@
+"""Branch and bound over where fingers are on a boundary, best bound first.
+
+A box gives each finger an arc; fingers are alike, so a box is a set of arcs, and fingers on the same arc
+are split together: j of them go left, the others right. The lower bound of a box is the largest of its loads'
+(``wrench_gauge``). Its forces press each finger somewhere on the arc, for each load elsewhere: the finger
+whose centres of pressure disagree most is split, at their middle, and the middles are a placement to try.
+"""
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from regrasp.closed_form.compiled import wrench_gauge
+from regrasp.closed_form.compiled.compiling import INNER, digest
+from regrasp.closed_form.compiled.wrench_gauge import bound_by, gauge, workspace
+from regrasp.compilation import kept
+
+OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3
+"""A box not looked into; without a better placement; halved; without fingers as far apart as they must be."""
+CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
+"""Why a search returns: no box is left; a placement within a fixed level; after so many boxes; no memory."""
+_NARROW = 1e-10  # of the boundary's size; an arc is not split further
+
+
+@njit(**INNER)
+def _point(sides, j, u):  # type: ignore[no-untyped-def]
+    along = u - sides[j, 8]
+    return sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
+
+
+@njit(**INNER)
+def _apart(sides, j, u, k, v):  # type: ignore[no-untyped-def]
+    px, py = _point(sides, j, u)
+    qx, qy = _point(sides, k, v)
+    return sqrt((px - qx) ** 2 + (py - qy) ** 2)
+
+
+@njit(**INNER)
+def _push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
+    at = count
+    while at > 0 and bounds[heap[(at - 1) // 2]] > bounds[node]:
+        heap[at] = heap[(at - 1) // 2]
+        at = (at - 1) // 2
+    heap[at] = node
+
+
+@njit(**INNER)
+def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
+    """The node of the least bound of ``count``; the heap is one shorter."""
+    top, node, at = heap[0], heap[count - 1], 0
+    while 2 * at + 1 < count - 1:
+        child = 2 * at + 1
+        if child + 1 < count - 1 and bounds[heap[child + 1]] < bounds[heap[child]]:
+            child += 1
+        if bounds[heap[child]] >= bounds[node]:
+            break
+        heap[at] = heap[child]
+        at = child
+    heap[at] = node
+    return top
+
+
+@njit(**INNER)
+def _too_near(sides, arcs, ends, least):  # type: ignore[no-untyped-def]
+    """Two fingers on one side each that are nearer than ``least`` wherever they are; else -1."""
+    for i in range(len(arcs)):
+        for j in range(i):
+            if arcs[i, 0] == arcs[i, 1] and arcs[j, 0] == arcs[j, 1]:
+                far = 0.0
+                for a in range(2):
+                    for b in range(2):
+                        far = max(far, _apart(sides, arcs[i, 0], ends[i, a], arcs[j, 0], ends[j, b]))
+                if far < least:
+                    return True
+    return False
+
+
+@njit(**INNER)
+def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, twist, work, seen):  # type: ignore[no-untyped-def]
+    """The bound of a box and the load behind it, from load ``first`` on; until one reaches ``level``.
+
+    seen: (k, 8) of each finger: least and largest centre of pressure; the sides and u of the extreme forces;
+    side and u of the largest force under the worst load.
+    """
+    k = len(arcs)
+    worst, critical = -1.0, first
+    best = np.zeros(3)
+    _, x, forces, _, _, _, _, _ = work
+    for i in range(k):
+        seen[i, 0], seen[i, 1] = np.inf, -np.inf
+        seen[i, 2], seen[i, 4] = np.inf, -np.inf
+    for number in range(len(loads)):
+        load = number if number > first else (number - 1 if number > 0 else first)
+        value = gauge(sides, arcs, ends, mu, size, norm, loads[load], level, precision, best, work)
+        worse = value > worst
+        if worse:
+            worst, critical = value, load
+            twist[0], twist[1], twist[2] = best[0], best[1], best[2]
+        if value >= level:
+            break
+        for i in range(k):
+            total, moment, most = 0.0, 0.0, 0.0
+            for j in range(3):
+                weight = x[j] * forces[j, i, 0]
+                total += max(weight, 0.0)
+            for j in range(3):
+                weight = x[j] * forces[j, i, 0]
+                if weight <= 1e-9 * total or weight <= 0.0:
+                    continue
+                side, u = forces[j, i, 1], forces[j, i, 2]
+                moment += weight * u / total
+                if u < seen[i, 2]:
+                    seen[i, 2], seen[i, 3] = u, side
+                if u > seen[i, 4]:
+                    seen[i, 4], seen[i, 5] = u, side
+                if worse and weight > most:
+                    most = weight
+                    seen[i, 6], seen[i, 7] = side, u
+            if total > 0.0:
+                seen[i, 0], seen[i, 1] = min(seen[i, 0], moment), max(seen[i, 1], moment)
+    return worst, critical
+
+
+@njit(**INNER)
+def _to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
+    """A side and u for each finger: the middle of its centres of pressure."""
+    for i in range(len(arcs)):
+        if seen[i, 0] > seen[i, 1]:  # it does nothing
+            places[i, 0], places[i, 1] = (
+                arcs[i, 0],
+                ends[i, 0] + 0.5 * (min(ends[i, 1], ends[i, 0] + 1.0) - ends[i, 0]),
+            )
+            if arcs[i, 0] < arcs[i, 1]:
+                places[i, 1] = ends[i, 0]
+        elif arcs[i, 0] == arcs[i, 1]:
+            places[i, 0], places[i, 1] = arcs[i, 0], 0.5 * (seen[i, 0] + seen[i, 1])
+        else:
+            places[i, 0], places[i, 1] = seen[i, 6], seen[i, 7]
+
+
+@njit(**INNER)
+def _to_split(sides, arcs, ends, seen, near):  # type: ignore[no-untyped-def]
+    """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
+    chosen, most = -1, -1.0
+    for i in range(len(arcs)):
+        first, last = arcs[i]
+        if first < last:
+            apart = 0.0
+            if seen[i, 2] <= seen[i, 4]:
+                apart = _apart(sides, int(seen[i, 3]), seen[i, 2], int(seen[i, 5]), seen[i, 4])
+            matters = apart + 1e-6 * (last - first)
+        else:
+            j = first
+            length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
+            width = (ends[i, 1] - ends[i, 0]) * length
+            if width < _NARROW:
+                continue
+            matters = 1e-3 * width
+            if seen[i, 0] <= seen[i, 1]:
+                matters = (seen[i, 1] - seen[i, 0]) * length + 1e-6 * width
+            if near:  # only a smaller box tells whether fingers can be far enough apart
+                matters = width
+        if matters > most:
+            chosen, most = i, matters
+    return chosen
+
+
+@njit(**INNER)
+def _cut(sides, arcs, ends, seen, i):  # type: ignore[no-untyped-def]
+    """The last side of the left part, and u where finger i is split."""
+    first, last = arcs[i]
+    if first < last:
+        if seen[i, 2] > seen[i, 4]:
+            at = (first + last - 1) // 2
+        elif seen[i, 3] != seen[i, 5]:
+            at = int(seen[i, 3] + seen[i, 5]) // 2
+        else:
+            at = int(seen[i, 3])
+        at = min(max(at, first), last - 1)
+        return at, sides[at, 7]
+    lo, hi = ends[i, 0], ends[i, 1]
+    middle = 0.5 * (seen[i, 0] + seen[i, 1]) if seen[i, 0] <= seen[i, 1] else 0.5 * (lo + hi)
+    return first, min(max(middle, lo + 0.1 * (hi - lo)), hi - 0.1 * (hi - lo))
+
+
+@njit(**INNER)
+def _alike(arcs, ends, i, j):  # type: ignore[no-untyped-def]
+    same = arcs[i, 0] == arcs[j, 0] and arcs[i, 1] == arcs[j, 1]
+    return same and ends[i, 0] == ends[j, 0] and ends[i, 1] == ends[j, 1]
+
+
+@njit(**INNER)
+def _write_child(sides, arcs, ends, i, same, left, at, u, new_arcs, new_ends):  # type: ignore[no-untyped-def]
+    """Of ``same`` fingers alike from i on, ``left`` on the left part of their arc, the others right."""
+    for f in range(len(arcs)):
+        for c in range(2):
+            new_arcs[f, c], new_ends[f, c] = arcs[f, c], ends[f, c]
+        if i <= f < i + left:
+            new_arcs[f, 1], new_ends[f, 1] = at, u
+        elif i + left <= f < i + same:
+            whole = arcs[i, 0] < arcs[i, 1]
+            new_arcs[f, 0], new_ends[f, 0] = (at + 1, sides[at + 1, 6]) if whole else (at, u)
+
+
+@njit(**INNER)
+def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-untyped-def]
+    """Raises the bound of a box to what its loads prove, and notes where its forces press."""
+    arcs, ends, bounds, twists, critical, _, _, seen, twist = boxes
+    mu, _, size, norm, precision = law
+    found, load = _judge(
+        sides,
+        arcs[node],
+        ends[node],
+        loads,
+        mu,
+        size,
+        norm,
+        precision,
+        level,
+        critical[node],
+        twist[0],
+        work,
+        seen[node],
+    )
+    if found >= bounds[node]:
+        bounds[node], critical[node] = found, load
+        for c in range(3):
+            twists[node, c] = twist[0, c]
+
+
+def _loop(digest: str) -> Any:
+    @kept(error_model="numpy")
+    def search(  # type: ignore[no-untyped-def]
+        sides, loads, law, fixed, tolerance, least, boxes, heap, state, found, tried, budget
+    ):
+        """Goes on with a search; see the module. Returns why it ends.
+
+        sides: (m, 9) as of ``wrench_gauge.gauge``. loads: (L, 3) to be made. law: mu, what placements tried
+        may use of it, size, norm, precision.
+        fixed: a level, or infinite to follow the least value times 1 - tolerance. least: distance of fingers.
+        boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), twists (N, 3), loads' numbers (N,), kinds (N,),
+        first children and their number (N, 2), where forces press (N, k, 8), scratch (1, 3). state: number of
+        boxes, of those in the heap, of placements tried. found: (1 + 2 k) the least value so far, sides and u
+        of its fingers. tried: (T, 1 + 2 k) the last placements tried.
+        """
+        _ = digest
+        arcs, ends, bounds, twists, critical, kinds, children, seen, twist = boxes
+        k = arcs.shape[1]
+        work, places, nowhere = workspace(k), np.zeros((k, 2)), np.zeros((k, 8))
+        at_arcs, at_ends = np.zeros((k, 2), np.int64), np.zeros((k, 2))
+        mu, usable, size, norm, precision = law
+        looked = 0
+        if state[0] == 1 and kinds[0] == OPEN:
+            _assess(sides, loads, law, np.inf, boxes, 0, work)
+        while state[1] > 0:
+            level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
+            if bounds[heap[0]] >= level:
+                break
+            if looked >= budget:
+                return PAUSED
+            if state[0] + k + 1 > len(bounds):
+                return FULL
+            looked += 1
+            node = _pop(heap, state[1], bounds)
+            state[1] -= 1
+            # a placement from where its forces press
+            _to_try(arcs[node], ends[node], seen[node], places)
+            near = False
+            for i in range(k):
+                for c in range(2):
+                    at_arcs[i, c], at_ends[i, c] = int(places[i, 0]), places[i, 1]
+                for j in range(i):
+                    apart = _apart(sides, at_arcs[i, 0], places[i, 1], at_arcs[j, 0], places[j, 1])
+                    near = near or apart < least
+            if not near:
+                value, _ = _judge(
+                    sides,
+                    at_arcs,
+                    at_ends,
+                    loads,
+                    usable,
+                    size,
+                    norm,
+                    precision,
+                    found[0],
+                    critical[node],
+                    twist[0],
+                    work,
+                    nowhere,
+                )
+                row = state[2] % len(tried)
+                state[2] += 1
+                tried[row, 0] = value
+                for i in range(k):
+                    tried[row, 1 + 2 * i], tried[row, 2 + 2 * i] = places[i, 0], places[i, 1]
+                if value < found[0]:
+                    for c in range(2 * k + 1):
+                        found[c] = tried[row, c]
+                    if fixed < np.inf and value <= fixed:
+                        _push(heap, state[1], bounds, node)
+                        state[1] += 1
+                        return IMPROVED
+                    level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
+            if bounds[node] >= level:
+                kinds[node] = EXCLUDED
+                continue
+            i = _to_split(sides, arcs[node], ends[node], seen[node], near)
+            if i < 0:  # too small to be split: it stays open
+                continue
+            at, u = _cut(sides, arcs[node], ends[node], seen[node], i)
+            while i > 0 and _alike(arcs[node], ends[node], i - 1, i):
+                i -= 1
+            same = 1
+            while i + same < k and _alike(arcs[node], ends[node], i, i + same):
+                same += 1
+            kinds[node] = SPLIT
+            children[node, 0], children[node, 1] = state[0], same + 1
+            for left in range(same, -1, -1):
+                child = state[0]
+                state[0] += 1
+                _write_child(sides, arcs[node], ends[node], i, same, left, at, u, arcs[child], ends[child])
+                bounds[child], critical[child], kinds[child] = bounds[node], critical[node], OPEN
+                for c in range(3):
+                    twists[child, c] = twists[node, c]
+                if least > 0.0 and _too_near(sides, arcs[child], ends[child], least):
+                    kinds[child] = NEAR
+                    continue
+                b = loads[critical[node]]
+                known = bound_by(sides, arcs[child], ends[child], mu, size, norm, b, twists[node], work)
+                if known >= level:
+                    bounds[child] = known
+                else:
+                    _assess(sides, loads, law, level, boxes, child, work)
+                if bounds[child] >= level:
+                    kinds[child] = EXCLUDED
+                else:
+                    _push(heap, state[1], bounds, child)
+                    state[1] += 1
+        for n in range(state[1]):
+            kinds[heap[n]] = EXCLUDED
+        state[1] = 0
+        return CLOSED
+
+    return search
+
+
+# Numba's cache watches this file only; the digest in the loop's closure makes it watch the gauge, too.
+search = _loop(digest((wrench_gauge,)))

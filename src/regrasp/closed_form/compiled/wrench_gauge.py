@@ -1,0 +1,199 @@
+"""How large forces must be to make a wrench, for fingers anywhere on arcs of a boundary, bounded from below.
+
+Fingers on given points, each with forces f_i in its cone K_i, make the wrenches
+
+    W = { sum_i G_i f_i :  |(size_1(f_1), ..., size_k(f_k))|_p <= 1 },     size(f) = n . f  or  |f|
+
+and gauge(b) = least T with b in T W is the least sum (p = 1), root of squares (2) or largest (infinity) of
+sizes. Any twist y bounds it: gauge(b) >= b . y / H(y); H, the support function of W, is the dual norm of
+
+    sigma_i(y) = max { v . f : f in K_i, size(f) <= 1 },     v = G_i' y.
+
+Each sigma is convex in v, and v is affine along a straight side: the largest over an arc is at an end of one
+of its sides. So the same formula with these largest values bounds every placement in a box of arcs.
+
+The best y is found by the dual simplex method: three points of W whose planes g . y = 1 meet in y; the point
+of W that is farthest along y takes the place of one of them, until none is beyond.
+"""
+
+from math import sqrt
+
+import numpy as np
+from numba import njit
+
+from regrasp.closed_form.compiled.compiling import INNER
+
+NORMAL, DISC = 0, 1
+"""size(f): n . f, or |f|."""
+SUM, SQUARES, LARGEST = 0, 1, 2
+"""p = 1, 2 or infinity."""
+FAR = 1e6
+"""A gauge of b beyond this many times |b|_1 counts as infinite."""
+_ARTIFICIAL = 1e9  # 1 / size of the rows to begin with, which no forces make
+_CLOSE = 1e-11
+_MOST = 80
+_PIVOT = 1e-13
+
+
+@njit(**INNER)
+def _support_of_arc(sides, first, last, lo, hi, mu, size, y, out):  # type: ignore[no-untyped-def]
+    """Writes sigma, the side, u, f_x, f_y, the torque and n . f of the best force on an arc; 0 for none."""
+    for c in range(7):
+        out[c] = 0.0
+    slant = sqrt(1.0 + mu * mu)
+    for j in range(first, last + 1):
+        nx, ny = sides[j, 4], sides[j, 5]
+        a = lo if j == first else sides[j, 6]
+        b = hi if j == last else sides[j, 7]
+        for end in range(2):
+            if end == 1 and b == a:
+                break
+            u = a if end == 0 else b
+            along = u - sides[j, 8]
+            px, py = sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
+            vx, vy = y[0] - y[2] * py, y[1] + y[2] * px
+            ahead, across = nx * vx + ny * vy, ny * vx - nx * vy
+            aside = abs(across)
+            if size == DISC and aside <= mu * ahead:
+                value = sqrt(ahead * ahead + aside * aside)
+                per = 1.0 / value if value > 0.0 else 0.0
+                normal, tangent = ahead * per, across * per
+            else:
+                value = ahead + mu * aside
+                normal, tangent = 1.0, mu if across >= 0.0 else -mu
+                if size == DISC:
+                    value, normal, tangent = value / slant, normal / slant, tangent / slant
+            if value > out[0]:
+                fx, fy = normal * nx + tangent * ny, normal * ny - tangent * nx
+                out[0], out[1], out[2] = value, j, u
+                out[3], out[4], out[5], out[6] = fx, fy, px * fy - py * fx, normal
+
+
+@njit(**INNER)
+def _support_of_box(sides, arcs, ends, mu, size, norm, y, g, force, out):  # type: ignore[no-untyped-def]
+    """H(y), and in ``g`` the point of W that reaches it; ``force`` (k, 3): normal force, side and u."""
+    total = 0.0
+    g[0] = g[1] = g[2] = 0.0
+    for i in range(len(arcs)):
+        force[i, 0] = 0.0
+        _support_of_arc(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], mu, size, y, out)
+        s = out[0]
+        if s <= 0.0 or (norm == SUM and s <= total):
+            continue
+        weight = s if norm == SQUARES else 1.0
+        if norm == SUM:
+            total = s
+            g[0] = g[1] = g[2] = 0.0
+            for j in range(i):
+                force[j, 0] = 0.0
+        else:
+            total += weight * s
+        for c in range(3):
+            g[c] += weight * out[3 + c]
+        force[i, 0], force[i, 1], force[i, 2] = weight * out[6], out[1], out[2]
+    if norm == SQUARES and total > 0.0:
+        total = sqrt(total)
+        for c in range(3):
+            g[c] /= total
+        for i in range(len(arcs)):
+            force[i, 0] /= total
+    return total
+
+
+@njit(**INNER)
+def _solve(g, b, y, x):  # type: ignore[no-untyped-def]
+    """The y with g_j . y = 1 and x with sum x_j g_j = b; False for rows on a plane through the origin."""
+    p0, p1, p2 = (
+        g[1, 1] * g[2, 2] - g[1, 2] * g[2, 1],
+        g[1, 2] * g[2, 0] - g[1, 0] * g[2, 2],
+        g[1, 0] * g[2, 1] - g[1, 1] * g[2, 0],
+    )
+    q0, q1, q2 = (
+        g[2, 1] * g[0, 2] - g[2, 2] * g[0, 1],
+        g[2, 2] * g[0, 0] - g[2, 0] * g[0, 2],
+        g[2, 0] * g[0, 1] - g[2, 1] * g[0, 0],
+    )
+    r0, r1, r2 = (
+        g[0, 1] * g[1, 2] - g[0, 2] * g[1, 1],
+        g[0, 2] * g[1, 0] - g[0, 0] * g[1, 2],
+        g[0, 0] * g[1, 1] - g[0, 1] * g[1, 0],
+    )
+    determinant = g[0, 0] * p0 + g[0, 1] * p1 + g[0, 2] * p2
+    if determinant == 0.0:
+        return False
+    per = 1.0 / determinant
+    y[0], y[1], y[2] = (p0 + q0 + r0) * per, (p1 + q1 + r1) * per, (p2 + q2 + r2) * per
+    x[0] = (b[0] * p0 + b[1] * p1 + b[2] * p2) * per
+    x[1] = (b[0] * q0 + b[1] * q1 + b[2] * q2) * per
+    x[2] = (b[0] * r0 + b[1] * r1 + b[2] * r2) * per
+    return True
+
+
+@njit(**INNER)
+def workspace(k):  # type: ignore[no-untyped-def]
+    """Memory for boxes of k fingers: rows g, their weights x, their forces, and scratch."""
+    return (
+        np.zeros((3, 3)), np.zeros(3), np.zeros((4, k, 3)),
+        np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(7),
+    )  # fmt: skip
+
+
+@njit(**INNER)
+def bound_by(sides, arcs, ends, mu, size, norm, b, y, work):  # type: ignore[no-untyped-def]
+    """What the twist y proves: b . y / H(y), infinite beyond ``FAR`` |b|_1."""
+    _, _, forces, _, _, new, _, out = work
+    most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
+    done = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
+    if not done > 0.0:
+        return 0.0
+    h = _support_of_box(sides, arcs, ends, mu, size, norm, y, new, forces[3], out)
+    return done / h if h * most > done else np.inf
+
+
+@njit(**INNER)
+def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work):  # type: ignore[no-untyped-def]
+    """A lower bound of the gauge of b on a box, and in ``best`` its twist; ends early at ``enough``.
+
+    sides: (m, 9) of straight sides: a point, its direction per u, unit normal, least and largest u, and the u
+    of the point. arcs: (k, 2) first and last side of each finger. ends: (k, 2) least and largest u.
+    What ``work`` holds at the end are forces that reach the bound, but for ``precision``: finger i has
+    x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2.
+    """
+    g, x, forces, y, d, new, spare, out = work
+    best[0] = best[1] = best[2] = 0.0
+    most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
+    for c in range(3):
+        x[c] = 0.0
+        for i in range(len(arcs)):
+            forces[c, i, 0] = 0.0
+    if most == 0.0:
+        return 0.0
+    for c in range(3):
+        for e in range(3):
+            g[c, e] = 0.0
+        g[c, c] = (1.0 if b[c] >= 0.0 else -1.0) / _ARTIFICIAL
+    lower = 0.0
+    for _ in range(_MOST):
+        if not _solve(g, b, y, x):
+            break
+        upper = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
+        h = _support_of_box(sides, arcs, ends, mu, size, norm, y, new, forces[3], out)
+        value = upper / h if h * most > upper else np.inf
+        if value > lower:
+            lower = value
+            best[0], best[1], best[2] = y[0], y[1], y[2]
+        if lower >= enough or h <= 1.0 + _CLOSE or lower >= upper * (1.0 - precision):
+            break
+        if not _solve(g, new, spare, d):  # new = sum d_j g_j; the row whose weight vanishes first leaves
+            break
+        leaving, ratio = -1, np.inf
+        for c in range(3):
+            if d[c] > _PIVOT and max(x[c], 0.0) < ratio * d[c]:
+                leaving, ratio = c, max(x[c], 0.0) / d[c]
+        if leaving < 0:
+            break
+        for c in range(3):
+            g[leaving, c] = new[c]
+            for i in range(len(arcs)):
+                forces[leaving, i, c] = forces[3, i, c]
+    return lower

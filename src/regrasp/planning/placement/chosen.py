@@ -1,0 +1,126 @@
+"""A grasp chosen from a shape."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.plain import entries, listed
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.proof import PlacementProof
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OtherGrasp(ArrayValue):
+    """A grasp that was passed over.
+
+    Args:
+        grasp: its contacts, relative to the centre of mass.
+        places: (k,) arc lengths of its fingers [m].
+        value: of its worst load, as the search computed it, in the unit of the objective.
+    """
+
+    grasp: Grasp
+    places: Array
+    value: float
+
+    def __repr__(self) -> str:
+        places = ", ".join(f"{s:.6g}" for s in self.places)
+        return f"OtherGrasp(value {self.value:.6g}, at {places})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ChosenGrasp(ArrayValue):
+    """Where fingers go on a shape, what that reaches, and the proof that nothing better exists.
+
+    Args:
+        shape: the outline.
+        objective: its word.
+        grasp: the contacts, F1, F2, ... along the boundary, relative to the centre of mass.
+        states: the best forces for every load asked: each vertex of a hull, of a round set the worst found.
+        value: of the worst load, in the unit of the objective.
+        bound: no placement reaches less.
+        places: (k,) arc lengths of the fingers [m].
+        others: the best of the grasps tried that differ in a finger by a twentieth of the length or more.
+        certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
+    """
+
+    shape: Outline
+    objective: str
+    grasp: Grasp
+    states: tuple[GraspState, ...]
+    value: float
+    bound: float
+    places: Array
+    others: tuple[OtherGrasp, ...]
+    certificate: PlacementProof
+
+    @property
+    def gap(self) -> float:
+        """How much better than ``value`` the best placement can be at most, as a fraction of it [-]."""
+        return (self.value - self.bound) / self.value if self.value else 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one."""
+        return {
+            "shape": self.shape.to_dict(),
+            "objective": self.objective,
+            "grasp": self.grasp.to_dict(),
+            "states": [state.to_dict() for state in self.states],
+            "value": self.value,
+            "bound": self.bound,
+            "places": self.places.tolist(),
+            "others": [
+                {"grasp": o.grasp.to_dict(), "places": o.places.tolist(), "value": o.value}
+                for o in self.others
+            ],
+            "certificate": self.certificate.to_dict(),
+        }
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """The choice of plain data; whether it is one ``regrasp.verify`` says.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys and for entries that are not what they must be.
+        """
+        keys = ("shape", "objective", "grasp", "states", "value", "bound", "places", "others", "certificate")
+        given = entries(data, "a chosen grasp", keys)
+        grasp = Grasp.from_dict(given["grasp"])
+        others = [
+            entries(o, "others", ("grasp", "places", "value")) for o in listed(given["others"], "others")
+        ]
+        if not isinstance(given["objective"], str):
+            raise InvalidInput(f"objective must be a word, got {given['objective']!r}")
+        return cls(
+            Outline.from_dict(given["shape"]),
+            given["objective"],
+            grasp,
+            tuple(GraspState.from_dict(state) for state in listed(given["states"], "states")),
+            number(given["value"], "value"),
+            number(given["bound"], "bound"),
+            array(given["places"], "places", (len(grasp),)),
+            tuple(
+                OtherGrasp(
+                    Grasp.from_dict(o["grasp"]),
+                    array(o["places"], "places", (None,)),
+                    number(o["value"], "value"),
+                )
+                for o in others
+            ),
+            PlacementProof.from_dict(given["certificate"]),
+        )
+
+    def __repr__(self) -> str:
+        places = ", ".join(f"{s:.6g}" for s in self.places)
+        return (
+            f"ChosenGrasp({self.objective} {self.value:.6g}, bound {self.bound:.6g}, gap {self.gap:.2g}, "
+            f"fingers at {places})"
+        )

@@ -1,0 +1,64 @@
+"""The loads that a placement is bounded by, and those that it is judged by."""
+
+from math import ceil, pi, sqrt
+
+import numpy as np
+
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.wrench import Wrench
+
+
+def check_planar(load: Wrench | LoadSet) -> None:
+    """Raise ``InvalidInput`` for what is no planar load or set of loads."""
+    if not isinstance(load, Wrench | LoadSet):
+        raise InvalidInput(f"load must be a Wrench or a LoadSet, got {shown(load)}")
+    if load.dimension != 2:
+        raise InvalidInput("load is in space and the shape in the plane; give a planar load")
+
+
+def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Array]:
+    """Loads (m, 3) of the set, and loads (l, 3) whose hull contains it: the same for a point or a hull.
+
+    A bound from loads of the set is one for the set, and a grasp that holds the outer ones holds the set. The
+    outer ones are farther from the center by a fraction of about ``tolerance`` at most.
+    """
+    if isinstance(load, Wrench):
+        return load.vector[None], load.vector[None]
+    if load.vertices is not None:
+        points = np.unique(load.vertices, axis=0)
+        return points, points
+    center, flat = load.center.vector, _flat_directions(load)
+    if flat.shape[0] == 0:
+        return center[None], center[None]
+    if flat.shape[0] == 3:
+        raise InvalidInput(
+            "a set of loads whose forces and torques are both round has no polygon near it; give the hull of "
+            "some of its loads"
+        )
+    count = max(8, ceil(pi / sqrt(2 * tolerance))) if flat.shape[0] == 2 else 2
+    angles = 2 * pi * np.arange(count) / count
+    around = np.stack([np.cos(angles), np.sin(angles)], axis=1)[:, : flat.shape[0]]
+    twists = around @ flat
+    inner = np.array([load.extreme(twist).vector for twist in twists])
+    if flat.shape[0] == 1:
+        return inner, inner
+    # neighbouring tangents of the set meet outside it
+    reach = np.array([load.support(twist) - twist @ center for twist in twists])
+    step = 2 * pi / count
+    after = np.roll(reach, -1)
+    along = (after - reach * np.cos(step)) / np.sin(step)
+    outer = reach[:, None] * around + along[:, None] * np.stack([-around[:, 1], around[:, 0]], axis=1)
+    scale = flat / (flat**2).sum(axis=1)[:, None]
+    return inner, center + outer @ scale
+
+
+def _flat_directions(load: LoadSet) -> Array:
+    """(r, 3) the axes of forces and torque along which a set has a width, each scaled to it."""
+    axes = np.eye(3)
+    center = load.center.vector
+    wide = np.array([max(load.support(a) - a @ center, load.support(-a) + a @ center) for a in axes])
+    kept = wide > 1e-14 * np.abs(center)
+    result: Array = (axes / np.where(kept, wide, 1.0)[:, None])[kept]
+    return result

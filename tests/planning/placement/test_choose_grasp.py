@@ -1,0 +1,207 @@
+"""Chosen grasps against all pairs and triples of sampled points, and against other coordinates."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+import regrasp as rg
+from refusals import refusal
+
+pytestmark = pytest.mark.oracle
+
+BRACKET = rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])
+TILTED = rg.LoadSet.hull(
+    [rg.Wrench([0, -1], 0.2), rg.Wrench([0, -1], -0.2), rg.Wrench([0.3, -1]), rg.Wrench([-0.3, -1])]
+)
+OBJECTIVES = ("sum_normal", "peak_normal", "peak", "effort")
+
+
+def star(seed: int, count: int) -> rg.Outline:
+    rng = np.random.default_rng(seed)
+    angles = (np.arange(count) + rng.uniform(0.1, 0.9, count)) * 2 * np.pi / count
+    radii = rng.uniform(0.7, 1.3, count)
+    return rg.Outline(np.stack([radii * np.cos(angles), radii * np.sin(angles)], axis=1))
+
+
+def least_normals(grasp: rg.Grasp, load: rg.Wrench, largest: bool) -> float:
+    """Least sum, or largest, of normal forces, written once more for a solver of linear programs."""
+    columns = []
+    for contact in grasp:
+        x, y = contact.position
+        nx, ny = contact.normal
+        for side in (-contact.friction, contact.friction):
+            fx, fy = nx - side * ny, ny + side * nx
+            columns.append([fx, fy, x * fy - y * fx])
+    G, n = np.array(columns).T, len(columns)
+    if not largest:
+        found = linprog(np.ones(n), A_eq=G, b_eq=-load.vector, method="highs")
+    else:
+        rows = np.kron(np.eye(n // 2), [1.0, 1.0])
+        found = linprog(
+            np.append(np.zeros(n), 1.0),
+            A_ub=np.column_stack([rows, -np.ones(n // 2)]),
+            b_ub=np.zeros(n // 2),
+            A_eq=np.column_stack([G, np.zeros(3)]),
+            b_eq=-load.vector,
+            method="highs",
+        )
+    return float(found.fun) if found.status == 0 else np.inf
+
+
+def value_of(grasp: rg.Grasp, loads: np.ndarray, objective: str) -> float:
+    worst = 0.0
+    for vector in loads:
+        load = rg.Wrench.from_vector(vector)
+        if objective in ("sum_normal", "peak_normal"):
+            worst = max(worst, least_normals(grasp, load, objective == "peak_normal"))
+        else:
+            try:
+                worst = max(worst, rg.choose_state(grasp, load, objective).value)
+            except rg.Infeasible:
+                return np.inf
+    return worst
+
+
+def sampled_best(outline: rg.Outline, fingers: int, count: int, objective: str) -> float:
+    vertices = TILTED.vertices
+    assert vertices is not None
+    contacts = [outline.contact_at(s, friction=0.4) for s in outline.sample(count)]
+    return min(value_of(rg.Grasp(few), vertices, objective) for few in combinations(contacts, fingers))
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize(
+    ("outline", "fingers", "count"), [(BRACKET, 2, 14), (star(4, 9), 2, 16), (star(5, 8), 3, 8)]
+)
+def test_no_sampled_placement_is_better(
+    outline: rg.Outline, fingers: int, count: int, objective: str
+) -> None:
+    chosen = rg.choose_grasp(outline, fingers, TILTED, friction=0.4, objective=objective)
+    sampled = sampled_best(outline, fingers, count, objective)
+    assert chosen.bound <= chosen.value <= sampled * (1 + 1e-3)
+    assert chosen.gap <= 1e-3
+    # and the value is that of the grasp
+    vertices = TILTED.vertices
+    assert vertices is not None
+    assert value_of(chosen.grasp, vertices, objective) == pytest.approx(chosen.value, rel=1e-6)
+
+
+def test_random_placements_of_one_box_never_beat_the_bound_of_it() -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4)
+    vertices = TILTED.vertices
+    assert vertices is not None
+    rng = np.random.default_rng(1)
+    near = [
+        [BRACKET.contact_at(s + d, friction=0.4) for s, d in zip(chosen.places, off, strict=True)]
+        for off in rng.normal(scale=0.02 * BRACKET.length, size=(60, 2))
+    ]
+    values = [value_of(rg.Grasp(few), vertices, "sum_normal") for few in near]
+    assert min(values) >= chosen.bound
+    assert min(values) < 1.2 * chosen.value  # they are placements that compete
+
+
+def test_one_load_on_given_edges_is_exact_at_once() -> None:
+    """Fact 10: under one load a finger on an edge is a line contact, so values meet bounds."""
+    chosen = rg.choose_grasp(star(7, 12), 3, rg.Wrench([0, -1], 0.1), friction=0.5, tolerance=1e-6)
+    assert chosen.gap <= 1e-6
+    assert chosen.certificate.leaves < 200
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_units_turns_and_the_first_vertex_change_nothing(objective: str) -> None:
+    vertices = star(6, 7).polygon()
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    loads = np.array([[0.3, -1, 0.1], [-0.2, -1, -0.1], [0, 0.5, 0.0]])
+    base = rg.choose_grasp(rg.Outline(vertices), 2, _hull(loads), friction=0.5, objective=objective)
+    turned = np.column_stack([loads[:, :2] @ turn.T, loads[:, 2]])
+    power = 2 if objective == "effort" else 1
+    for scale, unit in ((1.0, 1.0), (1e-4, 1e3), (1e5, 1e-5)):
+        moved = np.roll(vertices[::-1], 3, axis=0) @ turn.T * scale + [3 * scale, -scale]
+        given = rg.choose_grasp(
+            rg.Outline(moved),
+            2,
+            _hull(turned * [unit, unit, unit * scale]),
+            friction=0.5,
+            objective=objective,
+        )
+        assert given.value / unit**power == pytest.approx(base.value, rel=1e-3)
+        assert given.bound / unit**power <= base.value * (1 + 1e-9)
+        assert base.bound <= given.value / unit**power * (1 + 1e-9)
+
+
+def _hull(vectors: np.ndarray) -> rg.LoadSet:
+    return rg.LoadSet.hull(rg.Wrench.from_vector(v) for v in vectors)
+
+
+def test_every_orientation_is_held_by_what_is_chosen() -> None:
+    load = rg.LoadSet.turned(rg.Wrench([0, -2]))
+    chosen = rg.choose_grasp(BRACKET, 3, load, friction=0.5)
+    angles = np.linspace(0, 2 * np.pi, 50)
+    loads = np.stack([2 * np.cos(angles), 2 * np.sin(angles), 0 * angles], axis=1)
+    worst = value_of(chosen.grasp, loads, "sum_normal")
+    assert chosen.value * (1 - 2e-3) <= worst <= chosen.value
+    assert chosen.bound <= worst * 1.001  # the worst orientation is between two of these
+    assert len(chosen.states) == 1
+
+
+def test_the_states_hold_the_loads_of_a_hull_and_no_force_holds_no_load() -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4)
+    assert sorted(tuple(s.load.vector) for s in chosen.states) == sorted(map(tuple, TILTED.vertices))
+    sums = [(s.forces * s.grasp.normals).sum() for s in chosen.states]
+    assert max(sums) == pytest.approx(chosen.value, rel=1e-12)
+    idle = rg.choose_grasp(BRACKET, 2, rg.Wrench([0, 0]), friction=0.4)
+    assert (idle.value, idle.bound, idle.gap) == (0.0, 0.0, 0.0)
+
+
+def test_where_nothing_holds_it_says_so_with_a_proof() -> None:
+    """Two frictionless fingers make a pure torque only with opposite normals, which a triangle has not."""
+    triangle = rg.Outline([[0, 0], [4, 0], [1, 3]])
+    with pytest.raises(rg.Infeasible, match="no 2 fingers anywhere") as caught:
+        rg.choose_grasp(triangle, 2, rg.Wrench([0, 0], 1.0), friction=0.0)
+    proof = caught.value.certificate
+    assert rg.verify(proof).ok
+
+
+def test_fingers_keep_apart_and_away_from_corners() -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective="peak", min_distance=3.0)
+    a, b = chosen.grasp.positions
+    assert np.hypot(*(a - b)) >= 3.0 * (1 - 1e-9)
+    free = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective="peak")
+    assert free.bound <= chosen.value
+    away = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, from_corners=0.3)
+    corners = BRACKET.boundary.corners
+    assert np.abs(away.places[:, None] - corners).min() >= 0.3 - 1e-9
+    with pytest.raises(rg.InvalidInput, match="from_corners"):
+        rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, from_corners=3.0)
+
+
+def test_a_search_cut_short_keeps_an_honest_gap() -> None:
+    chosen = rg.choose_grasp(
+        star(5, 8), 3, TILTED, friction=0.4, objective="effort", tolerance=1e-9, most_boxes=64
+    )
+    assert 1e-9 < chosen.gap < 1
+    assert rg.verify(chosen).ok
+    better = rg.choose_grasp(star(5, 8), 3, TILTED, friction=0.4, objective="effort")
+    assert chosen.bound <= better.value
+
+
+def test_progress_sees_both_bounds_close_in() -> None:
+    seen: list[tuple[float, float]] = []
+    rg.choose_grasp(star(8, 12), 3, TILTED, friction=0.3, progress=lambda low, high: seen.append((low, high)))
+    lows, highs = np.array(seen).T
+    assert (np.diff(lows) >= -1e-9 * abs(lows[1:])).all()
+    assert (np.diff(highs) <= 0).all()
+
+
+def test_what_cannot_be_answered_is_refused() -> None:
+    for given, words in (
+        ({"objective": "angle"}, "objective must be one of sum_normal"),
+        ({"shape": rg.Outline.ellipse(2, 1)}, "polygon"),
+        ({"load": rg.Wrench([0, 0, 1])}, "planar load"),
+        ({"tolerance": 2.0}, "tolerance"),
+        ({"fingers": 5}, "fingers"),
+    ):
+        asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | given
+        assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))

@@ -1,0 +1,170 @@
+"""Proofs of bounds on placements, re-read, tampered with, and of other grasps."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+
+pytestmark = pytest.mark.contract
+
+BRACKET = rg.Outline(
+    [[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]], holes=[[[0.3, 0.3], [0.3, 0.6], [0.6, 0.3]]]
+)
+LOADS = rg.LoadSet.hull([rg.Wrench([0, -1], 0.2), rg.Wrench([0.9, 0.3]), rg.Wrench([-0.3, 1], -0.2)])
+
+
+@cache
+def chosen(objective: str = "sum_normal") -> rg.ChosenGrasp:
+    return rg.choose_grasp(BRACKET, 3, LOADS, friction=0.4, objective=objective, from_corners=0.05)
+
+
+@pytest.mark.parametrize("objective", ["sum_normal", "peak_normal", "peak", "effort"])
+def test_a_chosen_grasp_is_verified_from_plain_data(objective: str) -> None:
+    again = rg.ChosenGrasp.from_dict(json.loads(json.dumps(chosen(objective).to_dict())))
+    assert again == chosen(objective)
+    verdict = rg.verify(again)
+    assert verdict.ok
+    assert "boxes cover all of them" in str(verdict)
+    assert verdict.bound == again.bound <= again.value
+
+
+def spoiled(change: Callable[[dict[str, Any]], None]) -> rg.ChosenGrasp:
+    """A chosen grasp whose proof was changed by somebody who does not mind the digest."""
+    proof = chosen().certificate
+    values = {name: np.array(v) if isinstance(v, np.ndarray) else v for name, v in vars(proof).items()}
+    change(values)
+    return replace(chosen(), certificate=replace(proof, **values))
+
+
+def leaf(values: dict[str, Any]) -> int:
+    """A box that is excluded by a twist, not the last."""
+    return int(np.flatnonzero((values["children"][:, 1] == 0) & (values["number"] >= 0))[3])
+
+
+def _drop(values: dict[str, Any]) -> None:
+    parent = int(np.flatnonzero(values["children"][:, 1] > 0)[1])
+    values["children"][parent, 1] -= 1
+
+
+def _shrink(values: dict[str, Any]) -> None:
+    box = leaf(values)
+    values["ends"][box, 0, 1] -= 0.01 * (values["ends"][box, 0, 1] - values["ends"][box, 0, 0])
+
+
+def _raise(values: dict[str, Any]) -> None:
+    values["bound"] *= 1.001
+
+
+def _twist(values: dict[str, Any]) -> None:
+    values["twists"][leaf(values)] = 0.0
+
+
+def _flip(values: dict[str, Any]) -> None:
+    values["twists"][leaf(values)] *= -1
+
+
+def _load(values: dict[str, Any]) -> None:
+    values["number"][leaf(values)] = 77
+
+
+def _near(values: dict[str, Any]) -> None:
+    values["number"][leaf(values)] = -1
+
+
+def _friction(values: dict[str, Any]) -> None:
+    values["friction"] = 0.8
+
+
+def _vertex(values: dict[str, Any]) -> None:
+    values["vertices"][1] += [0.2, 0.0]
+
+
+def _side(values: dict[str, Any]) -> None:
+    values["sides"] = values["sides"][:-1]
+
+
+def _centre(values: dict[str, Any]) -> None:
+    values["centre_of_mass"] += 0.01
+
+
+def _root_box(values: dict[str, Any]) -> None:
+    values["arcs"][0, 0, 1] -= 1
+
+
+def _loop(values: dict[str, Any]) -> None:
+    values["children"][leaf(values)] = [1, 2]
+
+
+def _none(values: dict[str, Any]) -> None:
+    values["twists"][leaf(values)] = np.nan
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        _drop, _shrink, _raise, _twist, _flip, _load, _near, _friction, _vertex, _side, _centre, _root_box,
+        _loop, _none,
+    ],
+)  # fmt: skip
+def test_a_spoiled_proof_proves_nothing(change: Callable[[dict[str, Any]], None]) -> None:
+    assert not rg.verify(spoiled(change)).ok
+
+
+def test_each_box_matters() -> None:
+    """Whichever box is taken away from those that another is split into, the rest do not cover it."""
+    proof = chosen().certificate
+    for parent in np.flatnonzero(proof.children[:, 1] > 0)[:40]:
+        children = np.array(proof.children)
+        children[parent, 1] -= 1
+        assert not rg.verify(replace(proof, children=children)).ok
+        children[parent] += 1
+        assert not rg.verify(replace(proof, children=children)).ok
+
+
+def test_a_number_touched_in_a_file_is_seen() -> None:
+    rng = np.random.default_rng(0)
+    for name in ("twists", "ends", "vertices", "loads", "sides"):
+        data = json.loads(json.dumps(chosen().to_dict()))
+        row = data["certificate"][name]
+        while isinstance(row[0], list):
+            row = row[int(rng.integers(len(row)))]
+        row[0] = row[0] + 1e-12 * (1 + abs(row[0]))
+        with pytest.raises(rg.InvalidInput, match="digest"):
+            rg.ChosenGrasp.from_dict(data)
+
+
+def test_claims_that_the_proof_does_not_cover_are_seen() -> None:
+    good = chosen()
+    moved = rg.Grasp(rg.Contact(c.position + 1e-6 * c.normal, c.normal, 0.4, name=c.name) for c in good.grasp)
+    states = [rg.choose_state(moved, s.load, "sum_normal") for s in good.states]
+    for wrong, words in (
+        (replace(good, bound=good.value * 1.01), "above the value"),
+        (replace(good, bound=good.bound * 1.0001), "above what the proof says"),
+        (replace(good, objective="peak"), "not of peak"),
+        (replace(good, value=good.bound), "above the value"),
+        (replace(good, grasp=moved, states=tuple(states), value=9.0), "none of the sides"),
+        (replace(good, states=good.states[:2]), "has no state"),
+        (replace(good, states=()), "no state"),
+        (replace(good, shape=rg.Outline([[0, 0], [4, 0], [0, 3]])), "another outline"),
+    ):
+        assert any(words in v for v in rg.verify(wrong).violations), words
+
+
+def test_a_proof_at_its_limit() -> None:
+    """The bound of a proof may rise to what its weakest box proves and no further."""
+    proof = chosen().certificate
+    assert rg.verify(proof).ok
+    lo, hi = 1.0, 2.0
+    while hi - lo > 1e-12:
+        middle = (lo + hi) / 2
+        lo, hi = (middle, hi) if rg.verify(replace(proof, bound=proof.bound * middle)).ok else (lo, middle)
+        if hi - lo < 1e-3 and lo == 1.0:
+            break
+    assert not rg.verify(replace(proof, bound=proof.bound * hi)).ok
+    assert hi < 1.01
