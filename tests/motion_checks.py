@@ -56,3 +56,9 @@ def axes(motions: Motions, at: np.ndarray, apart: float) -> list[np.ndarray]:
         s = np.linspace(0, 1, int(np.ceil(np.linalg.norm(v) / apart)) + 1 if v.any() else 1)
         found.append(at[:, i, None] + s[:, None] * v)
     return found
+
+
+def star() -> rg.Outline:
+    """Of ten corners, 0.05 and 0.028 from its middle by turns."""
+    points = [[(0.05 if k % 2 else 0.028) * f(np.pi * k / 5) for f in (np.cos, np.sin)] for k in range(10)]
+    return rg.Outline(points)

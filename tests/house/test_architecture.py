@@ -38,7 +38,7 @@ FLOORS: dict[str, Set[str]] = {
         "plans",
         "planning",
     },
-    "motions": {"errors", "mechanics", "outline", "mesh", "plans", "motions"},
+    "motions": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "motions"},
     "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "motions", "execution"},
     "measures": {
         "errors",

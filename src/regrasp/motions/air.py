@@ -10,6 +10,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mesh.mesh import Mesh
 from regrasp.motions.apart import apart
 from regrasp.motions.planar_space import PlanarSpace
+from regrasp.motions.shut_in import ShutIn
 from regrasp.motions.solid_space import SolidSpace
 from regrasp.motions.stands import Place, Space, Stand
 from regrasp.motions.traffic import Traffic
@@ -64,7 +65,10 @@ class Air:
             if away < 2 * radius * (1 - 1e-9):
                 raise Infeasible(
                     f"during step {k + 1} fingers {i + 1} and {j + 1} of radius {radius:g} are in one "
-                    f"another, {away:.3g} apart at {a} and {b}"
+                    f"another, {away:.3g} apart at {a} and {b}",
+                    ShutIn(
+                        k, i, a, self._contacts[a].position, a, a, (a, b), False, self._contacts[b].position
+                    ),
                 )
 
     def moved(
@@ -78,8 +82,7 @@ class Air:
         """The motions before a step, at once where they keep clear in time, else one after the other.
 
         limits: speed and acceleration. window: when the step before begins, during which fingers in the air
-            may
-        move, and when it ends [s].
+        may move, and when it ends [s].
         """
         now = [self._stop(i, p) for i, p in enumerate(before)]
         space = self._spaces[0]
@@ -124,7 +127,7 @@ class Air:
             if found is None:
                 i, stop, found = self._aside(waiting, aside, after, now)
                 if found is None:
-                    raise Infeasible(self._shut_in(k, waiting[0], names[waiting[0]], after[waiting[0]], now))
+                    raise self._shut_in(k, waiting[0], names[waiting[0]], after[waiting[0]], now)
                 aside.add(i)
                 now[i] = stop
                 yield i, stop, names[i], found
@@ -168,14 +171,19 @@ class Air:
         found = [(stop.point, v) for stop, v in zip(now, self.capsules, strict=True)]
         return np.array(found[:finger] + found[finger + 1 :]).reshape(-1, 2, self.capsules.shape[1])
 
-    def _shut_in(self, k: int, i: int, origin: str, target: Place, now: list[Stop]) -> str:
+    def _shut_in(self, k: int, i: int, origin: str, target: Place, now: list[Stop]) -> Infeasible:
         """Which finger finds no way and where it is shut in."""
-        said = f"before step {k + 1} finger {i + 1} finds no way from {origin} to {target[0]}: "
-        for place in (origin, target[0]):
-            stand = self.stand(i, place)
+        held = tuple(s.contact.name for j, s in enumerate(now) if j != i and s.contact is not None)
+        place, why = target[0], "the object and other tips shut {place} in, {where}"
+        numbers = [j for j in range(len(now)) if j != i]
+        for name in (target[0], origin):
+            stand = self.stand(i, name)
             piece = np.array([stand.tip(True), stand.tip(False)])
-            numbers = (j for j in range(len(now)) if j != i)
             for j, other in zip(numbers, self._others(i, now), strict=True):
                 if not self._spaces[i].keeps_apart(piece, other[None]):
-                    return f"{said}at {place}, {stand.where}, the tip of finger {j + 1} is too near"
-        return f"{said}the object and other tips shut {target[0]} in, {stand.where}"
+                    place, why = name, f"at {{place}}, {{where}}, the tip of finger {j + 1} is too near"
+        said = why.format(place=place, where=self.stand(i, place).where)
+        return Infeasible(
+            f"before step {k + 1} finger {i + 1} finds no way from {origin} to {target[0]}: {said}",
+            ShutIn(k, i, place, self._contacts[place].position, origin, target[0], held, False),
+        )

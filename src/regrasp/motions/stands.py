@@ -8,6 +8,7 @@ from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.motions.planar_space import PlanarSpace
+from regrasp.motions.shut_in import ShutIn
 from regrasp.motions.solid_space import SolidSpace
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
@@ -36,7 +37,8 @@ class Stand:
             finger = "a capsule" if space.capsule.any() else "a tip"
             raise Infeasible(
                 f"{finger} of radius {space.tip_radius:g} is shut in at {name}, {self.where}: along the "
-                f"normal it gets no clearance of {space.clearance:g}"
+                f"normal it gets no clearance of {space.clearance:g}",
+                ShutIn(-1, -1, name, contact.position, name, name, (), True),
             )
         self._off = self._touch - (self.exit + space.clearance) * contact.normal
 
