@@ -15,6 +15,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
 from regrasp.planning.states.degenerate.flat_minima import polished
+from regrasp.planning.states.degenerate.near_the_edge import best_near_the_edge
 from regrasp.planning.states.degenerate.no_load import best_squeeze
 from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
@@ -131,7 +132,7 @@ def _by_newton(
 ) -> ChosenForces | None:
     """Forces that hold the load where a solver gives none: of least effort by Newton's method, or any.
 
-    Nothing is known of how much better an objective other than effort can be: the gap is infinite.
+    Then better ones, as near to the best as slightly wider cones tell.
     """
     if backend != "clarabel" or facets is not None:
         return None
@@ -148,13 +149,17 @@ def _by_newton(
         forces = None if edge is None else chooser.settled(edge.forces, frictions, limits)
     if forces is None:
         return None
-    found = Found(forces, 0.0 if is_least else inf)
+    found, objective = Found(forces, 0.0 if is_least else inf), criteria.objective
     if criteria.unbounded and inf in limits:
         peak = _radius(grasp, frictions, forces, facets)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
-    if isinstance(criteria.objective, LevelObjective):
+    if isinstance(objective, LevelObjective):
+        narrowing = Narrowing(grasp, objective, frictions)
+        found = Found(forces, max(narrowing.top - narrowing.level(forces), 0.0))
         with suppress(SolverFailed):
-            found = highest(chooser, Narrowing(grasp, criteria.objective, frictions), forces, limits)
+            found = highest(chooser, narrowing, forces, limits)
+    elif isinstance(objective, ConvexObjective) and not is_least:
+        found = best_near_the_edge(chooser, objective, forces, frictions, limits)
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 
