@@ -1,32 +1,45 @@
 """Forces of a least cost, polished: a tolerance on the objective leaves its square root on the forces.
 
-Newton's method on the conditions of optimality does it (``closed_form.compiled.face_newton``), for the convex
+Newton's method on the conditions of optimality does it (``closed_form.least``), for the convex
 objectives over exact cones. Forces are taken only if they are no worse.
 """
 
+from itertools import count
+from typing import Any
+
 import numpy as np
 
+from regrasp.closed_form.least import face_newton
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.planning.states.objectives import Bound, ConvexObjective
 from regrasp.planning.states.solving import Chooser
 
 _KINDS = {Bound.NONE: 0, Bound.FORCE: 1, Bound.NORMAL: 2, Bound.MARGIN: 3}
-"""The words of ``faces``, which is imported when needed."""
+"""The words of ``faces``."""
+_PATIENCE = 100
+"""Calls that are interpreted, at some milliseconds each: then loading or compiling the loops pays."""
+_calls = count()
+
+
+def _refined() -> Any:
+    if next(_calls) < _PATIENCE:
+        return face_newton.refined
+    from regrasp.closed_form.compiled.least_forces import refined
+
+    return refined
 
 
 def polished(
     chooser: Chooser, objective: ConvexObjective, forces: Array, frictions: list[float], limits: list[float]
 ) -> Array:
     """The forces (n, w) at the minimum, or as they are where it is not found."""
-    from regrasp.closed_form.compiled import face_newton
-
     unit = float(abs(forces).max())
     if not 0 < unit < np.inf:
         return forces
     grasp = chooser.grasp
     squares, linear = objective.squares(grasp), objective.linear(grasp, unit)
-    best, is_no_worse = face_newton.refined(
+    best, is_no_worse = _refined()(
         forces, unit, chooser.matrix, chooser.vector, grasp.cones.normals,
         np.array(frictions), NEGLIGIBLE, np.array(limits),
         np.zeros(len(grasp)) if squares is None else squares,

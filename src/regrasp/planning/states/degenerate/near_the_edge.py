@@ -1,7 +1,7 @@
 """The best forces where a solver fails next to the edge, and how much better the best can be, at most.
 
-Cones and limits a little wider leave room for a solver. What it finds there bounds what can be found here; its
-forces, moved into the cones, are nearly the best.
+Cones and limits a little wider leave room for a solver. What it finds there bounds what can be found here;
+its forces, moved into the cones, are nearly the best.
 """
 
 from collections.abc import Iterator

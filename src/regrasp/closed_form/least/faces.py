@@ -1,13 +1,11 @@
-"""Which constraints the least of a cost of forces touches, in loops compiled by Numba; see ``face_newton``.
+# mypy: allow-untyped-calls
+"""Which constraints the least of a cost of forces touches; see ``face_newton``.
 
 touched: (n, 4) whether a finger is idle, on its cone, at its limit, at t. sizes: (n, 3) of a force along the
 normal, across it, in all. z: multipliers of the equations, in their order: balance, then finger by finger.
 """
 
 import numpy as np
-from numba import njit
-
-from regrasp.closed_form.compiled.compiling import INNER
 
 NONE, PEAK, PEAK_NORMAL, MARGIN = range(4)
 """What t is: nothing, the largest force, the largest normal force, the least distance to a cone (s = -1)."""
@@ -22,7 +20,6 @@ _SIGN, _OVER = 1e-9, 3e-11
 _SMALL = 1e-6
 
 
-@njit(**INNER)
 def measure(x, normals, sizes):  # type: ignore[no-untyped-def]
     """The ``sizes`` of forces."""
     n, w = normals.shape
@@ -37,7 +34,6 @@ def measure(x, normals, sizes):  # type: ignore[no-untyped-def]
         sizes[i, 0], sizes[i, 1], sizes[i, 2] = along, np.sqrt(across), np.sqrt(square)
 
 
-@njit(**INNER)
 def shared(sizes, frictions, kind):  # type: ignore[no-untyped-def]
     """The t of forces."""
     t = 0.0
@@ -54,7 +50,6 @@ def shared(sizes, frictions, kind):  # type: ignore[no-untyped-def]
     return t if t < np.inf else 0.0
 
 
-@njit(**INNER)
 def guess(t, sizes, frictions, limits, kind, touched):  # type: ignore[no-untyped-def]
     """What is touched, by how near it is."""
     for i in range(frictions.size):
@@ -68,13 +63,11 @@ def guess(t, sizes, frictions, limits, kind, touched):  # type: ignore[no-untype
         )
 
 
-@njit(**INNER)
 def beyond(t, size, mu, kind):  # type: ignore[no-untyped-def]
     """How far a force is outside its cone, or the part of it that t leaves."""
     return size[1] - mu * size[0] + (t * np.sqrt(1 + mu * mu) if kind == MARGIN else 0.0)
 
 
-@njit(**INNER)
 def equations(touched, frictions, r, w):  # type: ignore[no-untyped-def]
     """The number of equations."""
     rows = r
@@ -86,7 +79,6 @@ def equations(touched, frictions, r, w):  # type: ignore[no-untyped-def]
     return rows
 
 
-@njit(**INNER)
 def corrected(x, z, touched, sizes, matrix, normals, frictions, limits, squares, linear, kind):  # type: ignore[no-untyped-def]
     """Whether equations had to be dropped or added."""
     n, w = normals.shape

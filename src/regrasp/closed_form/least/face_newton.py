@@ -1,4 +1,5 @@
-"""The least of a convex cost of forces to the last digits, in loops compiled by Numba.
+# mypy: allow-untyped-calls
+"""The least of a convex cost of forces to the last digits.
 
     minimise   sum_i a_i |f_i|^2 + c_i . f_i + s t
     subject to G f + w = 0,   |f_i across n_i| + k_i t <= mu_i f_i.n_i,   |f_i| <= limit_i,
@@ -12,17 +13,12 @@ and Newton's method solves the conditions of Karush, Kuhn and Tucker,
 
 Where many forces are best, e leads to those nearby; it spoils no solution, as every step starts from what
 is still missing. What pulls is dropped and what is overstepped added, until multipliers and forces have the
-right signs (``faces``).
+right signs (``faces``). Loops over plain numbers, so that they may be compiled (``compiled.least_forces``).
 """
 
-from typing import Any
-
 import numpy as np
-from numba import njit
 
-from regrasp.closed_form.compiled import faces
-from regrasp.closed_form.compiled.compiling import INNER, digest
-from regrasp.closed_form.compiled.faces import (
+from regrasp.closed_form.least.faces import (
     MARGIN,
     NONE,
     PEAK_NORMAL,
@@ -32,7 +28,6 @@ from regrasp.closed_form.compiled.faces import (
     measure,
     shared,
 )
-from regrasp.compilation import kept
 
 # The e of forces and that of multipliers: their ratio to the rounding of what is eliminated matters.
 _OF_FORCES, _OF_MULTIPLIERS = 1e-6, 1e-8
@@ -43,7 +38,6 @@ _FAR, _LAST = 1e-2, 1e-10
 _INSIDE, _DONE = 1 - 2e-12, 1e-10
 
 
-@njit(**INNER)
 def _refine(x, sizes, matrix, load, normals, frictions, limits, squares, linear, kind):  # type: ignore[no-untyped-def]
     n, w = normals.shape
     r = load.size
@@ -67,7 +61,6 @@ def _refine(x, sizes, matrix, load, normals, frictions, limits, squares, linear,
     x[:] = first  # multipliers of equations that depend on one another have any sign
 
 
-@njit(**INNER)
 def _cost(x, squares, linear, kind):  # type: ignore[no-untyped-def]
     if kind != NONE:
         return -x[-1] if kind == MARGIN else x[-1]
@@ -78,7 +71,6 @@ def _cost(x, squares, linear, kind):  # type: ignore[no-untyped-def]
     return cost
 
 
-@njit(**INNER)
 def _newton(x, touched, rows, matrix, load, normals, frictions, limits, squares, linear, kind):  # type: ignore[no-untyped-def]
     """``x`` becomes the solution; its multipliers (rows,), and whether steps came to an end."""
     unknowns = x.size
@@ -118,7 +110,6 @@ def _newton(x, touched, rows, matrix, load, normals, frictions, limits, squares,
     return z, False
 
 
-@njit(**INNER)
 def _system(  # type: ignore[no-untyped-def]
     x, z, touched, matrix, load, normals, frictions, limits, squares, linear, kind, first, K, missing
 ):
@@ -214,7 +205,6 @@ def _system(  # type: ignore[no-untyped-def]
         K[j, j] += _OF_FORCES if j < unknowns else -_OF_MULTIPLIERS
 
 
-@njit(**INNER)
 def _factor_and_solve(K, unknowns, v):  # type: ignore[no-untyped-def]
     """``v`` becomes K^-1 v by L D L': K is quasi-definite, so that no order of its rows is better."""
     size = v.size
@@ -236,40 +226,32 @@ def _factor_and_solve(K, unknowns, v):  # type: ignore[no-untyped-def]
             v[i] -= K[k, i] * v[k]
 
 
-def _loop(sources: str) -> Any:
-    @kept(error_model="numpy")
-    def refined(  # type: ignore[no-untyped-def]
-        forces, unit, matrix, load, normals, frictions, negligible, limits, squares, linear, kind
-    ):
-        """The best forces (n, w) near ``forces``, or what comes near them, and whether they cost no more.
+def refined(  # type: ignore[no-untyped-def]
+    forces, unit, matrix, load, normals, frictions, negligible, limits, squares, linear, kind
+):
+    """The best forces (n, w) near ``forces``, or what comes near them, and whether they cost no more.
 
-        unit: the size of forces; squares and linear are factors of them. matrix, load: (r, n w), (r,)
-        of comparable rows. normals: (n, w). frictions, limits, squares: (n,); frictions up to
-        ``negligible`` are none. linear: (n, w). kind: one of the words above.
-        """
-        _ = sources
-        n, w = forces.shape
-        mu, bounds = _INSIDE * frictions, _INSIDE / unit * limits
-        for i in range(n):
-            if not frictions[i] > negligible:
-                mu[i] = 0.0
-        cost = max(np.abs(squares).max(), np.abs(linear).max())
-        if not 0 < cost < np.inf:
-            cost = 1.0
-        a, c = squares / cost, linear / cost
-        x = np.zeros(n * w + 1)
-        x[:-1] = forces.ravel() / unit
-        sizes = np.zeros((n, 3))  # along the normal, across it, in all
-        measure(x, normals, sizes)
-        x[-1] = shared(sizes, mu, kind)
-        before = _cost(x, a, c, kind)
-        _refine(x, sizes, matrix, load / unit, normals, mu, bounds, a, c, kind)
-        measure(x, normals, sizes)
-        x[-1] = shared(sizes, mu, kind)
-        after = _cost(x, a, c, kind)
-        return unit * x[:-1].copy().reshape(n, w), after <= before + _DONE * abs(before)
-
-    return refined
-
-
-refined = _loop(digest((faces,)))
+    unit: the size of forces; squares and linear are factors of them. matrix, load: (r, n w), (r,)
+    of comparable rows. normals: (n, w). frictions, limits, squares: (n,); frictions up to
+    ``negligible`` are none. linear: (n, w). kind: one of the words above.
+    """
+    n, w = forces.shape
+    mu, bounds = _INSIDE * frictions, _INSIDE / unit * limits
+    for i in range(n):
+        if not frictions[i] > negligible:
+            mu[i] = 0.0
+    cost = max(np.abs(squares).max(), np.abs(linear).max())
+    if not 0 < cost < np.inf:
+        cost = 1.0
+    a, c = squares / cost, linear / cost
+    x = np.zeros(n * w + 1)
+    x[:-1] = forces.ravel() / unit
+    sizes = np.zeros((n, 3))  # along the normal, across it, in all
+    measure(x, normals, sizes)
+    x[-1] = shared(sizes, mu, kind)
+    before = _cost(x, a, c, kind)
+    _refine(x, sizes, matrix, load / unit, normals, mu, bounds, a, c, kind)
+    measure(x, normals, sizes)
+    x[-1] = shared(sizes, mu, kind)
+    after = _cost(x, a, c, kind)
+    return unit * x[:-1].copy().reshape(n, w), after <= before + _DONE * abs(before)

@@ -1,0 +1,26 @@
+"""``face_newton`` compiled by Numba. Imported when needed."""
+
+from typing import Any
+
+from regrasp.closed_form.compiled.compiling import compiled, digest
+from regrasp.closed_form.least import face_newton, faces
+from regrasp.compilation import kept
+
+_refined = compiled((faces, face_newton), inline=False)["refined"]
+
+
+def _loop(sources: str) -> Any:
+    @kept(error_model="numpy")
+    def refined(  # type: ignore[no-untyped-def]
+        forces, unit, matrix, load, normals, frictions, negligible, limits, squares, linear, kind
+    ):
+        _ = sources
+        return _refined(
+            forces, unit, matrix, load, normals, frictions, negligible, limits, squares, linear, kind
+        )
+
+    return refined
+
+
+refined = _loop(digest((faces, face_newton)))
+"""``face_newton.refined``."""
