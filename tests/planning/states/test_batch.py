@@ -217,7 +217,7 @@ def test_compiled_once_for_all_shapes() -> None:
     for name in ("r1", "n2", "force"):
         rg.locus_intervals(**PAPER | {name: many})
     rg.locus_intervals(**PAPER | {"r1": many[:, None], "n2": many})
-    assert len(compiled.intervals.signatures) == 1
+    assert len(compiled.INTERVALS.signatures) == 1
 
 
 @pytest.mark.parametrize(

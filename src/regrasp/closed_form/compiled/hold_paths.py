@@ -15,14 +15,14 @@ from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, prange
 
-from regrasp.closed_form.compiled.sharing import shared
+from regrasp.closed_form.compiled.sharing import shared, threads
+from regrasp.compilation import kept
 
 _NONE = -1.0
 
 
-@njit(error_model="numpy")
+@kept(error_model="numpy")
 def widen(stance, known, margins, rows, near, floor, result):  # type: ignore[no-untyped-def]
     """Widest least margins (n, O) of ways to the n holds of a stance, within it; -1 up to ``floor``."""
     count = known.shape[1]
@@ -56,7 +56,7 @@ def widen(stance, known, margins, rows, near, floor, result):  # type: ignore[no
             result[q, o] = value if value > floor else _NONE
 
 
-@njit(error_model="numpy")
+@kept(error_model="numpy")
 def cheapen(stance, known, move, worth, rows, near, turning, step, bound, result):  # type: ignore[no-untyped-def]
     """Least costs (n, O) of ways to the n holds of a stance that go on within it, after a ``move``.
 
@@ -108,7 +108,7 @@ def others_of(holds, hold, point):  # type: ignore[no-untyped-def]
     raise NotImplementedError("compiled code only: see stances")
 
 
-@njit(error_model="numpy")
+@kept(error_model="numpy")
 def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
     """Whether a stance is allowed, and no other fresh hold stands for it."""
     for other in rest:  # noqa: SIM110 - Numba unrolls a loop over a tuple, and no generator
@@ -118,15 +118,13 @@ def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
 
 
 @shared(error_model="numpy")
-def widest(  # type: ignore[no-untyped-def]
-    frontier, fresh, known, margins, rows, holds, points, near, floor, threads
+def _widened(  # type: ignore[no-untyped-def]
+    begin, end, frontier, fresh, known, margins, rows, holds, points, near, floor, tables, touched
 ):
-    """Widen ``known`` by one move from the frontier; which holds are wider."""
+    """What moves of a thread's part of the frontier widen, in its own table."""
     count = known.shape[1]
-    tables = np.empty((threads, *known.shape), dtype=known.dtype)
-    touched = np.zeros((threads, known.shape[0]), dtype=np.bool_)
-    for thread in prange(threads):
-        reached = np.empty((4, count))
+    reached, threads = np.empty((4, count)), len(tables)
+    for thread in range(begin, end):
         for n in range(thread, frontier.size, threads):
             for point in range(points):
                 rest = others_of(holds, frontier[n], point)  # type: ignore[no-untyped-call]
@@ -135,31 +133,44 @@ def widest(  # type: ignore[no-untyped-def]
                     widen(stance, known, margins, rows, near, floor, reached)
                     for q in range(len(stance)):
                         h = stance[q]
-                        if not touched[thread, h]:
-                            touched[thread, h] = True
-                            tables[thread, h] = known[h]
                         for o in range(count):
-                            tables[thread, h, o] = max(tables[thread, h, o], reached[q, o])
-    wider = np.zeros(known.shape[0], dtype=np.bool_)
-    for h in prange(known.shape[0]):
-        for thread in range(threads):
-            for o in range(count if touched[thread, h] else 0):
-                if tables[thread, h, o] > known[h, o]:
-                    known[h, o] = tables[thread, h, o]
-                    wider[h] = True
+                            before = tables[thread, h, o] if touched[thread, h] else known[h, o]
+                            tables[thread, h, o] = max(before, reached[q, o])
+                        touched[thread, h] = True
+
+
+def widest(
+    frontier: np.ndarray,
+    fresh: np.ndarray,
+    known: np.ndarray,
+    margins: np.ndarray,
+    rows: np.ndarray,
+    holds: Any,
+    points: int,
+    near: np.ndarray,
+    floor: float,
+) -> np.ndarray:
+    """Widen ``known`` by one move from the frontier; which holds are wider."""
+    tables, touched = _tables(known)
+    _widened(
+        len(tables), frontier, fresh, known, margins, rows, holds, points, near, floor, tables, touched
+    )  # fmt: skip
+    wider = np.zeros(len(known), dtype=np.bool_)
+    for table, mine in zip(tables, touched, strict=True):
+        wider[mine] |= (table[mine] > known[mine]).any(axis=1)
+        known[mine] = np.maximum(known[mine], table[mine])
     return wider
 
 
 @shared(error_model="numpy")
-def cheapest(  # type: ignore[no-untyped-def]
-    frontier, fresh, known, move, worth, rows, holds, points, near, turning, step, bound, threads
-):
-    """``known`` after one move from the frontier, and which holds became cheaper."""
+def _cheapened(  # type: ignore[no-untyped-def]
+    begin, end, frontier, fresh, known, move, worth, rows, holds, points, near, turning, step, bound,
+    tables, touched,
+):  # fmt: skip
+    """What moves of a thread's part of the frontier make cheaper, in its own table."""
     count = known.shape[1]
-    tables = np.empty((threads, *known.shape))
-    touched = np.zeros((threads, known.shape[0]), dtype=np.bool_)
-    for thread in prange(threads):
-        reached = np.empty((4, count))
+    reached, threads = np.empty((4, count)), len(tables)
+    for thread in range(begin, end):
         for n in range(thread, frontier.size, threads):
             for point in range(points):
                 rest = others_of(holds, frontier[n], point)  # type: ignore[no-untyped-call]
@@ -168,16 +179,29 @@ def cheapest(  # type: ignore[no-untyped-def]
                     cheapen(stance, known, move, worth, rows, near, turning, step, bound, reached)
                     for q in range(len(stance)):
                         h = stance[q]
-                        if not touched[thread, h]:
-                            touched[thread, h] = True
-                            tables[thread, h] = known[h]
                         for o in range(count):
-                            tables[thread, h, o] = min(tables[thread, h, o], reached[q, o])
-    result, cheaper = known.copy(), np.zeros(known.shape[0], dtype=np.bool_)
-    for h in prange(known.shape[0]):
-        for thread in range(threads):
-            for o in range(count if touched[thread, h] else 0):
-                if tables[thread, h, o] < result[h, o]:
-                    result[h, o] = tables[thread, h, o]
-                    cheaper[h] = True
+                            before = tables[thread, h, o] if touched[thread, h] else known[h, o]
+                            tables[thread, h, o] = min(before, reached[q, o])
+                        touched[thread, h] = True
+
+
+def cheapest(
+    frontier: np.ndarray, fresh: np.ndarray, known: np.ndarray, *arguments: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """``known`` after one move from the frontier, and which holds became cheaper.
+
+    arguments: move, worth, rows, holds, points, near, turning, step, bound, as ``cheapen`` takes them.
+    """
+    tables, touched = _tables(known)
+    _cheapened(len(tables), frontier, fresh, known, *arguments, tables, touched)
+    result, cheaper = known.copy(), np.zeros(len(known), dtype=np.bool_)
+    for table, mine in zip(tables, touched, strict=True):
+        cheaper[mine] |= (table[mine] < result[mine]).any(axis=1)
+        result[mine] = np.minimum(result[mine], table[mine])
     return result, cheaper
+
+
+def _tables(known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For each thread a table like ``known``, and which of its rows are written."""
+    count = threads()
+    return np.empty((count, *known.shape), known.dtype), np.zeros((count, len(known)), dtype=np.bool_)

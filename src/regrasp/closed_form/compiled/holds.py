@@ -6,7 +6,6 @@ Pairs are shared out to the threads, a block at a time; ``pairs`` does all loads
 from typing import Any
 
 import numpy as np
-from numba import prange
 
 from regrasp.closed_form.compiled import pairs
 from regrasp.closed_form.compiled.compiling import digest
@@ -21,11 +20,11 @@ STRETCH = 4096
 
 def _loops(sources: str) -> tuple[Any, Any]:
     @shared(error_model="numpy")
-    def margins(first, second, loads, candidates, result):  # type: ignore[no-untyped-def]
+    def margins(start, stop, first, second, loads, candidates, result):  # type: ignore[no-untyped-def]
         """Writes the margin of each pair under each load to ``result`` (loads, pairs)."""
         _ = sources
         turned = loads.T.copy()
-        for block in prange((first.size + _BLOCK - 1) // _BLOCK):
+        for block in range(start, stop):
             begin, end = block * _BLOCK, min((block + 1) * _BLOCK, first.size)
             for o in range(len(loads)):
                 for p in range(begin, end):
@@ -36,12 +35,12 @@ def _loops(sources: str) -> tuple[Any, Any]:
 
     @shared(error_model="numpy")
     def widest(  # type: ignore[no-untyped-def]
-        first, second, loads, candidates, allowed, place, best, where, counts
+        start, stop, first, second, loads, candidates, allowed, place, best, where, counts
     ):
         _ = sources
         turned = loads.T.copy()
         each = 1 if len(allowed) > 1 else 0
-        for stretch in prange(len(counts)):
+        for stretch in range(start, stop):
             pair, load, margin = workspace_for(_BLOCK, len(loads))
             for begin in range(stretch * STRETCH, min((stretch + 1) * STRETCH, first.size), _BLOCK):
                 end = min(begin + _BLOCK, first.size)
@@ -55,7 +54,14 @@ def _loops(sources: str) -> tuple[Any, Any]:
     return margins, widest
 
 
-hold_margins, _widest = _loops(digest((*pairs.FORMULAS, pairs)))
+_margins, _widest = _loops(digest((*pairs.FORMULAS, pairs)))
+
+
+def hold_margins(
+    first: np.ndarray, second: np.ndarray, loads: np.ndarray, candidates: tuple[Any, ...], result: np.ndarray
+) -> None:
+    """Writes the margin of each pair under each load to ``result`` (loads, pairs)."""
+    _margins(-(-first.size // _BLOCK), first, second, loads, candidates, result)
 
 
 def widest_margins(
@@ -75,7 +81,7 @@ def widest_margins(
     many loads at a time are faster. counts (stretches, loads): how many pairs of a stretch hold, to be summed
     over the stretches.
     """
-    _widest(first, second, loads, candidates, np.atleast_2d(allowed), place, best, where, counts)
+    _widest(len(counts), first, second, loads, candidates, np.atleast_2d(allowed), place, best, where, counts)
 
 
 def pairs_of(count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from math import comb, sqrt
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from regrasp.closed_form import (
     dual_simplex,
@@ -98,12 +98,12 @@ def _is_refuted(motions, count, force, moment):  # type: ignore[no-untyped-def]
 def _loop(digest: str) -> Any:
     @shared(error_model="numpy")
     def margins(  # type: ignore[no-untyped-def]
-        triples, allowed, points, normals, frictions, limits, loads, angles, cos_half, peak_ratio,
-        with_margin, result,
+        start, stop, triples, allowed, points, normals, frictions, limits, loads, angles, cos_half,
+        peak_ratio, with_margin, result,
     ):  # fmt: skip
         """Margins (O, T) of triples (T, 3) under loads (O, 6); frictions and limits (2, N), usable last."""
         _ = digest
-        for block in prange((len(triples) + _BLOCK - 1) // _BLOCK):
+        for block in range(start, stop):
             work = _workspace(len(angles))
             motions = np.zeros((_KEPT, 9))
             for p in range(block * _BLOCK, min((block + 1) * _BLOCK, len(triples))):
@@ -149,7 +149,12 @@ def _vector(rows, i):  # type: ignore[no-untyped-def]
     return (rows[i, 0], rows[i, 1], rows[i, 2])
 
 
-triple_margins = _loop(_digest)
+_margins = _loop(_digest)
+
+
+def triple_margins(triples: np.ndarray, *arguments: Any) -> None:
+    """Writes the margins of triples (T, 3) under loads to the last argument, (O, T); see ``_loop``."""
+    _margins(-(-len(triples) // _BLOCK), triples, *arguments)
 
 
 def triples_of(count: int) -> np.ndarray:

@@ -12,7 +12,7 @@ and the caller looks at these numbers again only if there are any.
 from math import inf
 from typing import Any
 
-from numba import njit, prange
+from numba import njit
 
 from regrasp.closed_form import best, choice, locus
 from regrasp.closed_form.compiled.compiling import compiled, digest
@@ -47,10 +47,10 @@ def _is_doubtful_limit(fx, fy, tau, limit1, limit2):  # type: ignore[no-untyped-
 
 def _loops(sources: str) -> tuple[Any, Any]:
     @shared(error_model="numpy")
-    def intervals(r1, n1, mu1, r2, n2, mu2, f, tau, whole, lo, hi):  # type: ignore[no-untyped-def]
+    def intervals(begin, end, r1, n1, mu1, r2, n2, mu2, f, tau, whole, lo, hi):  # type: ignore[no-untyped-def]
         _ = sources
         doubtful = 0
-        for block in prange((lo.size + BLOCK - 1) // BLOCK):
+        for block in range(begin, end):
             first = block * BLOCK
             start = first * whole
             size = min(BLOCK, lo.size - first)
@@ -64,11 +64,11 @@ def _loops(sources: str) -> tuple[Any, Any]:
 
     @shared(error_model="numpy")
     def squeezes(  # type: ignore[no-untyped-def]
-        r1, n1, mu1, r2, n2, mu2, f, tau, limit1, limit2, objective, peak_ratio, whole, x
+        begin, end, r1, n1, mu1, r2, n2, mu2, f, tau, limit1, limit2, objective, peak_ratio, whole, x
     ):
         _ = sources
         doubtful = 0
-        for block in prange((x.size + BLOCK - 1) // BLOCK):
+        for block in range(begin, end):
             first = block * BLOCK
             start = first * whole
             size = min(BLOCK, x.size - first)
@@ -115,4 +115,14 @@ def _squeezes(  # type: ignore[no-untyped-def]
     return doubtful
 
 
-intervals, squeezes = _loops(digest(MODULES))
+INTERVALS, SQUEEZES = _loops(digest(MODULES))
+
+
+def intervals(*arguments: Any) -> int:
+    """Fills the last two, lo and hi; how many grasps are doubtful."""
+    return sum(INTERVALS(-(-arguments[-1].size // BLOCK), *arguments))
+
+
+def squeezes(*arguments: Any) -> int:
+    """Fills the last, x; how many grasps are doubtful."""
+    return sum(SQUEEZES(-(-arguments[-1].size // BLOCK), *arguments))

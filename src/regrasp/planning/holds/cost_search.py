@@ -61,14 +61,12 @@ class CheapEnd:
 
     def move(self, most: float) -> None:
         """One finger move further, for whole ways that cost at most ``most``."""
-        from regrasp.closed_form.compiled.sharing import threads
-
         fingers, costs = self.fingers, self.costs
         bound = np.asarray(most * (1 + 1e-12) - self.rest)
         frontier = np.flatnonzero(self.fresh)
         table, self.fresh = fingers.moves.cheapest(
             frontier, self.fresh, self.last, costs.move, costs.worth, fingers.rows, fingers.holds,
-            fingers.count, fingers.near, self.turns, costs.step, bound, threads(),
+            fingers.count, fingers.near, self.turns, costs.step, bound,
         )  # fmt: skip
         self.tables.append(table)
 

@@ -65,12 +65,10 @@ class WideEnd:
 
     def move(self, floor: float) -> None:
         """One finger move further, where that leads to margins above ``floor``."""
-        from regrasp.closed_form.compiled.sharing import threads
-
         fingers = self.fingers
         self.fresh = fingers.moves.widest(
             np.flatnonzero(self.fresh), self.fresh, self.known, fingers.margins, fingers.rows, fingers.holds,
-            fingers.count, fingers.near, floor, threads(),
+            fingers.count, fingers.near, floor,
         )  # fmt: skip
         self.top[self.fresh] = self.known[self.fresh].max(axis=1)
         self.moves += 1
