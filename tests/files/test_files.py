@@ -185,7 +185,10 @@ def test_windows_text_is_read(change: Callable[[bytes], bytes], tmp_path: Path) 
             lambda path: path.write_bytes(b"# \xff"),
             "expected a scenario in TOML, found no UTF-8 text (at byte 2)",
         ),
-        (lambda path: path.write_text("a = " + "[" * 100_000), "not TOML: "),
+        (
+            lambda path: path.write_text("a = " + "[" * 100_000),
+            "not a scenario: lists within lists, hundreds deep",
+        ),
     ],
 )
 def test_file_that_is_no_scenario(make: Callable[[Path], object], message: str, tmp_path: Path) -> None:
@@ -561,3 +564,16 @@ def test_file_in_a_missing_folder(tmp_path: Path) -> None:
     with pytest.raises(rg.InvalidInput) as raised:
         write_plan(PLAN, path)
     assert str(raised.value) == f"{path}: cannot be written: No such file or directory"
+
+
+@pytest.mark.parametrize("depth", [900, 5000, 100_000])
+@pytest.mark.parametrize("open_and_close", [("[", "]"), ('{"a":', "}")])
+def test_plans_nested_without_end(depth: int, open_and_close: tuple[str, str], tmp_path: Path) -> None:
+    path = tmp_path / "plan.json"
+    opened, closed = open_and_close
+    path.write_text(opened * depth + "1" + closed * depth, encoding="utf-8")
+    with pytest.raises(rg.InvalidInput) as raised:
+        read_plan(path)
+    assert "recursion" not in str(raised.value)
+    assert "\n" not in str(raised.value)
+    assert len(str(raised.value)) < 400

@@ -6,10 +6,11 @@ import pickle
 import signal
 import subprocess
 import sys
-import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from math import inf
 from multiprocessing import Pipe
+from threading import TIMEOUT_MAX, Event, Timer
 from typing import TYPE_CHECKING, Any
 
 from regrasp.errors import RegraspError
@@ -45,21 +46,27 @@ def solved_apart(
         start_new_session=True,  # with what the solver starts
     )
     theirs.close()
+    answering, late = False, Event()
     try:
-        ours.send_bytes(pickle.dumps((program, backend, options)))
-        if not answers(ours, process, _START):
-            return failed(program, backend, f"its process did not start within {_START:g} s")
-        ours.recv_bytes()
-        if not answers(ours, process, inf if time_limit is None else time_limit):
-            return failed(program, backend, f"no answer within {time_limit:g} s")
-        answer = pickle.loads(ours.recv_bytes())
+        with ended_after(process, _START) as late:
+            ours.send_bytes(pickle.dumps((program, backend, options)))
+            awaited(ours, process)
+            ours.recv_bytes()
+        answering = True
+        with ended_after(process, inf if time_limit is None else time_limit) as late:
+            awaited(ours, process)
+            answer = pickle.loads(ours.recv_bytes())
     except (EOFError, OSError):
+        if late.is_set():
+            no = f"no answer within {time_limit:g} s"
+            return failed(
+                program, backend, no if answering else f"its process did not start within {_START:g} s"
+            )
         code = process.wait()
         ended = f"by {signal.Signals(-code).name}" if code < 0 else f"with exit status {code}"
         return failed(program, backend, f"crashed: its process was ended {ended}")
     finally:
-        with suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
+        end_group(process)
         process.wait()
         ours.close()
     if isinstance(answer, RegraspError):
@@ -68,18 +75,42 @@ def solved_apart(
     return Solution(program, backend, given.status, *(getattr(given, name) for name in _REST))
 
 
-def answers(ours: "Connection[Any, Any]", process: subprocess.Popen[bytes], within: float) -> bool:
-    """Whether something can be read within so many seconds; ``EOFError`` once the process ended without.
+@contextmanager
+def ended_after(process: subprocess.Popen[bytes], seconds: float) -> Iterator[Event]:
+    """The process and what it started are killed if the block takes longer, whatever it waits for.
+
+    So a message that nobody reads is given up, and a reply that stops halfway. Yields an event that is set
+    where that happened; the block then sees an ``EOFError`` or an ``OSError``, or is just through.
+    """
+    late = Event()
+
+    def end() -> None:
+        late.set()
+        end_group(process)
+
+    timer = Timer(min(seconds, TIMEOUT_MAX), end)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield late
+    finally:
+        timer.cancel()
+
+
+def end_group(process: subprocess.Popen[bytes]) -> None:
+    """Kill a process that leads a session, and what it has started."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def awaited(ours: "Connection[Any, Any]", process: subprocess.Popen[bytes]) -> None:
+    """Return once something can be read; ``EOFError`` once the process ended without.
 
     What a solver started holds the pipe open, so that its end says nothing of the solver's.
     """
-    end = time.monotonic() + within
-    while not ours.poll(min(_LOOK, max(end - time.monotonic(), 0.0))):
+    while not ours.poll(_LOOK):
         if process.poll() is not None and not ours.poll(0):
             raise EOFError
-        if time.monotonic() >= end:
-            return False
-    return True
 
 
 _REST = ("value", "duals", "iterations", "build_time", "solve_time", "said")

@@ -1,17 +1,17 @@
 """A worker seen from the runner: started, asked, and killed when it does not answer in time."""
 
-import contextlib
 import json
 import os
 import signal
 import subprocess
 import sys
 from multiprocessing import Pipe
+from threading import Event
 from typing import Any
 
 from regrasp.bench.running.result import CRASHED, TIMEOUT
 from regrasp.errors import InvalidInput
-from regrasp.programs.child import answers
+from regrasp.programs.child import awaited, end_group, ended_after
 
 # Libraries that would use every core are held to one.
 _PINNED = (
@@ -56,14 +56,19 @@ class Worker:
         if self._process is None:
             self._start()
         assert self._process is not None
+        late = Event()
         try:
-            self._connection.send(message)
-            if not answers(self._connection, self._process, within):
-                self.kill()
-                raise WorkerLost(TIMEOUT, f"no answer within {within:g} s")
-            reply: tuple[Any, ...] = self._connection.recv()
+            with ended_after(self._process, within) as late:
+                self._connection.send(message)
+                awaited(self._connection, self._process)
+                reply: tuple[Any, ...] = self._connection.recv()
         except (EOFError, OSError) as error:
+            if late.is_set():
+                self.kill()
+                raise WorkerLost(TIMEOUT, f"no answer within {within:g} s") from None
             raise WorkerLost(CRASHED, self._ended()) from error
+        if late.is_set():  # it was ended just after it had answered
+            self.kill()
         return reply
 
     def kill(self) -> None:
@@ -82,8 +87,7 @@ class Worker:
     def _end(self) -> None:
         """Kill the process and what it has started; they are a session of their own."""
         assert self._process is not None
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGKILL)
+        end_group(self._process)
 
     def _start(self) -> None:
         if os.name != "posix":

@@ -148,7 +148,9 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
         data = json.loads(text, object_pairs_hook=_unique)
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from None
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise InvalidInput(f"{path}: not a plan: lists within lists, many hundreds deep") from None
+    except ValueError as error:
         raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
     return plan_of(data, path)
 

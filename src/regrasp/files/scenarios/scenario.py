@@ -284,7 +284,9 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
         raise InvalidInput(f"{file}: not a scenario: a key of more than {_DEEP} parts")
     try:
         data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise InvalidInput(f"{file}: not a scenario: lists within lists, hundreds deep") from None
+    except ValueError as error:
         raise InvalidInput(f"{file}: not TOML: {error}") from None
     task = data.get("task")
     if isinstance(task, dict) and task.get("kind") == "regrasp":

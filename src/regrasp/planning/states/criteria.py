@@ -97,7 +97,7 @@ class Criteria:
         )
         object.__setattr__(self, "early_loss", early_loss)
         if max_force is not None:
-            number(max_force, "max_force", above=0)
+            _refuse_larger(number(max_force, "max_force", above=0), "max_force")
         number(peak_ratio, "peak_ratio", least=1)
         reserve_fraction(reserve)
         object.__setattr__(self, "max_force", max_force)
@@ -125,6 +125,9 @@ class Criteria:
             grasp: of n contacts.
         """
         general = inf if self.max_force is None else self.max_force
+        for contact in grasp:
+            if contact.max_force is not None:
+                _refuse_larger(contact.max_force, f"max_force of {contact.name}, to plan with,")
         return [
             kept_force(general if c.max_force is None else min(general, c.max_force), self.reserve)
             for c in grasp
@@ -223,11 +226,16 @@ class Criteria:
             )
 
 
+def _refuse_larger(value: float, what: str) -> None:
+    if value > _LARGEST:
+        raise InvalidInput(f"{what} must be at most {_LARGEST:g} N, got {shown(value)}")
+
+
 def _least_normal(given: float | Sequence[float] | Array | None) -> float | tuple[float, ...]:
     if given is None:
         return 0.0
-    if isinstance(given, float | int) and given > _LARGEST:
-        raise InvalidInput(f"min_normal must be at most {_LARGEST:g} N, got {shown(given)}")
+    if isinstance(given, float | int):
+        _refuse_larger(given, "min_normal")
     if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str | bytes) or np.ndim(given) == 0:
         return number(given, "min_normal", least=0)
     several = [number(value, "each min_normal", least=0) for value in given]

@@ -91,18 +91,45 @@ def _pressed(
         chooser.loose = LOOSE * chooser.unit
     elif min(limits) < inf:  # forces will be as large as these limits let them
         chooser.rescale(max(chooser.unit, min(limits) / LARGE))
+    smallest = None
     if criteria.unbounded and inf in limits:
         smallest = chooser.best(PEAK, frictions, limits)
         if smallest is None:
             raise _too_weak(grasp, load, criteria)
         peak = _radius(grasp, frictions, smallest.forces, facets)
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
-    found = chooser.best(objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits)
+        smallest = Found(smallest.forces, inf)
+    try:
+        found = chooser.best(
+            objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits
+        )
+    except SolverFailed as failed:  # limits that leave next to no room, or a little less
+        found = smallest or _of_least_peak(chooser, frictions, limits, failed)
+    found = found or smallest
     if found is None:
         raise _too_weak(grasp, load, criteria)
     if isinstance(objective, LevelObjective):
-        found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
+        with suppress(SolverFailed):
+            found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
+
+
+def _of_least_peak(
+    chooser: Chooser, frictions: list[float], limits: list[float], failed: SolverFailed
+) -> Found | None:
+    """The forces of the least peak where a solver failed within the limits; None where limits are below it.
+
+    Where the limits differ, others may keep them: it is not known, and the failure stands.
+    """
+    least = chooser.best(PEAK, frictions, [inf] * len(limits))
+    if least is None:
+        return None
+    sizes = np.sqrt((least.forces**2).sum(axis=1))
+    if (sizes <= limits).all():
+        return Found(least.forces, inf)
+    if min(limits) < max(limits):
+        raise failed
+    return None
 
 
 def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:

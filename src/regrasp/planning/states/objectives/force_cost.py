@@ -10,6 +10,8 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.planning.states.objectives.objective import ConvexObjective
 
+_LARGEST = 1e100  # whose square is a number
+
 
 @dataclass(frozen=True, eq=False)
 class ForceCost(ConvexObjective):
@@ -42,6 +44,12 @@ class ForceCost(ConvexObjective):
         given = array(weights, "weights", (None,) if several else ())
         if (given < 0).any() or not given.any():
             raise InvalidInput(f"weights must be at least 0, and one of them above it, got {shown(weights)}")
+        heaviest = float(given.max())
+        if not 1 / _LARGEST <= heaviest <= _LARGEST:
+            raise InvalidInput(
+                f"the largest weight must be from {1 / _LARGEST:g} to {_LARGEST:g}, got {shown(weights)}; "
+                f"only their ratios to one another and to prices count"
+            )
         if not isinstance(name, str) or name in OBJECTIVES:
             raise InvalidInput(
                 f"name must be a word that is not one of {', '.join(OBJECTIVES)}, got {shown(name)}"
@@ -50,6 +58,13 @@ class ForceCost(ConvexObjective):
         object.__setattr__(self, "weights", given)
         for key, value in (("towards", towards), ("prices", prices)):
             object.__setattr__(self, key, None if value is None else array(value, key, (None, None)))
+        if self.towards is not None and abs(self.towards).max(initial=0.0) > _LARGEST:
+            raise InvalidInput(f"towards must be at most {_LARGEST:g} N in size, got {shown(towards)}")
+        if self.prices is not None and abs(self.prices).max(initial=0.0) / _LARGEST > heaviest:
+            raise InvalidInput(
+                f"prices must be at most {_LARGEST:g} times the largest weight of {heaviest:g}, beside "
+                f"which forces cost nothing, got {shown(prices)}"
+            )
 
     def of_contacts(self, forces: Array, grasp: Grasp) -> Array:
         """(..., n) weights_i |f_i - towards_i|^2 + prices_i . f_i.
