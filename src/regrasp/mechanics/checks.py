@@ -28,9 +28,14 @@ else:
     )
 
 
+_NO_NUMBERS = (str, bytes, bytearray, bool, np.bool_, np.str_, np.datetime64, np.timedelta64)
+
+
 def array(value: ArrayLike, what: str, shape: tuple[int | None, ...]) -> Array:
     """A new read-only array of finite floats; None in ``shape`` stands for any size."""
-    result = numbers_in(value, f"{what} must be numbers of shape {_shape(shape)}")
+    result = _floats(value)
+    if result is None:
+        raise InvalidInput(f"{what} must be numbers of shape {_shape(shape)}, got {shown(value)}")
     if result.shape != shape and (
         result.ndim != len(shape)
         or any(want not in (None, got) for want, got in zip(shape, result.shape, strict=True))
@@ -48,8 +53,18 @@ def numbers_in(value: Any, expected: str) -> Array:
 
     Text, complex numbers, dates and truth values are no numbers, although NumPy would make some of them.
     """
+    result = _floats(value)
+    if result is None:
+        raise InvalidInput(f"{expected}, got {shown(value)}")
+    return result
+
+
+def _floats(value: Any) -> Array | None:
+    """The array of ``numbers_in``, or None: messages cost more than most arrays here."""
     try:
         given = np.asarray(value)
+        if type(value) is list and given.dtype == np.float64:  # nobody else's
+            return given
         if given.dtype.kind in "fiu" and given.dtype.itemsize <= 8:
             return np.array(given, dtype=np.float64)
         if given.dtype.kind in "fO":  # long doubles, whole numbers beyond 64 bits, fractions, or a mix
@@ -57,7 +72,7 @@ def numbers_in(value: Any, expected: str) -> Array:
             return np.array(each, dtype=np.float64).reshape(given.shape)
     except (TypeError, ValueError, OverflowError, RecursionError):  # InvalidInput is a ValueError
         pass
-    raise InvalidInput(f"{expected}, got {shown(value)}") from None
+    return None
 
 
 def read_only(values: Array) -> Array:
@@ -77,11 +92,16 @@ def point(value: ArrayLike, what: str) -> Array:
 def number(value: Any, what: str, *, least: float | None = None, above: float | None = None) -> float:
     """A finite float, at least ``least`` and greater than ``above`` where these are given."""
     try:
-        if isinstance(value, (str, bytes, bytearray, bool, np.bool_, np.str_, np.datetime64, np.timedelta64)):
+        if type(value) is float:  # as most are
+            result = value
+        elif isinstance(value, _NO_NUMBERS):
             raise TypeError
-        if isinstance(value, np.ndarray):
-            value = value.item() if value.dtype.kind in "fiu" else None
-        result = float(value)
+        elif isinstance(value, np.ndarray):
+            if value.dtype.kind not in "fiu":
+                raise TypeError
+            result = float(value.item())
+        else:
+            result = float(value)
     except OverflowError:
         raise InvalidInput(f"{what} must be a number below 1.8e308 in size, got {shown(value)}") from None
     except (TypeError, ValueError):

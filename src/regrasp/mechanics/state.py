@@ -179,8 +179,7 @@ class GraspState(ArrayValue):
         Raises:
             Infeasible: When this grasp has no such state.
         """
-        reserve_fraction(reserve)
-        if self.is_balanced(reserve=reserve):
+        if self.is_balanced(reserve=reserve):  # checks it
             return self
         grasp = self.grasp
         forces = nearest_equilibrium(

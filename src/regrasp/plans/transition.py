@@ -67,11 +67,11 @@ class Transition(ArrayValue, Documented, Pictured):
             if not isinstance(names, tuple) or len(set(names)) != len(names):
                 raise InvalidInput(f"{label} must be a tuple of different contact names, got {shown(names)}")
             for name in names:
-                self.grasp.index(name)
+                self.start.grasp.index(name)
         both = [name for name in self.leaving if name in self.arriving]
         if both:
             raise InvalidInput(f"a finger leaves or arrives, not both: {', '.join(both)}")
-        if not isinstance(self.path, Path):
+        if self.path is not STRAIGHT and not isinstance(self.path, Path):
             raise InvalidInput(
                 f"path must be a StraightPath, a SampledPath or a TurningPath, got {shown(self.path)}"
             )

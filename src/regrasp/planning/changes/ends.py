@@ -80,22 +80,23 @@ class Change(NamedTuple):
     def between(cls, grasp: Grasp, first: End, last: End, options: Mapping[str, Any]) -> "Change":
         """The change from one end to the other, states balanced or chosen by the options of a call."""
         tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
-        moving = {*first.idle, *last.idle}
-        how = moving, options.get("method", "auto"), options.get("facets"), tolerance
+        how = {*first.idle, *last.idle}, options.get("method", "auto"), options.get("facets"), tolerance
         # The state of fewer fingers first: it is the one that may not exist.
-        ends = sorted((first, last), key=lambda end: -len(end.idle))
-        found = {end.label: end.found(grasp, *how) for end in ends}
-        return cls(
-            first.among(grasp, found["start"][0]),
-            last.among(grasp, found["end"][0]),
-            last.idle,
-            first.idle,
-            Record(
-                reserve=min(first.criteria.reserve, last.criteria.reserve),
-                choices=tuple(c for end in ends if (c := found[end.label][1]) is not None),
-                balancing=max(change for _, _, change in found.values()),
-            ),
+        if len(first.idle) >= len(last.idle):
+            forces, choice, change = first.found(grasp, *how)
+            forces_then, choice_then, change_then = last.found(grasp, *how)
+            choices = (choice, choice_then)
+        else:
+            forces_then, choice_then, change_then = last.found(grasp, *how)
+            forces, choice, change = first.found(grasp, *how)
+            choices = (choice_then, choice)
+        record = Record(
+            min(first.criteria.reserve, last.criteria.reserve),
+            tuple([choice for choice in choices if choice is not None]),
+            max(change, change_then),
         )
+        start, end = first.among(grasp, forces), last.among(grasp, forces_then)
+        return cls(start, end, last.idle, first.idle, record)
 
 
 def shared(criteria: Criteria, *ends: End) -> Criteria:

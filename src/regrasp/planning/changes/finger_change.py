@@ -182,18 +182,22 @@ def plan_exchange(
 
 def _places(grasp: Grasp, contacts: str | int | Sequence[str | int]) -> tuple[int, ...]:
     """The places of the fingers that leave; one at least stays."""
-    if isinstance(contacts, str) or not isinstance(contacts, Sequence):
-        places = [grasp.index(contacts)]
-    else:
-        places = [grasp.index(contact) for contact in contacts]
+    if isinstance(contacts, str | int) or not isinstance(contacts, Sequence):
+        return _but_all(grasp, grasp.index(contacts))
+    places = [grasp.index(contact) for contact in contacts]
     if not places or len(set(places)) < len(places):
         raise InvalidInput(
             f"the fingers that leave must be one or more different ones, got {shown(contacts)}"
         )
-    if len(places) == len(grasp):
+    return _but_all(grasp, *places)
+
+
+def _but_all(grasp: Grasp, *places: int) -> tuple[int, ...]:
+    """The places, if one contact at least is not among them."""
+    if len(places) == len(grasp.contacts):
         last = ", ".join(map(repr, grasp.names))
-        raise InvalidInput(f"the last contact{'s' * (len(grasp) > 1)}, {last}, cannot be taken from a grasp")
-    return tuple(places)
+        raise InvalidInput(f"the last contact{'s' * (len(places) > 1)}, {last}, cannot be taken from a grasp")
+    return places
 
 
 def _contacts(given: Contact | Sequence[Contact]) -> tuple[Contact, ...]:

@@ -71,7 +71,8 @@ class Demands:
             self.rate_limit is None
             and self.min_normal is None
             and self.path_objective is None
-            and not self.idle_times
+            and self.idle_from is None
+            and self.idle_until is None
         )
 
     @property
@@ -105,8 +106,8 @@ def joined(
         demands = replace(demands, min_normal=criteria.least_normal)
     start, end, record = change.start, change.end, change.record
     grasp = start.grasp
-    leaving = tuple(grasp.names[i] for i in change.leaving)
-    arriving = tuple(grasp.names[i] for i in change.arriving)
+    leaving = tuple([str(grasp.contacts[i].name) for i in change.leaving])
+    arriving = tuple([str(grasp.contacts[i].name) for i in change.arriving])
     if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
         return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving))
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)

@@ -133,7 +133,7 @@ class Criteria:
             for c in grasp
         ]
 
-    @property
+    @cached_property
     def presses(self) -> bool:
         """Whether any finger must push with a least normal force."""
         return bool(self.min_normal) and (not isinstance(self.min_normal, tuple) or any(self.min_normal))
