@@ -170,7 +170,9 @@ class Blank:
     def __init__(self, error: BaseException | None = None) -> None:
         self.error = error
 
-    def savefig(self, path: Path) -> None:
+    canvas = None
+
+    def savefig(self, path: Path, **_: str) -> None:
         path.write_bytes(b"half a picture")
         if self.error is not None:
             raise self.error

@@ -127,6 +127,7 @@ def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", f
     with progress_bar() as progress:
         task = progress.add_task("drawing figures", total=None)
         from regrasp.plans.regrasp_plan import RegraspPlan
+        from regrasp.plots.look.png import save_png
         from regrasp.plots.pages import overview
 
         first = planned.steps[0] if isinstance(planned, RegraspPlan) else planned
@@ -142,5 +143,5 @@ def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", f
             drawn = overview.figures(planned, **solid)
         progress.update(task, description="saving figures", total=len(drawn), completed=0)
         for stem, figure in drawn.items():
-            figure.savefig(folder / f"{stem}.png")
+            save_png(figure, folder / f"{stem}.png")
             progress.advance(task)

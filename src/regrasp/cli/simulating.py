@@ -94,6 +94,7 @@ def _write(run: Any, output: Path) -> list[Path]:
 
     from regrasp.files.staging import whole_folder
     from regrasp.plots import animate_execution, execution_figure
+    from regrasp.plots.look.png import save_png
 
     columns = {"t": run.times} | run.columns()
     with whole_folder(output) as folder:
@@ -101,7 +102,7 @@ def _write(run: Any, output: Path) -> list[Path]:
             writer = csv.writer(file)
             writer.writerow(columns)
             writer.writerows(zip(*(c.tolist() for c in columns.values()), strict=True))
-        execution_figure(run).savefig(folder / "execution.png")
+        save_png(execution_figure(run), folder / "execution.png")
         animate_execution(run, path=folder / "execution.gif", frames_per_second=10)
         written = sorted(file.name for file in folder.iterdir())
     for name in written:

@@ -1,7 +1,10 @@
-"""A figure as bytes."""
+"""A figure as bytes, or in a file."""
 
 from io import BytesIO
+from os import PathLike
+from typing import IO, cast
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 
@@ -12,5 +15,18 @@ def png(figure: Figure) -> bytes:
         figure: the figure.
     """
     buffer = BytesIO()
-    figure.savefig(buffer, format="png")
+    save_png(figure, buffer)
     return buffer.getvalue()
+
+
+def save_png(figure: Figure, to: str | PathLike[str] | IO[bytes]) -> None:
+    """A figure as a PNG file: what ``savefig`` writes, drawn once and laid out meanwhile, not drawn twice.
+
+    Args:
+        figure: the figure.
+        to: a file name, or a file that is open.
+    """
+    if isinstance(figure.canvas, FigureCanvasAgg):
+        figure.canvas.print_png(to)  # type: ignore[no-untyped-call]
+    else:  # a window's
+        figure.savefig(cast(str, to), format="png")
