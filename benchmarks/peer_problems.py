@@ -75,9 +75,12 @@ _CVXPY = (
 def _of_cvxpy() -> Iterator[Peer]:
     for name in _CVXPY:
         make = getattr(solver_test_helpers, name, None)  # some are newer than others
-        if make is not None:
-            helper = make(axis=0) if name == "socp_3" else make()
-            yield _laid_out(f"cvxpy {name}", helper.prob, float(helper.expect_val))
+        if make is None:
+            continue
+        for axis in (0, 1) if name == "socp_3" else (None,):
+            helper = make() if axis is None else make(axis=axis)
+            title = f"cvxpy {name}" if axis in (None, 0) else f"cvxpy {name}, axis {axis}"
+            yield _laid_out(title, helper.prob, float(helper.expect_val))
 
 
 def _laid_out(name: str, problem: cp.Problem, optimum: float) -> Peer:

@@ -16,7 +16,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, load_size
-from regrasp.verification.float_filter import judge_rows
+from regrasp.verification.float_filter import folded, judge_rows
 from regrasp.verification.protocols import Plan
 from regrasp.verification.records import deciding_forces
 from regrasp.verification.retraced import retraced
@@ -83,9 +83,10 @@ def _compared(plan: Plan, forces: Array, times: Array, rows: slice) -> Iterator[
     grasp, d, record = plan.start.grasp, plan.start.grasp.dimension, plan.record
     names, deciding = list(map(one_line, grasp.names)), deciding_forces(plan)
     planned = (plan.forces(times), retraced(plan, times))
-    for part, unit in ((slice(0, d), "N"), (slice(d, None), "N m")):
+    parts = ((slice(0, d), "N"), (slice(d, None), "N m"))
+    for part, unit in parts if forces.shape[2] > d else parts[:1]:
         size = abs(deciding[..., part]).max(axis=(0, 2), initial=0.0)
-        off = np.maximum(*(abs(forces[..., part] - f[..., part]).max(axis=2, initial=0.0) for f in planned))
+        off = np.maximum(*(folded(np.maximum, abs(forces[..., part] - f[..., part])) for f in planned))
         for row, i in np.argwhere(~(off <= _DOUBT * _growth(plan) * size)).tolist():
             when, by = f"t = {times[row]:.9g} s", f"off by {off[row, i]:.3g} {unit}"
             yield first + row, f"force of {names[i]} is not the plan's at {when}, {by}"
