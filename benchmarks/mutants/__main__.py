@@ -32,9 +32,11 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         ["**/test_paths.py"],
         0.85,
     ),
-    "rotation": (["planning/**/rotation.py", "planning/**/turn_states.py", "planning/**/lost_loads.py"],
+    "rotation": (
+        ["planning/**/rotation.py", "planning/**/turn_states.py", "planning/**/lost_loads.py"],
         ["**/test_rotation.py", "**/test_lost_loads.py", "**/test_limits_of_both_ends.py"],
-        0.85,),
+        0.85,
+    ),
     "files": (
         [
             f"files/**/{name}.py"
