@@ -3,29 +3,44 @@
 Numba keeps it beside the source or in the user's cache. Where it can do neither it raises, and a file that
 was cut short or spoiled fails every later run. Here, a file that is not what was written is no file, and
 where nothing can be kept, functions are compiled in memory: slower at the start of every run, and said once.
+
+What compiles for more than a second says so: as ``INFO`` of the log ``regrasp`` and, where nobody listens to
+that, on a terminal and in notebooks. ``regrasp warm-up`` compiles all there is.
 """
 
 import logging
 import os
 import pickle
+import sys
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
+from threading import Timer
+from time import perf_counter
 from typing import Any
 
 from numba import njit
+from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 _DIGEST = 32
 
+_LONG = 1.0  # [s] of compiling that somebody who waits wants to know of
+
+_log = logging.getLogger("regrasp")
 _said: set[str] = set()
+_words: dict[Any, str] = {}  # of functions that are called from outside
 
 
-def kept(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """``numba.njit`` with these options, whose machine code is kept for the next run where it can be."""
+def kept(words: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """``numba.njit`` with these options, whose machine code is kept for the next run where it can be.
+
+    words: what it computes, for the message that it compiles; the first line of its docstring if not given.
+    """
 
     def compiled(function: Callable[..., Any]) -> Any:
         dispatcher = njit(**options)(function)
+        _words[function] = words or (function.__doc__ or function.__name__).partition("\n")[0].rstrip(".")
         if not hasattr(dispatcher, "enable_caching"):  # NUMBA_DISABLE_JIT leaves functions as they are
             return dispatcher
         try:
@@ -35,6 +50,47 @@ def kept(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         return dispatcher
 
     return compiled
+
+
+class _Saying(event.Listener):
+    """Says what compiles for long: that it does while it does, and then how long it took.
+
+    Numba compiles one function at a time, with those that it calls inside of it.
+    """
+
+    def __init__(self) -> None:
+        self._depth, self._started = 0, 0.0
+        self._timer: Timer | None = None
+
+    def on_start(self, started: Any) -> None:
+        """A function, or one that it calls, begins to compile."""
+        self._depth += 1
+        words = _words.get(started.data["dispatcher"].py_func)
+        if self._depth == 1 and words is not None:
+            self._started = perf_counter()
+            text = f"compiling {words}: some seconds, once; `regrasp warm-up` does it beforehand"
+            self._timer = Timer(_LONG, _tell, [text])
+            self._timer.daemon = True
+            self._timer.start()
+
+    def on_end(self, ended: Any) -> None:
+        """It is compiled."""
+        self._depth -= 1
+        if self._depth == 0 and self._timer is not None:
+            self._timer.cancel()
+            self._timer, took = None, perf_counter() - self._started
+            if took > _LONG:
+                _tell(f"compiled {_words[ended.data['dispatcher'].py_func]} in {took:.1f} s")
+
+
+event.register("numba:compile", _Saying())
+
+
+def _tell(text: str) -> None:
+    _log.info(text)
+    stream = sys.stderr
+    if stream is not None and not _log.hasHandlers() and (stream.isatty() or "ipykernel" in sys.modules):
+        print(f"regrasp: {text}", file=stream, flush=True)
 
 
 class _Cache(FunctionCache):
@@ -106,7 +162,7 @@ def _say_once(error: Exception) -> None:
     if "memory" not in _said:
         _said.add("memory")
         reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no folder"
-        logging.getLogger("regrasp").warning(
+        _log.warning(
             "compiled code cannot be kept (%s), so every run compiles anew; "
             "set NUMBA_CACHE_DIR to a folder that can be written to",
             reason,

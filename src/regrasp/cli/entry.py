@@ -28,6 +28,7 @@ from regrasp.cli.statuses import (
     status_of,
 )
 from regrasp.cli.verifying import verify
+from regrasp.cli.warming import warm_up
 from regrasp.errors import RegraspError
 
 _COMPLETING = "_REGRASP_COMPLETE"
@@ -43,7 +44,7 @@ def commands() -> None:
     """
 
 
-for command in (demo, new, plan, verify, simulate, schema, bench):
+for command in (demo, new, plan, verify, simulate, schema, bench, warm_up):
     commands.add_command(command)
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import INNER
+from regrasp.compilation import kept
 
 _ROUNDS = 5
 _STACK = 4000
@@ -107,7 +108,7 @@ def support(axes, tangents, total, u, w, across):  # type: ignore[no-untyped-def
     return reached
 
 
-@njit(error_model="numpy", cache=True)
+@kept("the radius of the wrench ball", error_model="numpy")
 def descend(axes, tangents, total, metric, starts, steps):  # type: ignore[no-untyped-def]
     """The least h(u) / |D u| that descents from ``starts`` (s, 6) find, and its u. metric: (6,) of D."""
     best, found = np.inf, starts[0].copy()
@@ -138,7 +139,7 @@ def descend(axes, tangents, total, metric, starts, steps):  # type: ignore[no-un
     return best, found
 
 
-@njit(error_model="numpy", cache=True)
+@kept("the radius of the wrench ball", error_model="numpy")
 def prove(axes, tangents, total, metric, start, gap, most):  # type: ignore[no-untyped-def]
     """(best, u, cones, done): that no direction is below (1 - gap) best, after at most ``most`` cones.
 

@@ -117,7 +117,7 @@ def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
     return True
 
 
-@shared(error_model="numpy")
+@shared("finger moves of widest margins", error_model="numpy")
 def _widened(  # type: ignore[no-untyped-def]
     begin, end, frontier, fresh, known, margins, rows, holds, points, near, floor, tables, touched
 ):
@@ -162,7 +162,7 @@ def widest(
     return wider
 
 
-@shared(error_model="numpy")
+@shared("finger moves of least costs", error_model="numpy")
 def _cheapened(  # type: ignore[no-untyped-def]
     begin, end, frontier, fresh, known, move, worth, rows, holds, points, near, turning, step, bound,
     tables, touched,

@@ -19,7 +19,7 @@ STRETCH = 4096
 
 
 def _loops(sources: str) -> tuple[Any, Any]:
-    @shared(error_model="numpy")
+    @shared("the holds of two fingers", error_model="numpy")
     def margins(start, stop, first, second, loads, candidates, result):  # type: ignore[no-untyped-def]
         """Writes the margin of each pair under each load to ``result`` (loads, pairs)."""
         _ = sources
@@ -33,7 +33,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             for k in range(held_loads(candidates, first, second, begin, end, turned, pair, load, margin)):
                 result[load[k], pair[k]] = margin[k]
 
-    @shared(error_model="numpy")
+    @shared("the widest holds of two fingers", error_model="numpy")
     def widest(  # type: ignore[no-untyped-def]
         start, stop, first, second, loads, candidates, allowed, place, best, where, counts
     ):

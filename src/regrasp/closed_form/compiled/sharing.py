@@ -21,8 +21,8 @@ _PARTS = 4  # for each thread, since parts differ in work
 class Shared:
     """A compiled loop ``function(first, last, *arguments)``, called as ``(items, *arguments)``."""
 
-    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
-        self._loop = kept(nogil=True, **options)(function)
+    def __init__(self, function: Callable[..., Any], words: str, options: dict[str, Any]) -> None:
+        self._loop = kept(words, nogil=True, **options)(function)
         self.__doc__ = function.__doc__
 
     def __call__(self, items: int, *arguments: Any) -> list[Any]:
@@ -40,9 +40,9 @@ class Shared:
         return list(self._loop.signatures)
 
 
-def shared(**options: Any) -> Callable[[Callable[..., Any]], Shared]:
-    """The decorator: options as for ``numba.njit``."""
-    return lambda function: Shared(function, options)
+def shared(words: str, **options: Any) -> Callable[[Callable[..., Any]], Shared]:
+    """The decorator: words as for ``kept``, options as for ``numba.njit``."""
+    return lambda function: Shared(function, words, options)
 
 
 def threads() -> int:

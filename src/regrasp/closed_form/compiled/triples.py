@@ -96,7 +96,7 @@ def _is_refuted(motions, count, force, moment):  # type: ignore[no-untyped-def]
 
 
 def _loop(digest: str) -> Any:
-    @shared(error_model="numpy")
+    @shared("the holds of three fingers", error_model="numpy")
     def margins(  # type: ignore[no-untyped-def]
         start, stop, triples, allowed, points, normals, frictions, limits, loads, angles, cos_half,
         peak_ratio, with_margin, result,

@@ -46,7 +46,7 @@ def _is_doubtful_limit(fx, fy, tau, limit1, limit2):  # type: ignore[no-untyped-
 
 
 def _loops(sources: str) -> tuple[Any, Any]:
-    @shared(error_model="numpy")
+    @shared("the loci of many pairs of contacts", error_model="numpy")
     def intervals(begin, end, r1, n1, mu1, r2, n2, mu2, f, tau, whole, lo, hi):  # type: ignore[no-untyped-def]
         _ = sources
         doubtful = 0
@@ -62,7 +62,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             )  # fmt: skip
         return doubtful
 
-    @shared(error_model="numpy")
+    @shared("the best squeezes of many pairs of contacts", error_model="numpy")
     def squeezes(  # type: ignore[no-untyped-def]
         begin, end, r1, n1, mu1, r2, n2, mu2, f, tau, limit1, limit2, objective, peak_ratio, whole, x
     ):

@@ -1,0 +1,83 @@
+"""Compiling beforehand what is compiled when first used."""
+
+from time import perf_counter
+from typing import Any
+
+import click
+
+from regrasp.cli.speech import json_option, say
+
+
+@click.command("warm-up")
+@json_option
+def warm_up() -> dict[str, Any]:
+    """Compile all that is compiled when first used: batches, regrasps, wrench balls.
+
+    A minute, once after an installation. What is compiled is kept for later runs.
+    """
+    took = {}
+    for what, work in _WORKS.items():
+        started = perf_counter()
+        work()
+        took[what] = perf_counter() - started
+        say(f"{what}: {took[what]:.1f} s")
+    return {"seconds": took}
+
+
+def _batches() -> None:
+    import regrasp as rg
+
+    pairs = ([-1.0, 0.0], [1.0, 0.0], 0.5, [1.0, 0.0], [-1.0, 0.0], 0.5, [[0.1, -1.0]] * 3)
+    rg.locus_intervals(*pairs)
+    rg.best_squeezes(*pairs)
+
+
+def _planar_regrasps() -> None:
+    import numpy as np
+
+    import regrasp as rg
+
+    load = rg.Wrench([0.0, -1.0])
+    angles = np.linspace(0, 2 * np.pi, 13)[:-1]
+    outline = rg.Outline.smooth(np.column_stack([2 * np.cos(angles), np.sin(angles)]))
+    start, goal = (
+        rg.Grasp(outline.contact_at(share * outline.length, friction=0.6) for share in shares)
+        for shares in ((0.03, 0.37, 0.71), (0.13, 0.47, 0.81))
+    )
+    for weights in (None, rg.RegraspWeights()):
+        rg.plan_regrasp(
+            outline, start, goal, load, friction=0.6, candidates=12, orientations=4, weights=weights
+        )
+    rg.RegraspProblem(outline, start, goal, load, friction=0.6, candidates=12).graph.widest()
+
+
+def _regrasps_in_space() -> None:
+    import regrasp as rg
+
+    box, load = rg.Mesh.box(0.06, 0.04, 0.05), rg.Wrench([0.0, 0.0, -1.0])
+    ends = (
+        ((0.03, 0.004, 0.003), (-0.03, 0.003, -0.004), (0.004, 0.02, 0.002), (0.003, -0.02, 0.004)),
+        ((0.03, 0.006, -0.005), (-0.03, -0.006, 0.004), (0.01, -0.004, 0.025), (0.003, 0.004, -0.025)),
+    )
+    start, goal = (rg.Grasp(box.contact_at(point, friction=0.6) for point in points) for points in ends)
+    rg.plan_regrasp(box, start, goal, load, friction=0.6, candidates=12)
+
+
+def _wrench_balls() -> None:
+    import regrasp as rg
+
+    sides = ((1.0, 0.1, 0.0), (-1.0, 0.0, 0.1), (0.0, 1.0, 0.1), (0.1, -1.0, 0.0))
+    for d in (2, 3):
+        grasp = rg.Grasp(
+            rg.Contact(side[:d], normal=[-round(x) for x in side[:d]], friction=0.5) for side in sides
+        )
+        for norm in ("Linf", "L1"):
+            rg.wrench_ball(grasp, limit=1.0, norm=norm)
+
+
+_WORKS = {
+    "batches of pairs": _batches,
+    "regrasps in the plane": _planar_regrasps,
+    "regrasps in space": _regrasps_in_space,
+    "wrench balls": _wrench_balls,
+}

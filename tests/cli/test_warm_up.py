@@ -1,0 +1,73 @@
+"""What compiles says so, and nothing does after ``regrasp warm-up``."""
+
+import logging
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from regrasp import compilation
+
+pytestmark = pytest.mark.contract
+
+USED = """
+import numpy as np
+import regrasp as rg
+from numba.core import event
+
+class Compiled(event.Listener):
+    names = []
+    def on_start(self, started):
+        self.names.append(started.data["dispatcher"].py_func.__qualname__)
+    def on_end(self, ended):
+        pass
+
+event.register("numba:compile", Compiled())
+n = 500
+r1, r2 = np.full((n, 2), -1.0), np.full((n, 2), 1.0)
+rg.best_squeezes(r1, -r1, 0.5, r2, -r2, 0.5, [0.1, -1.0], objective="force", max_force=9.0)
+angles = 2 * np.pi * np.arange(16) / 16
+outline = rg.Outline.smooth(np.column_stack([3 * np.cos(angles), np.sin(angles)]))
+start, goal = (
+    rg.Grasp(outline.contact_at(s * outline.length, friction=0.7) for s in shares)
+    for shares in ((0.05, 0.4, 0.75), (0.1, 0.45, 0.8))
+)
+rg.plan_regrasp(outline, start, goal, rg.Wrench([0, -2.0]), friction=0.7, candidates=15, max_force=30)
+print(Compiled.names)
+"""
+
+
+def test_after_a_warm_up_nothing_compiles(tmp_path: Path) -> None:
+    warm = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    run = [sys.executable, "-m", "regrasp", "warm-up", "--json"]
+    done = subprocess.run(run, env=warm, capture_output=True, text=True, check=True)
+    assert "seconds" in done.stdout
+    used = subprocess.run([sys.executable, "-c", USED], env=warm, capture_output=True, text=True, check=True)
+    assert used.stdout == "[]\n"
+
+
+def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(monkeypatch, caplog) -> None:
+    monkeypatch.setattr(compilation, "_LONG", -1.0)  # everything takes long
+    caplog.set_level(logging.INFO, "regrasp")
+
+    def doubled(x):
+        return 2 * x
+
+    assert compilation.kept("what is twice as much")(doubled)(4) == 8
+    said = [record.getMessage() for record in caplog.records]
+    assert any(text.startswith("compiled what is twice as much in ") for text in said)
+
+
+def test_a_single_grasp_needs_no_numba() -> None:
+    code = """
+import sys
+import regrasp as rg
+grasp = rg.Grasp(rg.Contact([x, y], normal=[-x, -y], friction=0.6) for x, y in ((1, 0), (-1, 1), (-1, -1)))
+for objective in ("angle", "force", "effort", "friction_use"):
+    rg.choose_state(grasp, rg.Wrench([0.1, -1.0]), objective)
+print(rg.verify(rg.plan_removal(grasp, 0, load=rg.Wrench([-0.4, 0.0]))).ok, "numba" in sys.modules)
+"""
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout == "True False\n"
