@@ -102,15 +102,20 @@ def _root_above(value: Fraction) -> Fraction:
 
 
 def is_held(positions: Array, normals: Array, frictions: Array, load: Array) -> bool:
-    """Whether planar forces without limits hold a load, exactly: whether -w is a sum of edges of cones."""
+    """Whether planar forces hold a load, exactly: whether -w is a sum of edges of cones.
+
+    Of ``NEVER`` loads at most: rounding of a contact that stands still holds any load by forces of 1e16 times it.
+    """
     edges = []
     for r, n, mu in zip(positions.tolist(), normals.tolist(), frictions.tolist(), strict=True):
         (x, y), (a, b), m = exact(r), exact(n), Fraction(mu)
         for s in (1, -1) if m else (1,):
             fx, fy = a - s * m * b, b + s * m * a
-            edges.append([fx, fy, x * fy - y * fx])
+            edges.append([fx, fy, x * fy - y * fx, Fraction(1)])
     target = [-x for x in exact(load.tolist())]
-    return not any(target) or _in_cone(edges, target)
+    size = max(abs(x) for x in target[:2]) or abs(target[2]) / max(abs(Fraction(x)) for x in positions.flat)
+    spare = [Fraction(0), Fraction(0), Fraction(0), Fraction(1)]
+    return not any(target) or _in_cone([*edges, spare], [*target, NEVER * size])
 
 
 def _in_cone(edges: list[Vector], target: Vector) -> bool:
@@ -120,24 +125,27 @@ def _in_cone(edges: list[Vector], target: Vector) -> bool:
         for row, t in zip(zip(*edges, strict=True), target, strict=True)
     ]
     table = [
-        [*row, *[Fraction(int(i == j)) for j in range(3)], abs(t)]
+        [*row, *[Fraction(int(i == j)) for j in range(len(target))], abs(t)]
         for i, (row, t) in enumerate(zip(rows, target, strict=True))
     ]
-    count, basis = len(edges), [len(edges) + i for i in range(3)]
+    count, basis = len(edges), [len(edges) + i for i in range(len(target))]
     while True:
         price = [
-            sum((table[i][j] for i in range(3) if basis[i] >= count), start=Fraction(0)) for j in range(count)
+            sum((table[i][j] for i in range(len(target)) if basis[i] >= count), start=Fraction(0))
+            for j in range(count)
         ]
         enter = next((j for j in range(count) if price[j] > 0 and j not in basis), None)
         if enter is None:
-            return all(table[i][-1] == 0 for i in range(3) if basis[i] >= count)
-        ratios = [(table[i][-1] / table[i][enter], basis[i], i) for i in range(3) if table[i][enter] > 0]
+            return all(table[i][-1] == 0 for i in range(len(target)) if basis[i] >= count)
+        ratios = [
+            (table[i][-1] / table[i][enter], basis[i], i) for i in range(len(target)) if table[i][enter] > 0
+        ]
         if not ratios:
             return True
         leave = min(ratios)[2]
         pivot = table[leave][enter]
         table[leave] = [x / pivot for x in table[leave]]
-        for i in range(3):
+        for i in range(len(target)):
             if i != leave and table[i][enter]:
                 factor = table[i][enter]
                 table[i] = [x - factor * y for x, y in zip(table[i], table[leave], strict=True)]

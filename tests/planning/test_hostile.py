@@ -67,6 +67,21 @@ def test_the_judge_tells_right_from_wrong() -> None:
     assert not is_escape(r, n, mu, np.array([0.6, 0.6]), load, np.array([0.0, -1, 0]))
 
 
+def test_forces_of_a_billion_loads_hold_nothing() -> None:
+    """Two supports that face each other but for a hair, and a pull across: only huge forces would do."""
+    r, n, mu = np.array([[-1.0, 0], [1, 0]]), np.array([[1.0, 0], [-1, 0]]), np.array([0.5, 0.5])
+    for hair, held in ((1e-7, True), (1e-11, False)):
+        mu[:] = hair
+        assert is_held(r, n, mu, np.array([0.0, -1, 0])) == held
+
+
+def test_the_squeeze_of_a_load_next_to_none_is_not_nothing() -> None:
+    """A level search without a load may be left with zero forces, which cannot be scaled to their limits."""
+    words = dict(million.answers(20_000_126))
+    assert words["choose_state"] == "held"
+    assert words["plan_removal"] == words["plan_rotation"] == "verified"
+
+
 def test_problems_are_the_same_every_time() -> None:
     for seed in (1, 2, 3):
         a, b = problem(seed), problem(seed)

@@ -55,9 +55,15 @@ class Squeezer(Chooser):
 
     def settled(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
         """Internal forces near to ``wanted``; None if only zero is."""
-        found = super().settled(wanted, frictions, [inf] * len(limits))
-        is_left = found is not None and abs(found).max() > _APART * abs(wanted).max()
-        return found if is_left else None
+        return _if_left(wanted, super().settled(wanted, frictions, [inf] * len(limits)))
+
+    def shifted(self, wanted: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """The same by the least change."""
+        return _if_left(wanted, super().shifted(wanted, frictions, limits))
+
+    def nearest(self, forces: Array, frictions: list[float], limits: list[float]) -> Array | None:
+        """The same by the least change inside the cones."""
+        return _if_left(forces, super().nearest(forces, frictions, limits))
 
     def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:
         """Whether every force in the cones works along a motion."""
@@ -74,6 +80,12 @@ class Squeezer(Chooser):
         program = squeeze_program(self.grasp, mu, np.sqrt(1 + mu**2), self.facets)
         answer = solve(program, self.backend, throw=False)
         return self.proves(self.twist_of(answer), frictions, limits)
+
+
+def _if_left(wanted: Array, found: Array | None) -> Array | None:
+    """What was found, unless next to nothing is left of what was wanted."""
+    is_left = found is not None and abs(found).max() > _APART * abs(wanted).max()
+    return found if is_left else None
 
 
 def squeeze_program(grasp: Grasp, frictions: Array, weights: Array, facets: int | None = None) -> Program:
