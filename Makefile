@@ -12,8 +12,7 @@ test: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/pytest -n auto
-	$(BIN)/pytest --nbmake --nbmake-timeout=300 notebooks
+	$(BIN)/pytest -n auto --nbmake --nbmake-timeout=300 tests notebooks
 	$(BIN)/regrasp demo -o $(VENV)/demo
 	rm -rf $(VENV)/bench
 	$(BIN)/regrasp bench --quick -o $(VENV)/bench

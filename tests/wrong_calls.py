@@ -404,6 +404,11 @@ def rows() -> dict[str, Row]:
         ),
         "Outline.nearest": Row(outline.nearest, {"position": [1.0, 1.0]}, {"position": "planar vector"}),
         "Outline.sample": Row(outline.sample, {"count": 9}),
+        "Mesh": Row(
+            rg.Mesh,
+            {"vertices": box.vertices, "faces": box.faces},
+            {"vertices": "vertices", "faces": "faces"},
+        ),
         "Mesh.box": Row(rg.Mesh.box, {"a": 1.0, "b": 1.0, "c": 1.0}, dict.fromkeys("abc", "positive")),
         "Mesh.cylinder": Row(
             rg.Mesh.cylinder, {"radius": 1.0, "height": 1.0}, dict.fromkeys(("radius", "height"), "positive")
@@ -508,6 +513,8 @@ KINDS |= {
         np.zeros((4, 3)),
     ),
     "holes": (*ANYTHING[2:4], *ANYTHING[5:], None, 3, nan, HUGE, [1], ["x"], [[[0, 0], [1, 1]]]),
+    "vertices": (*NOT_NUMBERS, 5, [], [1, 2], np.zeros((8, 2)), np.zeros((8, 3)), np.zeros((2, 3))),
+    "faces": (*NOT_NUMBERS, 5, [], [1, 2], [[0, 1]], [[0, 1, 99]], [[0, 1, -9]], [[0, 1, 2.5]], [[0, 1, 2]]),
     "space points": (*NOT_NUMBERS, 5, [1, 2], np.zeros((2, 2))),
     "text": (None, 3, nan, HUGE, b"x", [], {}, OBJECT, "x", "\0", "[" * 5000, "x = " + "[" * 900 + "]" * 900),
 }  # fmt: skip
