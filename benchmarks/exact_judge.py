@@ -104,7 +104,8 @@ def _root_above(value: Fraction) -> Fraction:
 def is_held(positions: Array, normals: Array, frictions: Array, load: Array) -> bool:
     """Whether planar forces hold a load, exactly: whether -w is a sum of edges of cones.
 
-    Of ``NEVER`` loads at most: rounding of a contact that stands still holds any load by forces of 1e16 times it.
+    Of ``NEVER`` loads at most: rounding of a contact that stands still holds any load by forces of 1e16
+    times it.
     """
     edges = []
     for r, n, mu in zip(positions.tolist(), normals.tolist(), frictions.tolist(), strict=True):
