@@ -7,7 +7,14 @@ import regrasp as rg
 from regrasp.execution import simulate
 from regrasp.files import parse_scenario, plan_scenario
 from regrasp.outline import parts
-from regrasp.plots import execution_figure, plot_escape, plot_outline, plot_sensitivity, transition_figure
+from regrasp.plots import (
+    execution_figure,
+    plot_escape,
+    plot_outline,
+    plot_sensitivity,
+    plot_tolerances,
+    transition_figure,
+)
 
 IMAGES = Path(__file__).parent / "images"
 
@@ -24,6 +31,9 @@ if __name__ == "__main__":
     found = rg.sensitivity(removal.grasp, removal.start.load, "force", max_force=8)
     figure = plot_sensitivity(found).figure
     figure.savefig(IMAGES / "sensitivity.png", dpi=160, metadata={"Software": None})
+    state = rg.choose_state(removal.grasp, removal.start.load, "force", max_force=12)
+    figure = plot_tolerances(rg.tolerances(state)).figure
+    figure.savefig(IMAGES / "tolerances.png", dpi=160, metadata={"Software": None})
     metres = rg.Grasp(rg.Contact(0.01 * c.position, c.normal, c.friction, name=c.name) for c in removal.grasp)
     moved = rg.GraspState(metres, removal.start.load, removal.start.forces)
     figure = execution_figure(simulate(rg.plan_removal(moved, "P3")))

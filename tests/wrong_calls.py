@@ -109,7 +109,7 @@ NAMES: dict[str, str] = {
     "tolerance": "positive", "smooth": "flag", "path": "path", "data": "data", "t": "times",
     "axis": "space vector", "along": "space vector", "degrees": "number", "arriving": "contacts",
     "outside": "flag", "layers": "layers", "unit": "word", "bodies": "word", "close_holes": "not negative",
-    "disturbance": "value", "stiffness": "stiffnesses", "early_loss": "flag",
+    "disturbance": "value", "stiffness": "stiffnesses", "tip_radius": "not negative", "early_loss": "flag",
     "start_objective": "word", "also": "numbers",
     "angle": "number", "magnitude": "positive", "degree": "count", "segments": "count", "divisions": "count",
     "crease": "positive", "contact": "contact of", "squeeze": "numbers", "direction": "vector",
@@ -277,6 +277,16 @@ def rows() -> dict[str, Row]:
             },
         ),
         "ChosenGrasp.from_dict": Row(rg.ChosenGrasp.from_dict, {"data": placed().to_dict()}),
+        "least_stiffness": Row(
+            rg.least_stiffness,
+            {"state_or_plan": STATE},
+            {"state_or_plan": "value", "load_at": "planar vector", "surface": "curvatures"},
+        ),
+        "tolerances": Row(
+            rg.tolerances,
+            {"state_or_plan": STATE.balanced()},
+            {"state_or_plan": "value", "surface": "curvatures"},
+        ),
         "LoadSet.hull": Row(rg.LoadSet.hull, {"loads": [LOAD]}, {"loads": "contacts", "center": "value"}),
         "LoadSet.ball": Row(
             rg.LoadSet.ball,

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
+    from regrasp.planning.robustness.least_stiffness import least_stiffness
+    from regrasp.planning.robustness.tolerances import Tolerances, tolerances
     from regrasp.planning.states.batch import best_squeezes, locus_intervals
     from regrasp.planning.states.objectives import ForceCost
     from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -73,6 +75,7 @@ _LATER = {
     "largest_load": "regrasp.planning.surveys.extremes.largest_load",
     "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
     "least_friction": "regrasp.planning.surveys.extremes.least_friction",
+    "least_stiffness": "regrasp.planning.robustness.least_stiffness",
     "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
     "LoadSeries": "regrasp.plans.loads",
     "LoadSet": "regrasp.mechanics.loads.load_set",
@@ -103,6 +106,8 @@ _LATER = {
     "StraightPath": "regrasp.plans.straight",
     "TimeScaling": "regrasp.plans.timing",
     "Transition": "regrasp.plans.transition",
+    "Tolerances": "regrasp.planning.robustness.tolerances",
+    "tolerances": "regrasp.planning.robustness.tolerances",
     "TurningPath": "regrasp.plans.turning",
     "Verification": "regrasp.verification",
     "verify": "regrasp.verification",
@@ -151,6 +156,7 @@ __all__ = [
     "SqueezeLocus",
     "StraightPath",
     "TimeScaling",
+    "Tolerances",
     "Transition",
     "TurningPath",
     "Verification",
@@ -166,6 +172,7 @@ __all__ = [
     "held_sphere",
     "largest_load",
     "least_friction",
+    "least_stiffness",
     "locus_intervals",
     "plan_addition",
     "plan_exchange",
@@ -176,6 +183,7 @@ __all__ = [
     "pyramid_losses",
     "quality",
     "sensitivity",
+    "tolerances",
     "verify",
     "wrench_ball",
 ]

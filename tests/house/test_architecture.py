@@ -112,6 +112,7 @@ _DRAWN = {"plots.look", "plots.grasps"}
 ROOMS: dict[str, Set[str]] = {
     "planning.states": set(),
     "planning.surveys": _HOLDS,
+    "planning.robustness": _HOLDS | {"planning.surveys"},
     "planning.changes": _HOLDS,
     "planning.holds": _HOLDS,
     "planning.regrasps": _HOLDS | {"planning.surveys", "planning.changes", "planning.holds"},

@@ -24,7 +24,7 @@ RECORDS = {
     "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "Margins", "PyramidLosses",
     "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity", "SpaceRegraspPlan",
     "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad", "HeldCentres",
-    "Transition", "TurningTransition", "Verification", "StraightPath", "SampledPath", "TurningPath",
+    "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath", "SampledPath", "TurningPath",
 }  # fmt: skip
 
 

@@ -38,6 +38,7 @@ from regrasp.plots.regrasps.trade_off import plot_trade_off
 from regrasp.plots.surveys.held_directions import plot_directions
 from regrasp.plots.surveys.held_sphere import load_sphere_figure, plot_load_map, plot_load_sphere
 from regrasp.plots.surveys.sensitivity import plot_sensitivity
+from regrasp.plots.surveys.tolerances import plot_tolerances
 from regrasp.plots.wrench_space.iso_torque import plot_iso_torque
 from regrasp.plots.wrench_space.locus import plot_locus
 from regrasp.plots.wrench_space.planes_and_cones import (
@@ -79,6 +80,7 @@ __all__ = [
     "plot_sensitivity",
     "plot_slip",
     "plot_state",
+    "plot_tolerances",
     "plot_trade_off",
     "plot_transition",
     "plot_wrench_components",

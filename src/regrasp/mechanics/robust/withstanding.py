@@ -9,6 +9,7 @@ e) is inside the cone of friction mu and within the limit L for all members exac
 sigma(y) = sigma_D(y) + s sigma_S(y) the most work of members along y. The factor is the least ratio.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
 from typing import NamedTuple
@@ -60,11 +61,32 @@ class Withstanding:
 
     def factors(self, scaled: LoadSet) -> Worst:
         """How far ``scaled``, around no load, may be scaled; below 0 where ``base`` fails."""
+
+        def ratio(room: Array, twists: Array) -> Array:
+            work = scaled.support(twists)
+            known = work > _NOTHING * (np.abs(twists) @ _reach(scaled))
+            most: Array = np.divide(room, work, out=np.full(room.shape, inf), where=known)
+            most[~known & (room < -_NOTHING * np.abs(self.forces).max())] = -inf
+            return most
+
+        def member(twist: Array, factor: float) -> Array:
+            result: Array = factor * scaled.extreme(twist).vector
+            return result
+
+        return self.worst(ratio, member)
+
+    def worst(
+        self, measure: Callable[[Array, Array], Array], member: Callable[[Array, float], Array]
+    ) -> Worst:
+        """The least ``measure`` of room (n, m) and twists (n, m, q) along which deviations work, by contact.
+
+        member: the deviation (q,) that reaches a measure along a twist.
+        """
         n, w = self.forces.shape
-        least, where = least_over(lambda u: self._slipping(u, scaled), n, w - 1)
+        least, where = least_over(lambda u: self._slipping(u, measure), n, w - 1)
         gs = self._edges(where[:, None])[:, 0]
-        deviations = [self._deviation(-self.responses[i].T @ gs[i], scaled, least[i]) for i in range(n)]
-        hows = [self._how(i, deviations[i]) for i in range(n)]
+        twists = [-self.responses[i].T @ gs[i] for i in range(n)]
+        hows = [SLIPS] * n
         limited = np.flatnonzero(self.limits < inf)
         if limited.size:
             some = replace(
@@ -73,11 +95,13 @@ class Withstanding:
                 responses=self.responses[limited],
                 limits=self.limits[limited],
             )
-            reached, us = least_over(lambda u: some._exceeding(u, scaled), limited.size, w)
+            reached, us = least_over(lambda u: some._exceeding(u, measure), limited.size, w)
             for k, i in enumerate(limited.tolist()):
                 if reached[k] < least[i]:
                     least[i], hows[i] = reached[k], EXCEEDS
-                    deviations[i] = self._deviation(self.responses[i].T @ us[k], scaled, reached[k])
+                    twists[i] = self.responses[i].T @ us[k]
+        deviations = [self._deviation(y, m, member) for y, m in zip(twists, least.tolist(), strict=True)]
+        hows = [self._how(i, how, deviations[i]) for i, how in enumerate(hows)]
         return Worst(least, deviations, hows)
 
     def spare(self) -> Array:
@@ -97,7 +121,7 @@ class Withstanding:
         room: Array = constant + np.einsum("nmw,nw->nm", g, self.forces)
         if self.base is None:
             return room
-        return room - self.base.support(-np.einsum("nmw,nwq->nmq", g, self.responses))
+        return room - self.base.support(self._twists(g))
 
     def _edges(self, u: Array) -> Array:
         """(n, m, w) g = mu n - u for u (n, m, w - 1) by the cones' tangents."""
@@ -106,38 +130,33 @@ class Withstanding:
         result: Array = (friction * self.cones.normals)[:, None] - across
         return result
 
-    def _slipping(self, u: Array, scaled: LoadSet) -> Array:
-        return self._ratio(self._edges(u), np.zeros((1, 1)), scaled)
+    def _slipping(self, u: Array, measure: Callable[[Array, Array], Array]) -> Array:
+        g = self._edges(u)
+        return measure(self._room(g, np.zeros((1, 1))), self._twists(g))
 
-    def _exceeding(self, u: Array, scaled: LoadSet) -> Array:
-        return self._ratio(-u, self.limits[:, None], scaled)
+    def _exceeding(self, u: Array, measure: Callable[[Array, Array], Array]) -> Array:
+        return measure(self._room(-u, self.limits[:, None]), self._twists(-u))
 
-    def _ratio(self, g: Array, constant: Array, scaled: LoadSet) -> Array:
-        """(n, m) (constant + g . f - sigma_base) / sigma_scaled, both at -R' g."""
-        twists = -np.einsum("nmw,nwq->nmq", g, self.responses)
-        room = self._room(g, constant)
-        work = scaled.support(twists)
-        size = np.abs(twists) @ np.abs(_reach(scaled))
-        known = work > _NOTHING * size
-        ratio = np.divide(room, work, out=np.full(room.shape, inf), where=known)
-        lost = ~known & (room < -_NOTHING * np.abs(self.forces).max())
-        result: Array = np.where(lost, -inf, ratio)
+    def _twists(self, g: Array) -> Array:
+        result: Array = -np.einsum("nmw,nwq->nmq", g, self.responses)
         return result
 
-    def _deviation(self, twist: Array, scaled: LoadSet, factor: float) -> Wrench | None:
-        if not np.isfinite(factor):
+    def _deviation(
+        self, twist: Array, measure: float, member: Callable[[Array, float], Array]
+    ) -> Wrench | None:
+        if not np.isfinite(measure):
             return None
-        total = factor * scaled.extreme(twist).vector
+        total = member(twist, measure)
         if self.base is not None:
             total = total + self.base.extreme(twist).vector
         return Wrench.from_vector(total)
 
-    def _how(self, i: int, deviation: Wrench | None) -> str:
+    def _how(self, i: int, how: str, deviation: Wrench | None) -> str:
         if deviation is None:
             return ""
         after = self.forces[i] + self.responses[i] @ deviation.vector
         left = float(after @ self.cones.normals[i])
-        return OPENS if left <= _OPEN * abs(float(self.forces[i] @ self.cones.normals[i])) else SLIPS
+        return OPENS if left <= _OPEN * abs(float(self.forces[i] @ self.cones.normals[i])) else how
 
 
 def around_center(loads: LoadSet) -> tuple[LoadSet | None, LoadSet]:

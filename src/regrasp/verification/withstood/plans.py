@@ -1,11 +1,11 @@
 """Whether a plan withstands a set of deviations at every instant.
 
 Forces change by R d, R = -K G' (G K G')^-1 with the stiffnesses K of the fingers that stay: one that leaves
-or arrives is force-controlled. The forces f with f + R d inside cones and limits for all d are a convex set,
-so that both ends prove a straight path, and instants one that is linear between them. In a turn forces are
-a f + b g with a, b >= 0 and a + b >= 1: a f + b g + R d = a (f + R d') + b (g + R d') with d' = d / (a + b),
-which is a member where zero is one; limits then need the part 1 / (a + b) >= cos(Delta / 2) of them. States
-at which all fingers at work may answer, ends, withstand that, too.
+or arrives, or carries none at all, is force-controlled. The forces f with f + R d inside cones and limits for
+all d are a convex set, so that both ends prove a straight path, and instants one that is linear between them.
+In a turn forces are a f + b g with a, b >= 0 and a + b >= 1: a f + b g + R d = a (f + R d') + b (g + R d')
+with d' = d / (a + b), which is a member where zero is one; limits then need the part 1 / (a + b) >= cos(Delta
+/ 2) of them. States at which all fingers at work may answer, ends, withstand that, too.
 
 Contacts off by r' - r change the balance by (G' - G) f, and forces by R' of that: linear in f again.
 """
@@ -28,6 +28,7 @@ from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import Vector, exact
 from regrasp.verification.protocols import Plan
+from regrasp.verification.records import deciding_forces
 from regrasp.verification.withstood.contacts import Body, Touch
 from regrasp.verification.withstood.matrices import (
     Matrix,
@@ -131,12 +132,14 @@ class _Judge:
         leaving, arriving = (
             [names.index(x) for x in some if x in names] for some in (plan.leaving, plan.arriving)
         )
-        moving = tuple(sorted({*leaving, *arriving}))
+        deciding = deciding_forces(plan)
+        idle = [i for i in range(len(names)) if not deciding[:, i].any()]
+        moving = tuple(sorted({*leaving, *arriving, *idle}))
         for label, forces, share in self._states():
             yield from self._state(label, forces, moving, share)
         if moving:
-            for label, state, idle in (("start", plan.start, arriving), ("end", plan.end, leaving)):
-                own = tuple(sorted(idle))
+            for label, state, away in (("start", plan.start, arriving), ("end", plan.end, leaving)):
+                own = tuple(sorted({*away, *idle}))
                 if own != moving:
                     yield from self._state(
                         f"{label}, all fingers at work answering", state.forces, own, Fraction(1)
