@@ -1,5 +1,6 @@
 """Planning a scenario: planned, verified, and only then written and drawn."""
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,9 +56,11 @@ def demo(output: Path) -> dict[str, Any]:
     required=True,
     help="Folder for the files. Those of the same names in it are replaced, others left alone.",
 )
-@click.option("--no-figures", is_flag=True, help="Write plan.json and setpoints.csv only.")
+@click.option("--no-figures", is_flag=True, help="Write no figures.")
+@click.option("--motions", is_flag=True, help="Plan the fingers' ways by [motions], too; writes motions.csv.")
+@click.option("--mcap", is_flag=True, help="Write plan.mcap, a ROS 2 bag; needs regrasp[ros].")
 @json_option
-def plan(scenario: Path, output: Path, no_figures: bool) -> dict[str, Any]:
+def plan(scenario: Path, output: Path, no_figures: bool, motions: bool, mcap: bool) -> dict[str, Any]:
     """Plan the change of grasp, the turn or the whole regrasp in a SCENARIO.
 
     SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
@@ -66,27 +69,46 @@ def plan(scenario: Path, output: Path, no_figures: bool) -> dict[str, Any]:
     from regrasp.files.staging import check_folder
 
     check_folder(output)
-    return _work(read_scenario(scenario), scenario, output, draw=not no_figures)
+    if mcap and find_spec("rosbags") is None:
+        raise click.UsageError("--mcap needs rosbags: pip install 'regrasp[ros]'")
+    asked = read_scenario(scenario)
+    return _work(asked, scenario, output, draw=not no_figures, motions=motions, mcap=mcap)
 
 
 def _work(
-    scenario: "AnyScenario", name: str | Path, output: Path, *, draw: bool = True, copy: str | None = None
+    scenario: "AnyScenario",
+    name: str | Path,
+    output: Path,
+    *,
+    draw: bool = True,
+    copy: str | None = None,
+    motions: bool = False,
+    mcap: bool = False,
 ) -> dict[str, Any]:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
-    from regrasp.files import plan_scenario, write_plan, write_setpoints
+    from regrasp.files import (
+        plan_scenario,
+        plan_scenario_motions,
+        write_mcap,
+        write_motions,
+        write_plan,
+        write_setpoints,
+    )
     from regrasp.files.plans.setpoints import checked, setpoint_blocks
     from regrasp.files.source import legible, naming
     from regrasp.files.staging import whole_folder
     from regrasp.mechanics.value import one_line
-    from regrasp.verification import verify
+    from regrasp.verification import verify, verify_motions
 
     rate, count = scenario.task.rate, 0
     given = [contact.name for contact in getattr(scenario, "contacts", ())]
     with legible(given), naming(name), progress_bar() as progress:
         task = progress.add_task("planning", total=None)
-        planned = plan_scenario(scenario)
+        ways = plan_scenario_motions(scenario) if motions else None
+        planned = plan_scenario(scenario) if ways is None else ways.plan
         progress.update(task, description="verifying")
         verdict = verified(verify(planned), name)
+        moved = None if ways is None else verified(verify_motions(ways, _shape(scenario)), name)
         progress.update(task, total=planned.duration * rate)
         for rows in setpoint_blocks(planned, rate):
             verified(checked(planned, rows), name)
@@ -98,10 +120,16 @@ def _work(
     with legible(given) as shown:
         say(f"{one_line(scenario.title)}\n\n{shown(planned)}" if scenario.title else shown(planned))
     say(f"{verdict}\neach of {count} set-points verified too")
+    if moved is not None:
+        say(f"{ways}\n{moved}")
 
     with whole_folder(output) as folder:
         write_plan(planned, folder / "plan.json")
         write_setpoints(planned, folder / "setpoints.csv", rate)
+        if ways is not None:
+            write_motions(ways, folder / "motions.csv", rate)
+        if mcap:
+            write_mcap(planned if ways is None else ways, folder / "plan.mcap")
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:

@@ -2,7 +2,7 @@
 
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from regrasp.cli.statuses import VERIFIED, Unverified
 
@@ -11,13 +11,15 @@ if TYPE_CHECKING:
 
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.transition import Transition
-    from regrasp.verification import Verification
+    from regrasp.verification import MotionsVerification, Verification
+
+Judged = TypeVar("Judged", bound="Verification | MotionsVerification")
 
 # A plan with a thousand bad set-points says the same thing a thousand times.
 _SHOWN = 10
 
 
-def verified(verdict: "Verification", name: str | Path) -> "Verification":
+def verified(verdict: Judged, name: str | Path) -> Judged:
     """The verdict, if it is good; else an error that lists what is broken."""
     if verdict.ok:
         return verdict

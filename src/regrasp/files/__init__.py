@@ -1,8 +1,10 @@
 """Scenarios in, plans and set-points out. Imports pydantic, so it is imported when it is used."""
 
 from regrasp.files.plans.bag import write_mcap
+from regrasp.files.plans.motions_table import write_motions
 from regrasp.files.plans.plan_file import read_plan, write_plan
 from regrasp.files.plans.setpoints import write_setpoints
+from regrasp.files.scenarios.moving import plan_scenario_motions
 from regrasp.files.scenarios.planned import plan_scenario
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.scenario import (
@@ -21,10 +23,12 @@ __all__ = [
     "SpaceRegraspScenario",
     "parse_scenario",
     "plan_scenario",
+    "plan_scenario_motions",
     "read_plan",
     "read_scenario",
     "scenario_schema",
     "write_mcap",
+    "write_motions",
     "write_plan",
     "write_setpoints",
 ]

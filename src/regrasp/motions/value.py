@@ -98,11 +98,37 @@ class Motions(ArrayValue):
 
     def plan_time(self, t: ArrayLike) -> Array:
         """(m,) the plan's own time, which stands while fingers move [s]."""
+        k, local = self.step_times(t)
+        result: Array = np.cumsum([0.0, *(step.duration for step in self.steps)])[k] + local
+        return result
+
+    def step_times(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
+        """(m,) the step of each time, the pause before it included, from 0; and the time in it (m,) [s].
+
+        After the last step that one, at its end.
+        """
         times, k = self._places(t)
-        ends = np.cumsum([0.0, *(step.duration for step in self.steps)])
-        begun = np.array([*self.starts[:-1], self.duration])
-        last = np.array([*(step.duration for step in self.steps), 0.0])
-        result: Array = ends[k] + np.clip(times - begun[k], 0.0, last[k])
+        lengths = np.array([step.duration for step in self.steps])
+        over = k == lengths.size
+        k = np.minimum(k, lengths.size - 1)
+        local = np.clip(times - self.starts[k], 0.0, lengths[k])
+        return k, np.where(over, lengths[k], local)
+
+    def forces(self, t: ArrayLike) -> Array:
+        """(m, k, d) of each finger on the object, in the object's frame, zero in the air [N].
+
+        With soft fingers (m, k, 4), their torques about the normal last.
+        """
+        k, local = self.step_times(t)
+        width = self.steps[0].start.forces.shape[1]
+        result = np.zeros((k.size, self.tips.shape[1], width))
+        fingers = self.plan.fingers if isinstance(self.plan, RegraspPlan) else [self.steps[0].grasp.names]
+        for s, step in enumerate(self.steps):
+            here = k == s
+            forces = step.forces(local[here])
+            for i, name in enumerate(fingers[s]):
+                if name is not None:
+                    result[here, i] = forces[:, step.grasp.index(name)]
         return result
 
     def _places(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:

@@ -7,5 +7,14 @@ from regrasp.verification.exact import HELD, RESOLUTION
 from regrasp.verification.plans import verify
 from regrasp.verification.sampling import verify_setpoints
 from regrasp.verification.verdict import Verification
+from regrasp.verification.ways.verdict import MotionsVerification, verify_motions
 
-__all__ = ["HELD", "RESOLUTION", "Verification", "verify", "verify_setpoints"]
+__all__ = [
+    "HELD",
+    "RESOLUTION",
+    "MotionsVerification",
+    "Verification",
+    "verify",
+    "verify_motions",
+    "verify_setpoints",
+]

@@ -4,14 +4,16 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
+from regrasp.files.plans.motions_table import motion_times
 from regrasp.files.plans.setpoints import setpoint_blocks
 from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.mechanics.contact import Contact
+from regrasp.motions.value import Motions
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 from regrasp.plans.transition import Transition
@@ -23,7 +25,7 @@ _ARROW, _DELETE = 0, 2  # of visualization_msgs/Marker: its type, and the action
 
 
 def write_mcap(
-    plan: Transition | RegraspPlan,
+    plan: Transition | RegraspPlan | Motions,
     path: str | Path,
     rate: float = 200.0,
     *,
@@ -39,9 +41,11 @@ def write_mcap(
     ``/object/pose`` (PoseStamped) and ``/tf``: how the object is turned in ``world``, as the plan counts it.
     ``/forces`` (visualization_msgs/MarkerArray): an arrow for each force that ends at its contact.
     Names keep letters and digits, all else becomes ``_``. Fingers that are not in a step are silent then.
+    With motions the clock is theirs, and ``/tips/F1/pose`` (PoseStamped, frame ``object``) and
+    ``/tips/F1/velocity`` (TwistStamped) follow the centre of every finger's tip through the air.
 
     Args:
-        plan: a transition or a whole regrasp.
+        plan: a transition or a whole regrasp, or the motions of one.
         path: of the file, which ends in ``.mcap``.
         rate: messages per second; both ends of every step have one.
         start: stamp of the first [s].
@@ -51,8 +55,9 @@ def write_mcap(
         InvalidInput: For another ending than ``.mcap``.
         ImportError: Without rosbags.
     """
+    motions, plan = (plan, plan.plan) if isinstance(plan, Motions) else (None, plan)
     if not isinstance(plan, Transition | RegraspPlan):
-        raise InvalidInput(f"plan must be a Transition or a RegraspPlan, got {shown(plan)}")
+        raise InvalidInput(f"plan must be a Transition, a RegraspPlan or Motions, got {shown(plan)}")
     target = Path(file_path(path))
     number(rate, "rate", above=0)
     number(start, "start")
@@ -74,7 +79,9 @@ def write_mcap(
         folder = Path(temporary, "bag")
         with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as bag:
             connections: dict[str, Any] = {}
-            for topic, stamp, message in _messages(plan, rate, start, metres_per_newton, store.types):
+            for topic, stamp, message in _messages(
+                _blocks(plan, motions, rate), plan, start, metres_per_newton, store.types
+            ):
                 kind = message.__msgtype__
                 if topic not in connections:
                     connections[topic] = bag.add_connection(topic, kind, typestore=store)
@@ -97,31 +104,63 @@ def topics_of(plan: Transition | RegraspPlan) -> dict[str, str]:
     return topics
 
 
+class _Block(NamedTuple):
+    """Instants of a step: times (m,) in it and of the bag [s]; tips' centres and velocities (m, k, d)."""
+
+    step: int
+    times: Array
+    clock: Array
+    tips: Array | None
+    velocities: Array | None
+
+
+def _blocks(plan: Transition | RegraspPlan, motions: Motions | None, rate: float) -> Iterator[_Block]:
+    """All instants in order."""
+    if motions is None:
+        steps = (plan,) if isinstance(plan, Transition) else plan.steps
+        begins = np.cumsum([0.0, *(step.duration for step in steps)])
+        for rows in setpoint_blocks(plan, rate):
+            yield _Block(rows.step, rows.times, begins[rows.step] + rows.times, None, None)
+        return
+    t = motion_times(motions, rate)
+    k, local = motions.step_times(t)
+    at, velocity = motions.positions(t), motions.velocities(t)
+    for step in range(len(motions.steps)):
+        here = k == step
+        yield _Block(step, local[here], t[here], at[here], velocity[here])
+
+
 def _messages(
-    plan: Transition | RegraspPlan, rate: float, start: float, scale: float, types: Any
+    blocks: Iterator[_Block], plan: Transition | RegraspPlan, start: float, scale: float, types: Any
 ) -> Iterator[tuple[str, int, Any]]:
     """(topic, stamp [ns], message) in order of time."""
     make = _Maker(types)
     steps = (plan,) if isinstance(plan, Transition) else plan.steps
-    begins = start + np.cumsum([0.0, *(step.duration for step in steps)])
     topics, numbers = topics_of(plan), {name: i for i, name in enumerate(topics_of(plan))}
-    for rows in setpoint_blocks(plan, rate):
-        step = steps[rows.step]
-        wrenches = step.wrenches(rows.times)
+    pose_kind = "geometry_msgs/msg/PoseStamped"
+    for block in blocks:
+        step = steps[block.step]
+        wrenches, forces = step.wrenches(block.times), step.forces(block.times)
         poses = {c.name: make.pose(c.position, _along(c)) for c in step.grasp}
-        turned = _quaternions(plan, rows.step, step, rows.times)
-        for k, t in enumerate((begins[rows.step] + rows.times).tolist()):
+        turned = _quaternions(plan, block.step, step, block.times)
+        for k, t in enumerate((start + block.clock).tolist()):
             stamp = round(t * 1e9)
             here, there = make.header(stamp, OBJECT), make.header(stamp, WORLD)
             at = make.pose(np.zeros(3), turned[k])
-            yield "/object/pose", stamp, make("geometry_msgs/msg/PoseStamped", there, at)
+            yield "/object/pose", stamp, make(pose_kind, there, at)
             yield "/tf", stamp, make.transform(there, turned[k])
             for i, contact in enumerate(step.grasp):
                 topic = f"/fingers/{topics[str(contact.name)]}"
                 wrench = make.wrench(wrenches[k, i])
                 yield f"{topic}/wrench", stamp, make("geometry_msgs/msg/WrenchStamped", here, wrench)
-                yield f"{topic}/pose", stamp, make("geometry_msgs/msg/PoseStamped", here, poses[contact.name])
-            pushed = zip(step.grasp, scale * rows.forces[k], strict=True)
+                yield f"{topic}/pose", stamp, make(pose_kind, here, poses[contact.name])
+            if block.tips is not None and block.velocities is not None:
+                for i, (tip, speed) in enumerate(zip(block.tips[k], block.velocities[k], strict=True), 1):
+                    straight = make.pose(tip, np.array([1.0, 0.0, 0.0, 0.0]))
+                    yield f"/tips/F{i}/pose", stamp, make(pose_kind, here, straight)
+                    twist = make("geometry_msgs/msg/TwistStamped", here, make.twist(speed))
+                    yield f"/tips/F{i}/velocity", stamp, twist
+            pushed = zip(step.grasp, scale * forces[k], strict=True)
             shown = {numbers[str(c.name)]: (c, along) for c, along in pushed}
             arrows = [make.arrow(here, i, *shown.get(i, (None, None))) for i in range(len(topics))]
             yield "/forces", stamp, make("visualization_msgs/msg/MarkerArray", arrows)
@@ -150,6 +189,11 @@ class _Maker:
 
     def pose(self, at: Array, quaternion: Array) -> Any:
         return self("geometry_msgs/msg/Pose", self._point(at), self._turn(quaternion))
+
+    def twist(self, velocity: Array) -> Any:
+        x, y, *z = velocity.tolist()
+        still = self._vector(0.0, 0.0, 0.0)
+        return self("geometry_msgs/msg/Twist", self._vector(x, y, z[0] if z else 0.0), still)
 
     def transform(self, header: Any, quaternion: Array) -> Any:
         kind = "geometry_msgs/msg/Transform"

@@ -1,16 +1,19 @@
 """From a scenario to its plan."""
 
+from collections.abc import Callable
 from math import radians
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.scenarios.regrasp import RegraspScenario
+from regrasp.files.scenarios.regrasp import RegraspScenario, RegraspTask
 from regrasp.files.scenarios.scenario import AnyScenario, Scenario
-from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
+from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario, SpaceRegraspTask
 from regrasp.files.scenarios.tasks import Change, Exchange, OneFinger, Rotation
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.mesh.mesh import Mesh
+from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
 from regrasp.planning.changes.rotation import plan_rotation
 from regrasp.planning.holds.sequences import MAX_TURN
@@ -19,6 +22,8 @@ from regrasp.planning.states.options import ChangeOptions, LimitOptions, PlanOpt
 from regrasp.plans.loads import LoadSeries
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
+
+Planned = TypeVar("Planned")
 
 # Keys of a task that the planner takes under the same name.
 _CLOCK = ("duration", "scaling", "rate_limit")  # which the task works out together
@@ -50,10 +55,8 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
         Infeasible: As the planner does.
         InvalidInput: As the planner does.
     """
-    if isinstance(scenario, RegraspScenario):
-        return _regrasp(scenario)
-    if isinstance(scenario, SpaceRegraspScenario):
-        return _space_regrasp(scenario)
+    if isinstance(scenario, RegraspScenario | SpaceRegraspScenario):
+        return regrasp_by(scenario, plan_regrasp)
     if not isinstance(scenario, Scenario):
         raise InvalidInput(f"a scenario comes from read_scenario or parse_scenario, got {shown(scenario)}")
     task, load = scenario.task, scenario.external
@@ -98,35 +101,32 @@ def _idle_times(task: Change) -> dict[str, float | None]:
     return {"idle_from" if task.leaving else "idle_until": task.idle_time}
 
 
-def _regrasp(scenario: RegraspScenario) -> RegraspPlan:
+def regrasp_by(scenario: RegraspScenario | SpaceRegraspScenario, verb: Callable[..., Planned]) -> Planned:
+    """What a verb that takes what ``plan_regrasp`` takes makes of a scenario."""
     task = scenario.task
-    return plan_regrasp(
-        scenario.outline.value,
-        scenario.start_grasp,
-        scenario.goal_grasp,
-        Wrench(scenario.load.force),
-        friction=scenario.friction,
-        goal_orientation=radians(task.goal_degrees),
-        least_margin=radians(task.least_margin_degrees),
-        weights=None if task.weights is None else task.weights.value,
-        arcs=None if task.arcs is None else [arc or None for arc in task.arcs],
-        max_turn=MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
-        one_finger=task.one_finger,
-        **_taken(task, _REGRASP_OPTIONS),
-    )
-
-
-def _space_regrasp(scenario: SpaceRegraspScenario) -> RegraspPlan:
-    task = scenario.task
-    return plan_regrasp(
-        scenario.object.value,
+    if isinstance(scenario, RegraspScenario):
+        assert isinstance(task, RegraspTask)
+        shape: Outline | Mesh = scenario.outline.value
+        options: dict[str, Any] = {
+            "goal_orientation": radians(task.goal_degrees),
+            "weights": None if task.weights is None else task.weights.value,
+            "arcs": None if task.arcs is None else [arc or None for arc in task.arcs],
+            "max_turn": MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
+            "one_finger": task.one_finger,
+            **_taken(task, _REGRASP_OPTIONS),
+        }
+    else:
+        assert isinstance(task, SpaceRegraspTask)
+        shape = scenario.object.value
+        options = {"max_turn": radians(task.max_turn_degrees), **_taken(task, _SPACE_REGRASP_OPTIONS)}
+    return verb(
+        shape,
         scenario.start_grasp,
         scenario.goal_grasp,
         Wrench(scenario.load.force),
         friction=scenario.friction,
         least_margin=radians(task.least_margin_degrees),
-        max_turn=radians(task.max_turn_degrees),
-        **_taken(task, _SPACE_REGRASP_OPTIONS),
+        **options,
     )
 
 

@@ -9,6 +9,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from regrasp.errors import InvalidInput
 from regrasp.files.scenarios.keys import Positive, Vector
+from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.regrasp_task import CommonTask, Ended
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
@@ -190,6 +191,7 @@ class RegraspScenario(Ended):
     outline: OutlineEntry
     start: Places
     goal: Places
+    motions: MotionsEntry | None = Field(None, description="ways of free fingers, asked for by --motions")
     task: RegraspTask
 
     @model_validator(mode="after")

@@ -19,6 +19,7 @@ from regrasp.files.scenarios.keys import (
     Name,
     Positive,
 )
+from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
@@ -109,6 +110,7 @@ class Scenario(Strict):
     ] = Field(description="constant, [load]; or [[load]] at times, the last of which is the duration")
     object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
     contacts: list[ContactEntry] = Field(min_length=2)
+    motions: MotionsEntry | None = Field(None, description="ways of free fingers, asked for by --motions")
     task: Annotated[Removal | Addition | Exchange | Rotation, Field(discriminator="kind")]
 
     @cached_property

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from regrasp.errors import InvalidInput
 from regrasp.files.scenarios.keys import SpaceVector
+from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp_task import CommonTask, Ended
 from regrasp.files.strict import Strict
@@ -101,6 +102,7 @@ class SpaceRegraspScenario(Ended):
     object: ObjectEntry
     start: SpacePlaces
     goal: SpacePlaces
+    motions: MotionsEntry | None = Field(None, description="ways of free fingers, asked for by --motions")
     task: SpaceRegraspTask
 
     @model_validator(mode="after")

@@ -1,0 +1,1 @@
+"""Checks of ways through the air, which share no code with what planned them."""

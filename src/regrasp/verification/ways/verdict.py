@@ -1,0 +1,200 @@
+"""The verdict on ways through the air: sampled at a tenth of the clearance, from the mathematics again.
+
+Between samples a finger moves by no more than that tenth, so what the samples keep is kept less a tenth.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import ArrayValue
+from regrasp.verification.ways.distances import points_of_axis, to_axis, to_boundary, to_faces
+
+_PART = 10  # of the clearance: how far fingers move between samples
+_MOST = 1_000_000  # samples
+_SAME = 1e-6  # of the clearance: places that are one
+_NEAR = 1e-3  # of the clearance: what polygons may be off
+_JUMP = 0.01  # of the clearance: how far positions may be from what velocities say between samples
+
+
+class Moving(Protocol):
+    """Ways of the fingers of a plan, whoever made them."""
+
+    @property
+    def tip_radius(self) -> float: ...  # noqa: D102
+    @property
+    def clearance(self) -> float: ...  # noqa: D102
+    @property
+    def capsules(self) -> Array: ...  # noqa: D102
+    @property
+    def steps(self) -> tuple[Any, ...]: ...  # noqa: D102
+    @property
+    def starts(self) -> Array: ...  # noqa: D102
+    @property
+    def duration(self) -> float: ...  # noqa: D102
+    def positions(self, t: Array) -> Array: ...  # noqa: D102
+    def velocities(self, t: Array) -> Array: ...  # noqa: D102
+    def touching(self, t: Array) -> NDArray[np.bool_]: ...  # noqa: D102
+
+
+@dataclass(frozen=True, eq=False)
+class MotionsVerification(ArrayValue):
+    """The verdict on ways through the air.
+
+    Args:
+        violations: each broken condition in words; none for ways that keep everything.
+        to_object: the least distance of a finger's surface from the object, away from contacts [m].
+        to_fingers: the least distance of two fingers' surfaces while one moves [m]; infinite without any.
+        touching: how many fingers are at contacts, at the least.
+        samples: how many instants were looked at.
+    """
+
+    violations: tuple[str, ...]
+    to_object: float
+    to_fingers: float
+    touching: int
+    samples: int
+
+    @property
+    def ok(self) -> bool:
+        """Whether no finger passes through anything, jumps or lets go of a contact that it is needed at."""
+        return not self.violations
+
+    def __str__(self) -> str:
+        if not self.ok:
+            return "\n".join(["ways not verified:", *(f"  {violation}" for violation in self.violations)])
+        return (
+            f"ways verified at {self.samples} instants: fingers keep {self.to_object:.4g} from the object "
+            f"and {self.to_fingers:.4g} from one another, {self.touching} or more touch at every instant"
+        )
+
+
+def verify_motions(motions: Moving, shape: Any) -> MotionsVerification:
+    """Check the ways of a plan's fingers, at instants between which none moves by a tenth of the clearance.
+
+    No finger may be in the object or another one, or nearer than the clearance but on the normal of a
+    contact; positions are what velocities say; a finger that touches is at a contact of the plan, every
+    contact of a step has a finger during it, and two fingers, in space three, touch at every instant.
+
+    Args:
+        motions: what ``plan_motions`` returns, or any object with the same attributes.
+        shape: the ``Outline`` or ``Mesh`` that they go around.
+
+    Raises:
+        InvalidInput: For what is no motions or no shape, and for more than a million instants.
+    """
+    if not all(hasattr(motions, name) for name in ("positions", "velocities", "touching", "capsules")):
+        raise InvalidInput(f"verify_motions needs motions, got {shown(motions)}")
+    if not hasattr(shape, "polygon") and not hasattr(shape, "surface"):
+        raise InvalidInput(f"verify_motions needs an Outline or a Mesh, got {shown(shape)}")
+    t, at = _sampled(motions)
+    touching, keep = motions.touching(t), motions.clearance
+    reach, slack = motions.tip_radius, _NEAR * keep
+    violations = [*_jumps(motions, t, at), *_contacts(motions, t, at, touching)]
+    still = np.linalg.norm(np.diff(at, axis=0), axis=2) == 0
+    moving = np.ones(at.shape[:2], dtype=bool)
+    moving[1:-1] = ~(still[1:] & still[:-1])
+    fingers = [points_of_axis(at[:, i], v, keep / 2) for i, v in enumerate(motions.capsules)]
+    to_object = to_fingers = np.inf
+    for i, axis in enumerate(fingers):
+        rows = np.flatnonzero(moving[:, i])
+        away = _away(shape, axis[rows], slack) - reach
+        if away.min() < -_depth(shape, reach, slack):
+            when = t[rows[away.argmin()]]
+            violations.append(f"finger {i + 1} is in the object by {-away.min():.3g} at {when:.6g} s")
+        free = away[~_lifting(motions, at[rows, i])]
+        to_object = min(to_object, float(free.min(initial=np.inf)))
+    if to_object < keep - slack:
+        violations.append(
+            f"a finger off its contacts comes within {to_object:.6g} of the object, less than {keep:g}"
+        )
+    for i, j in combinations(range(len(fingers)), 2):
+        rows = np.flatnonzero(moving[:, i] | moving[:, j])
+        between = to_axis(fingers[i][rows], at[rows, j], motions.capsules[j])
+        to_fingers = min(to_fingers, float(between.min(initial=np.inf)) - 2 * reach)
+    if to_fingers < keep - slack:
+        violations.append(f"two fingers come within {to_fingers:.6g} of one another, less than {keep:g}")
+    return MotionsVerification(
+        tuple(violations), to_object, to_fingers, int(touching.sum(axis=1).min()), t.size
+    )
+
+
+def _sampled(motions: Moving) -> tuple[Array, Array]:
+    """Times between which no finger moves by more than a tenth of the clearance, and positions then."""
+    count = 1025
+    while count < _MOST:
+        t = np.linspace(0.0, motions.duration, count)
+        at = motions.positions(t)
+        if np.linalg.norm(np.diff(at, axis=0), axis=2).max() <= motions.clearance / _PART:
+            return t, at
+        count = 2 * count - 1
+    raise InvalidInput(f"ways move or jump by more than a tenth of the clearance between {_MOST} instants")
+
+
+def _jumps(motions: Moving, t: Array, at: Array) -> Iterator[str]:
+    """Where positions are not what velocities say."""
+    velocity = motions.velocities(t)
+    said = (velocity[1:] + velocity[:-1]) / 2 * np.diff(t)[:, None, None]
+    off = np.linalg.norm(np.diff(at, axis=0) - said, axis=2)
+    if off.max() > _JUMP * motions.clearance:
+        k, i = np.unravel_index(off.argmax(), off.shape)
+        yield f"finger {i + 1} moves otherwise than its velocity says at {t[k]:.6g} s"
+
+
+def _touch_points(motions: Moving) -> dict[str, Array]:
+    contacts = {str(c.name): c for step in motions.steps for c in step.grasp}
+    return {name: c.position - motions.tip_radius * c.normal for name, c in contacts.items()}
+
+
+def _contacts(motions: Moving, t: Array, at: Array, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Fingers that touch off contacts, contacts of a step without a finger, too few fingers that touch."""
+    points, near = _touch_points(motions), _SAME * motions.clearance
+    on = {name: touching & (np.linalg.norm(at - p, axis=2) <= near) for name, p in points.items()}
+    stray = touching & ~np.logical_or.reduce(list(on.values()))
+    if stray.any():
+        k, i = np.argwhere(stray)[0]
+        yield f"finger {i + 1} is said to touch off every contact at {t[k]:.6g} s"
+    for k, step in enumerate(motions.steps):
+        during = (t >= motions.starts[k]) & (t <= motions.starts[k] + step.duration)
+        for name in step.grasp.names:
+            if not on[str(name)][during].any(axis=1).all():
+                yield f"during step {k + 1} no finger is at {name}"
+    least = at.shape[2]
+    few = touching.sum(axis=1) < min(least, min(len(step.grasp) for step in motions.steps))
+    if few.any():
+        yield f"fewer than {least} fingers touch at {t[few.argmax()]:.6g} s"
+
+
+def _away(shape: Any, axis: Array, slack: float) -> Array:
+    """(m,) the least distance of axes (m, s, d) from the object [m]."""
+    points = axis.reshape(-1, axis.shape[-1])
+    if hasattr(shape, "surface"):
+        vertices, faces = shape.surface()
+        away = to_faces(points, vertices[faces])
+    else:
+        away = to_boundary(points, shape.polygon(slack))
+    return np.asarray(away.reshape(axis.shape[:2]).min(axis=1))
+
+
+def _depth(shape: Any, radius: float, slack: float) -> float:
+    """How far a tip may be in the object at a contact: faces of a smooth mesh lean against its normals."""
+    lean = 1 - np.cos(shape.crease / 2) if hasattr(shape, "surface") and shape.smooth else 0.0
+    return float(radius * lean + 2 * slack)
+
+
+def _lifting(motions: Moving, tips: Array) -> NDArray[np.bool_]:
+    """(m,) whether tips (m, d) are on the normal of a contact, no farther off than a lift is high."""
+    high = 4 * (motions.tip_radius + 2 * motions.clearance)
+    result = np.zeros(len(tips), dtype=bool)
+    for contact in {str(c.name): c for step in motions.steps for c in step.grasp}.values():
+        off = tips - (contact.position - motions.tip_radius * contact.normal)
+        h = -off @ contact.normal
+        aside = np.linalg.norm(off + h[:, None] * contact.normal, axis=1)
+        result |= (aside <= _SAME * motions.clearance) & (h >= -_SAME * motions.clearance) & (h <= high)
+    return result

@@ -1,0 +1,35 @@
+"""``regrasp plan --motions --mcap`` on a real file."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.end_to_end
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "regrasp.toml"
+
+
+def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "regrasp", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+
+
+def test_ways_are_planned_verified_and_written(tmp_path: Path) -> None:
+    pytest.importorskip("rosbags")
+    done = run("plan", EXAMPLE, "-o", "out", "--motions", "--mcap", "--no-figures", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "ways verified at " in done.stdout
+    assert "2 or more touch at every instant" in done.stdout
+    written = sorted(p.name for p in (tmp_path / "out").iterdir())
+    assert written == ["motions.csv", "plan.json", "plan.mcap", "setpoints.csv"]
+
+
+def test_without_the_table_one_line_says_what_is_missing(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8").split("[motions]")[0]
+    (tmp_path / "bare.toml").write_text(text, encoding="utf-8")
+    done = run("plan", "bare.toml", "-o", "out", "--motions", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "ways of fingers need a table [motions]" in done.stderr
+    assert not (tmp_path / "out").exists()
