@@ -140,6 +140,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "WrenchBall": lambda: rg.wrench_ball(GRASP, limit=1.0),
     "Measure": lambda: rg.quality(GRASP).measures[0],
     "Quality": lambda: rg.quality(GRASP),
+    "MarginCurve": lambda: rg.margin_curve(PAIR, LOAD, count=3),
     "Tolerances": lambda: rg.tolerances(STATE.balanced()),
     "LeastFriction": lambda: rg.least_friction(PAIR, LOAD),
     "LargestLoad": lambda: rg.largest_load(PAIR, LOAD, max_force=20.0),

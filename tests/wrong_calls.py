@@ -282,6 +282,14 @@ def rows() -> dict[str, Row]:
             {"state_or_plan": STATE},
             {"state_or_plan": "value", "load_at": "planar vector", "surface": "curvatures"},
         ),
+        "margin_curve": Row(
+            rg.margin_curve,
+            choosing | {"count": 3},
+            {"x": "word", "at": "rising limits", "surface": "number"},
+        ),
+        "MarginCurve.least": Row(
+            rg.margin_curve(PAIR, LOAD, count=3).least, {"value": 0.1}, {"value": "number"}
+        ),
         "tolerances": Row(
             rg.tolerances,
             {"state_or_plan": STATE.balanced()},
@@ -501,6 +509,7 @@ KINDS |= {
         np.array(["x", "y"]), [OBJECT, 1],
     ),
     "stiffnesses": (*NOT_NUMBERS, [], 0, -1.0, [0, 0], [-1, 1], np.ones((1, 1, 1, 1))),
+    "rising limits": (*NOT_NUMBERS, 5, [], [2, 1], [1, 1], [-1, 1], np.zeros((2, 2))),
     "curvatures": (*NOT_NUMBERS, [], [1, 2], np.zeros((2, 2))),
     "controlled": ("x", b"x", OBJECT, 3, nan, HUGE, True, [-1], [1.5], ["x"], [OBJECT]),
     "gap": [v for v in NOT_POSITIVE if not (isinstance(v, float) and v == inf)],

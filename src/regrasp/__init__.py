@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
     from regrasp.planning.robustness.least_stiffness import least_stiffness
+    from regrasp.planning.robustness.margin_curve import MarginCurve, margin_curve
     from regrasp.planning.robustness.tolerances import Tolerances, tolerances
     from regrasp.planning.states.batch import best_squeezes, locus_intervals
     from regrasp.planning.states.objectives import ForceCost
@@ -75,6 +76,8 @@ _LATER = {
     "largest_load": "regrasp.planning.surveys.extremes.largest_load",
     "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
     "least_friction": "regrasp.planning.surveys.extremes.least_friction",
+    "MarginCurve": "regrasp.planning.robustness.margin_curve",
+    "margin_curve": "regrasp.planning.robustness.margin_curve",
     "least_stiffness": "regrasp.planning.robustness.least_stiffness",
     "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
     "LoadSeries": "regrasp.plans.loads",
@@ -136,6 +139,7 @@ __all__ = [
     "LeastFriction",
     "LoadSeries",
     "LoadSet",
+    "MarginCurve",
     "Margins",
     "Measure",
     "Mesh",
@@ -174,6 +178,7 @@ __all__ = [
     "least_friction",
     "least_stiffness",
     "locus_intervals",
+    "margin_curve",
     "plan_addition",
     "plan_exchange",
     "plan_regrasp",

@@ -37,6 +37,7 @@ from regrasp.plots.regrasps.steps import plot_regrasp
 from regrasp.plots.regrasps.trade_off import plot_trade_off
 from regrasp.plots.surveys.held_directions import plot_directions
 from regrasp.plots.surveys.held_sphere import load_sphere_figure, plot_load_map, plot_load_sphere
+from regrasp.plots.surveys.margin_curve import plot_margin_curve
 from regrasp.plots.surveys.sensitivity import plot_sensitivity
 from regrasp.plots.surveys.tolerances import plot_tolerances
 from regrasp.plots.wrench_space.iso_torque import plot_iso_torque
@@ -72,6 +73,7 @@ __all__ = [
     "plot_locus",
     "plot_locus_segment",
     "plot_magnitudes",
+    "plot_margin_curve",
     "plot_margins",
     "plot_measured_forces",
     "plot_outline",
