@@ -54,12 +54,7 @@ class Contact(ArrayValue):
         torsion: float | None = None,
         name: str | None = None,
     ) -> None:
-        if name is not None and (not isinstance(name, str) or not name.strip()):
-            raise InvalidInput(f"a contact's name must be a non-empty string, got {shown(name)}")
-        if name is not None and not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name):
-            raise InvalidInput(
-                f"a contact's name must be Unicode text, got {shown(name)} with half a character"
-            )
+        _check_name(name)
         label = "contact" if name is None else f"contact {shown(name)}"
         where = point(position, f"{label}: position")
         direction = point(normal, f"{label}: normal")
@@ -68,15 +63,16 @@ class Contact(ArrayValue):
                 f"{label}: position and normal must have the same dimension, "
                 f"got {where.size} and {direction.size}"
             )
-        largest = float(abs(direction).max())
+        each = direction.tolist()
+        largest = max(map(abs, each))
         if largest == 0:
             raise InvalidInput(
                 f"{label}: normal must not be zero; give the direction that points into the object"
             )
-        if abs(hypot(*direction) - 1) > _UNIT:
+        if abs(hypot(*each) - 1) > _UNIT:
             direction = direction / largest  # first, so that squares neither overflow nor vanish
-            direction = direction / hypot(*direction)
-        direction.setflags(write=False)
+            direction = direction / hypot(*direction.tolist())
+            direction.setflags(write=False)
         object.__setattr__(self, "position", where)
         object.__setattr__(self, "normal", direction)
         object.__setattr__(self, "friction", number(friction, f"{label}: friction", least=0))
@@ -121,7 +117,10 @@ class Contact(ArrayValue):
         Args:
             name: of any letters, not empty.
         """
-        return self.changed(name=name)
+        _check_name(name)
+        same = object.__new__(Contact)
+        vars(same).update(vars(self), name=name)
+        return same
 
     def changed(self, **fields: Any) -> "Contact":
         """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``.
@@ -163,3 +162,13 @@ class Contact(ArrayValue):
             f"Contact({numbers(self.position)}, normal={numbers(self.normal)}, "
             f"friction={self.friction:g}{limit}{soft}{name})"
         )
+
+
+def _check_name(name: object) -> None:
+    """Raise ``InvalidInput`` unless a name is a word or none."""
+    if name is None:
+        return
+    if not isinstance(name, str) or not name.strip():
+        raise InvalidInput(f"a contact's name must be a non-empty string, got {shown(name)}")
+    if not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name):
+        raise InvalidInput(f"a contact's name must be Unicode text, got {shown(name)} with half a character")

@@ -1,11 +1,16 @@
 """Equality, hash, copies and pickles of frozen dataclasses that hold arrays, and how values print."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import fields
 from types import MappingProxyType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import numpy as np
+
+K = TypeVar("K", bound=Hashable)
+T = TypeVar("T")
+V = TypeVar("V", bound="Frozen")
+_MOST_KEPT = 64
 
 # What is undefined in two equal values is undefined in both.
 _NAN = "not a number"
@@ -87,3 +92,17 @@ def numbers(values: Any) -> str:
 def one_line(text: str) -> str:
     """``text`` with line breaks and all that cannot be printed escaped, so that no name forges a line."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def kept(value: V, key: K, made: Callable[[V, K], T]) -> T:
+    """What ``made`` makes of a value and a key, kept with the value and lost with it.
+
+    Unlike a cache over all values, this one compares none of them.
+    """
+    memory: dict[Any, Any] | None = value.__dict__.get("_kept")
+    if memory is None or len(memory) > _MOST_KEPT:
+        memory = value.__dict__["_kept"] = {}
+    found: T = memory.get((made, key), _NAN)
+    if found is _NAN:
+        found = memory[made, key] = made(value, key)
+    return found

@@ -10,7 +10,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import StateOptions, criteria_of, takes
-from regrasp.planning.states.two_fingers import best_forces, is_one_point
+from regrasp.planning.states.two_fingers import best_forces, is_closed, is_one_point
 
 MOST_FACETS = 10_000
 """Sides of a polygon that stands for a circle: one of so many is a circle to eight digits."""
@@ -66,31 +66,9 @@ def choose_forces(
     check_facets(facets)
     if not isinstance(method, str):
         raise InvalidInput(f"method must be text, such as 'auto', got {shown(method)}")
-    planar_pair = len(grasp) == 2 and grasp.dimension == 2
-    closed = planar_pair and criteria.objective.closed_form is not None
-    if criteria.withstands and method == "closed-form":
-        raise InvalidInput("the closed form knows no disturbance; use method='auto'")
-    if criteria.withstands:
-        closed = False
-    if criteria.presses:
-        if method == "closed-form":
-            raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")
-        closed = False
-    if method == "closed-form" and planar_pair and not closed:
-        raise InvalidInput(
-            f"objective {shown(criteria.objective.name)} has no closed form; use method='auto'"
-        )
-    if method == "closed-form" and not planar_pair:
-        raise InvalidInput(
-            f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
-            f"{grasp.dimension}; use method='auto'"
-        )
-    if planar_pair and is_one_point(grasp):
-        if method == "closed-form":
-            raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
-        closed = False
-    if method == "closed-form" and facets is not None:
-        raise InvalidInput("the closed form takes force limits as they are; leave facets out")
+    closed = is_closed(grasp, criteria)
+    if method == "closed-form":
+        _refuse_closed_form(grasp, criteria, facets)
     if method == "closed-form" or (method == "auto" and closed and facets is None):
         try:
             return best_forces(grasp, load, criteria)
@@ -112,3 +90,24 @@ def choose_forces(
     from regrasp.planning.states.many_contacts import solved_forces
 
     return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)
+
+
+def _refuse_closed_form(grasp: Grasp, criteria: Criteria, facets: int | None) -> None:
+    """Raise ``InvalidInput`` where the closed form was asked for and does not answer."""
+    if criteria.withstands:
+        raise InvalidInput("the closed form knows no disturbance; use method='auto'")
+    if criteria.presses:
+        raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")
+    if len(grasp) != 2 or grasp.dimension != 2:
+        raise InvalidInput(
+            f"the closed form chooses for two planar contacts, got {len(grasp)} of dimension "
+            f"{grasp.dimension}; use method='auto'"
+        )
+    if criteria.objective.closed_form is None:
+        raise InvalidInput(
+            f"objective {shown(criteria.objective.name)} has no closed form; use method='auto'"
+        )
+    if is_one_point(grasp):
+        raise InvalidInput("the closed form needs contacts at two points; use method='auto'")
+    if facets is not None:
+        raise InvalidInput("the closed form takes force limits as they are; leave facets out")

@@ -1,7 +1,7 @@
 """What a state is chosen for, and under which limits."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, instance, items, number, whole
+from regrasp.mechanics.checks import Array, ArrayLike, instance, items, number, read_only, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
@@ -104,6 +104,13 @@ class Criteria:
         object.__setattr__(self, "peak_ratio", peak_ratio)
         object.__setattr__(self, "reserve", reserve)
         object.__setattr__(self, "min_normal", _least_normal(min_normal))
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(tuple(vars(self)[f.name] for f in fields(self)))
+
+    def __hash__(self) -> int:
+        return self._hash
 
     @property
     def unbounded(self) -> bool:
@@ -284,11 +291,12 @@ class ChosenState(GraspState):
         criteria: Criteria,
         chosen: ChosenForces,
     ) -> None:
-        super().__init__(grasp, load, chosen.forces)
-        object.__setattr__(self, "criteria", criteria)
-        object.__setattr__(self, "force_limits", chosen.force_limits)
-        object.__setattr__(self, "method", chosen.method)
-        object.__setattr__(self, "gap", chosen.gap)
+        forces, force_limits, method, gap = chosen  # of forces chosen for this grasp nothing is to be checked
+        given = read_only(np.array(forces, dtype=float))
+        vars(self).update(
+            grasp=grasp, load=load, forces=given, criteria=criteria, force_limits=force_limits, method=method,
+            gap=gap,
+        )  # fmt: skip
 
     @cached_property
     def value(self) -> float:

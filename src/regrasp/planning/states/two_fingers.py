@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite, isnan
-from typing import Unpack, cast
+from typing import NamedTuple, Unpack, cast
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState, check_load
-from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.value import ArrayValue, kept
 from regrasp.mechanics.wrench import Wrench, torque
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.escape import infeasible
@@ -203,27 +203,47 @@ def is_one_point(grasp: Grasp) -> bool:
 
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
-    criteria.demand_limit(grasp, load)
-    criteria.refuse_pressing("the closed form")
-    code = criteria.objective.closed_form
-    if code is None:
+    question = _question(grasp, criteria)
+    if question is None:
+        criteria.refuse_pressing("the closed form")
         raise InvalidInput(f"objective {shown(criteria.objective.name)} has no closed form; use choose_state")
-    mu1, mu2 = criteria.frictions(grasp)
-    bound1, bound2 = criteria.limits(grasp)
-    x, (f1x, f1y, f2x, f2y), limits = best_squeeze(
-        *_plain(grasp.contacts[0])[:4],
-        mu1,
-        *_plain(grasp.contacts[1])[:4],
-        mu2,
-        *_load(load),
-        code,
-        bound1,
-        bound2,
-        criteria.peak_ratio,
-    )
+    if question.needs_load and not any(load.plain):
+        criteria.demand_limit(grasp, load)
+    x, (f1x, f1y, f2x, f2y), limits = best_squeeze(*question.pair, *_load(load), *question.sought)  # type: ignore[arg-type]
     if isnan(x):
         raise infeasible(grasp, load, criteria)
     return ChosenForces([[f1x, f1y], [f2x, f2y]], limits, "closed-form")
+
+
+class _Question(NamedTuple):
+    """What ``best_squeeze`` is asked, but for the load; whether forces follow from that alone."""
+
+    pair: tuple[float, float, float, float, float, float, float, float, float, float]
+    sought: tuple[int, float, float, float]
+    needs_load: bool
+
+
+def is_closed(grasp: Grasp, criteria: Criteria) -> bool:
+    """Whether the closed form answers: two planar contacts at two points, and nothing it does not know."""
+    return _question(grasp, criteria) is not None
+
+
+def _question(grasp: Grasp, criteria: Criteria) -> _Question | None:
+    """Kept with the grasp, since loads change more often; None where the closed form has no answer."""
+    return kept(grasp, criteria, _asked)
+
+
+def _asked(grasp: Grasp, criteria: Criteria) -> _Question | None:
+    code = criteria.objective.closed_form
+    if len(grasp) != 2 or grasp.dimension != 2 or code is None or criteria.presses or criteria.withstands:
+        return None
+    if is_one_point(grasp):
+        return None
+    first, second = (_plain(contact)[:4] for contact in grasp.contacts)
+    mu1, mu2 = criteria.frictions(grasp)
+    bound1, bound2 = criteria.limits(grasp)
+    sought = code, bound1, bound2, criteria.peak_ratio
+    return _Question((*first, mu1, *second, mu2), sought, criteria.unbounded and inf in (bound1, bound2))
 
 
 def _plain(contact: Contact) -> tuple[float, float, float, float, float]:
