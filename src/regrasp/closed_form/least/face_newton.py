@@ -36,6 +36,10 @@ _STEPS, _ROUNDS = 8, 8
 _FAR, _LAST = 1e-2, 1e-10
 # Cones and limits are touched from so far inside that rounding stays within; forces may cost so much more.
 _INSIDE, _DONE = 1 - 2e-12, 1e-10
+# Equilibrium counts as reached at this residual, relative to the largest force or load.
+_BALANCED = 5e-14
+# Less than this fraction of the largest force is nothing.
+_NOTHING = 1e-14
 
 
 def _refine(x, sizes, matrix, load, normals, frictions, limits, squares, linear, kind):  # type: ignore[no-untyped-def]
@@ -229,7 +233,7 @@ def _factor_and_solve(K, unknowns, v):  # type: ignore[no-untyped-def]
 def refined(  # type: ignore[no-untyped-def]
     forces, unit, matrix, load, normals, frictions, negligible, limits, squares, linear, kind
 ):
-    """The best forces (n, w) near ``forces``, or what comes near them, and whether they cost no more.
+    """The best forces (n, w) near ``forces``, or near them, whether they cost no more, and whether they fit.
 
     unit: the size of forces; squares and linear are factors of them. matrix, load: (r, n w), (r,)
     of comparable rows. normals: (n, w). frictions, limits, squares: (n,); frictions up to
@@ -254,4 +258,29 @@ def refined(  # type: ignore[no-untyped-def]
     measure(x, normals, sizes)
     x[-1] = shared(sizes, mu, kind)
     after = _cost(x, a, c, kind)
-    return unit * x[:-1].copy().reshape(n, w), after <= before + _DONE * abs(before)
+    best = unit * x[:-1].copy().reshape(n, w)
+    for i in range(n):
+        if sizes[i, 2] < _NOTHING:
+            best[i] = 0.0
+    fits = _fits(best, matrix, load, normals, frictions, limits)
+    return best, after <= before + _DONE * abs(before), fits
+
+
+def _fits(forces, matrix, load, normals, frictions, limits):  # type: ignore[no-untyped-def]
+    """Whether forces are in equilibrium to rounding, inside their cones and limits."""
+    n, w = forces.shape
+    largest = max(np.abs(forces).max(), np.abs(load).max())
+    for s in range(load.size):
+        off = load[s]
+        for i in range(n):
+            for k in range(w):
+                off += matrix[s, w * i + k] * forces[i, k]
+        if not abs(off) <= _BALANCED * largest:
+            return False
+    sizes = np.zeros((n, 3))
+    measure(forces.ravel(), normals, sizes)
+    for i in range(n):
+        along, across, size = sizes[i]
+        if not (along >= 0 and across <= frictions[i] * along and size <= limits[i]):
+            return False
+    return True

@@ -39,11 +39,15 @@ def polished(
         return forces
     grasp = chooser.grasp
     squares, linear = objective.squares(grasp), objective.linear(grasp, unit)
-    best, is_no_worse = _refined()(
-        forces, unit, chooser.matrix, chooser.vector, grasp.cones.normals,
-        np.array(frictions), NEGLIGIBLE, np.array(limits),
-        np.zeros(len(grasp)) if squares is None else squares,
-        np.zeros(forces.shape) if linear is None else linear, _KINDS[objective.bound],
-    )  # fmt: skip
+    with np.errstate(all="ignore"):  # guesses that lead nowhere end in numbers that are none
+        best, is_no_worse, fits = _refined()(
+            forces, unit, chooser.matrix, chooser.vector, grasp.cones.normals,
+            np.array(frictions), NEGLIGIBLE, np.array(limits),
+            np.zeros(len(grasp)) if squares is None else squares,
+            np.zeros(forces.shape) if linear is None else linear, _KINDS[objective.bound],
+        )  # fmt: skip
+    if is_no_worse and fits:
+        found: Array = best
+        return found
     settled = chooser.settled(best, frictions, limits) if is_no_worse else None
     return forces if settled is None else settled
