@@ -6,10 +6,12 @@ from pathlib import Path
 import regrasp as rg
 from regrasp.execution import simulate
 from regrasp.files import parse_scenario, plan_scenario
+from regrasp.motions import plan_motions
 from regrasp.outline import parts
 from regrasp.plots import (
     execution_figure,
     plot_escape,
+    plot_motions,
     plot_outline,
     plot_sensitivity,
     plot_tolerances,
@@ -38,6 +40,14 @@ if __name__ == "__main__":
     moved = rg.GraspState(metres, removal.start.load, removal.start.forces)
     figure = execution_figure(simulate(rg.plan_removal(moved, "P3")))
     figure.savefig(IMAGES / "execution.png", dpi=120, metadata={"Software": None})
+    ellipse = rg.Outline.ellipse(0.04, 0.02)
+    first, last = (
+        rg.Grasp(ellipse.contact_at(s * ellipse.length, friction=0.5) for s in places)
+        for places in ((0.02, 0.35, 0.7), (0.2, 0.5, 0.85))
+    )
+    plan = rg.plan_regrasp(ellipse, first, last, rg.Wrench([0, -3.0]), friction=0.5)
+    figure = plot_motions(plan_motions(plan, ellipse, tip_radius=0.003, clearance=0.002), ellipse).figure
+    figure.savefig(IMAGES / "motions.png", dpi=120, metadata={"Software": None})
     part = parts.bracket()
     figure = plot_outline(part, arc_lengths=part.sample(40)).figure
     figure.savefig(IMAGES / "outline.png", dpi=160, metadata={"Software": None})

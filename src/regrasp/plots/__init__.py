@@ -35,6 +35,7 @@ from regrasp.plots.pages.run_film import animate_execution
 from regrasp.plots.regrasps.hold_map import plot_hold_map
 from regrasp.plots.regrasps.steps import plot_regrasp
 from regrasp.plots.regrasps.trade_off import plot_trade_off
+from regrasp.plots.regrasps.ways import plot_motions
 from regrasp.plots.surveys.held_directions import plot_directions
 from regrasp.plots.surveys.held_sphere import load_sphere_figure, plot_load_map, plot_load_sphere
 from regrasp.plots.surveys.margin_curve import plot_margin_curve
@@ -76,6 +77,7 @@ __all__ = [
     "plot_margin_curve",
     "plot_margins",
     "plot_measured_forces",
+    "plot_motions",
     "plot_outline",
     "plot_regrasp",
     "plot_scaling",

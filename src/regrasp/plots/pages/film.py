@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number
+from regrasp.motions.value import Motions
 from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import FingerMove, RegraspPlan
 from regrasp.plans.transition import Transition
@@ -23,6 +24,7 @@ from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import shared_view
 from regrasp.plots.regrasps.moments import Moment, Stage, as_regrasp, joined, moment_of
 from regrasp.plots.regrasps.space_moments import SpaceStage, measures
+from regrasp.plots.regrasps.ways import motion_moments
 
 # A finger in the air keeps this far from where it touched, as a fraction of the object's size.
 _LIFT = 0.08
@@ -30,7 +32,7 @@ _DPI = 100
 
 
 def animate(
-    plan: RegraspPlan | Transition,
+    plan: RegraspPlan | Transition | Motions,
     outline: Outline | Any = None,
     *,
     path: str | PathLike[str],
@@ -42,10 +44,10 @@ def animate(
 
     Forces are those of the fingers on the object, with their tails at the contacts. A dashed ring is a finger
     in the air; its way between two contact points is only suggested and takes ``move_time`` [s], which no
-    plan says. Time runs as in the plan.
+    plan says. Time runs as in the plan. Of ``Motions`` the ways and the clock are theirs.
 
     Args:
-        plan: a ``RegraspPlan`` or a ``Transition``.
+        plan: a ``RegraspPlan``, a ``Transition``, or the ``Motions`` of one.
         outline: in space the solid, as for ``plot_regrasp``. Without it the hull of all contacts stands for
             the object.
         path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
@@ -63,9 +65,13 @@ def animate(
     if ending == ".mp4" and not FFMpegWriter.isAvailable():
         raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif or .html instead")
     rate = number(frames_per_second, "frames_per_second", above=0)
-    whole = as_regrasp(plan)
+    whole = as_regrasp(plan.plan if isinstance(plan, Motions) else plan)
     scene = (_SpaceScene if whole.steps[0].grasp.dimension == 3 else _Scene)(whole, outline, units)
-    frames = moments(whole, rate, number(move_time, "move_time", least=0), scene.stage.radius, units)
+    pause = number(move_time, "move_time", least=0)
+    if isinstance(plan, Motions):
+        frames = _in_motion(plan, rate, units)
+    else:
+        frames = moments(whole, rate, pause, scene.stage.radius, units)
     film = _film(scene, frames, rate)
     if ending == ".html":
         target.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
@@ -108,6 +114,19 @@ def moments(
             if name is not None and name in step.idle_at_end:
                 idle[number_] = step.grasp[name].position - lift * normals[name]
     return frames
+
+
+def _in_motion(motions: Motions, rate: float, units: Units) -> list[tuple[str, Moment]]:
+    """What every frame shows of motions, on their clock."""
+    t = np.linspace(0, motions.duration, max(2, ceil(motions.duration * rate) + 1))
+    shown, k = motion_moments(motions, t), motions.step_times(t)[0]
+    moving = (np.linalg.norm(motions.velocities(t), axis=2) > 0).any(axis=1)
+    clock = np.diff(motions.plan_time(t), append=np.inf) > 0
+    titles = [
+        f"{time:.2f} {units.time}: " + (motions.steps[step].in_words if runs else "fingers move")
+        for time, step, runs in zip(t.tolist(), k.tolist(), clock | ~moving, strict=True)
+    ]
+    return [(title.replace("$", r"\$"), moment) for title, moment in zip(titles, shown, strict=True)]
 
 
 def _rounded(t: float, plan: RegraspPlan) -> float:
