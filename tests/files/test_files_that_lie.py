@@ -32,7 +32,7 @@ def fingers(*places: float) -> rg.Grasp:
 
 WHOLE = rg.plan_regrasp(
     ELLIPSE, fingers(0.02, 0.35, 0.7), fingers(0.2, 0.5, 0.85), rg.Wrench([0, -3.0]), friction=0.5,
-    orientations=24, candidates=60,
+    orientations=1, candidates=60,
 )  # fmt: skip
 
 

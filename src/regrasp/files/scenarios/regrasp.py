@@ -152,11 +152,12 @@ class Weights(Strict):
 class RegraspTask(CommonTask):
     """How to get from the start to the goal."""
 
-    orientations: int = Field(
-        72, ge=1, le=MOST_ORIENTATIONS, description="angles of the object that are tried; 1 forbids turning"
+    orientations: Annotated[int, Field(ge=1, le=MOST_ORIENTATIONS)] | None = Field(
+        None, description="angles of the object that are tried; all if absent; 1 forbids turning"
     )
     goal_degrees: float = Field(
-        0.0, description="the object's angle in the end, counter-clockwise; one of the orientations"
+        0.0,
+        description="the object's angle in the end, counter-clockwise; one of the orientations if given",
     )
     candidates: int = Field(
         120, ge=1, le=MOST_CANDIDATES, description="points on the outline where fingers may touch"
@@ -174,6 +175,8 @@ class RegraspTask(CommonTask):
 
     @model_validator(mode="after")
     def _goal_is_tried(self) -> "RegraspTask":
+        if self.orientations is None:
+            return self
         step = 360 / self.orientations
         if abs((self.goal_degrees + step / 2) % step - step / 2) > _SAME_DEGREES:
             raise ValueError(

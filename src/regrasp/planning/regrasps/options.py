@@ -27,7 +27,7 @@ class RegraspOptions(LimitOptions, total=False):
     """
 
     friction: Required[float]
-    orientations: int
+    orientations: int | None
     goal_orientation: float
     candidates: int
     objective: str | Objective | Criteria

@@ -22,6 +22,7 @@ from regrasp.planning.holds.pairs import Filter, HoldGraph, evenly
 from regrasp.planning.holds.planar_stances import Fingering
 from regrasp.planning.holds.sequences import MAX_TURN, Sequence, as_sequence, sequences
 from regrasp.planning.holds.stances import REACH, Places
+from regrasp.planning.holds.turning.search import TurningSequence
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.arcs import Arcs, arc_lengths, on_arcs
 from regrasp.planning.regrasps.ends import Ends
@@ -34,12 +35,15 @@ from regrasp.planning.regrasps.options import (
 )
 from regrasp.planning.regrasps.remedies import allowed
 from regrasp.planning.regrasps.steps import chosen_states, regrasp_of, spread_states
+from regrasp.planning.regrasps.turning import turning_sequences
 from regrasp.planning.regrasps.why_not import unheld_end, why_not
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.timing import TimeScaling
 
+SAMPLED = 72
+"""Orientations that are tried where all of them are not looked at in closed form."""
 # A goal nearer than this to one of the orientations is that one [rad].
 _SAME_ANGLE = 1e-9
 
@@ -55,7 +59,9 @@ class RegraspProblem(ArrayValue):
         goal: three contacts at the end, relative to the centre of mass [m].
         load: a force through the centre of mass, seen from the object before it turns [N].
         friction: Coulomb coefficient of the candidates [-].
-        orientations: angles of the object that are tried, over a full turn; 1 forbids turning.
+        orientations: None for all, in closed form; or how many angles of the object are tried, spread over a
+            full turn, 1 to forbid turning. With ``keep`` or ``weights``, and in hold maps, bottlenecks and
+            remedies, 72 are tried where none are given.
         goal_orientation: the object's angle in the end [rad]; tried besides if it is none of these.
         candidates: how many points are spread over the outline.
         objective: what the state of every hold is chosen for, each by itself.
@@ -87,7 +93,7 @@ class RegraspProblem(ArrayValue):
     goal: Grasp
     load: Wrench
     friction: float
-    orientations: int = 72
+    orientations: int | None = None
     goal_orientation: float = 0.0
     candidates: int = 120
     objective: str | Objective | Criteria = "angle"
@@ -136,7 +142,7 @@ class RegraspProblem(ArrayValue):
     @cached_property
     def angles(self) -> Array:
         """(O,) angles of the object that are tried [rad], the goal's among them."""
-        spread = evenly(self.orientations)
+        spread = evenly(SAMPLED if self.orientations is None else self.orientations)
         off = abs((spread - self.goal_orientation + pi) % (2 * pi) - pi)
         if off.min() <= _SAME_ANGLE:
             return spread
@@ -212,6 +218,19 @@ class RegraspProblem(ArrayValue):
         found = cheapest(fingers, costs, start, goal, last)
         return [] if found is None else [as_sequence(fingers, found)]
 
+    @property
+    def is_exact(self) -> bool:
+        """Whether all orientations are looked at, and not some of them."""
+        return self.orientations is None and self.keep is None and self.weights is None
+
+    def turning_sequences(self, extra: int = 0) -> list[TurningSequence]:
+        """The best sequence over all orientations, and those of more moves with wider margins.
+
+        Args:
+            extra: finger moves beyond the fewest.
+        """
+        return turning_sequences(self, extra, self.least_margin)
+
     def plans(self, extra: int = 0) -> list[RegraspPlan]:
         """The plan of each sequence.
 
@@ -227,6 +246,27 @@ class RegraspProblem(ArrayValue):
         whole(extra, "extra", least=0, most=MOST_EXTRA)
         if extra and self.weights is not None:
             raise InvalidInput("extra trades moves against margin; leave it out, or weights")
+        if self.is_exact:
+            exact = self.turning_sequences(extra)
+            if not exact or not any(c.max_force for c in self.contacts):
+                return self._turning_plans(exact)
+            sampled = self.sequences(extra)
+            if not sampled or _order(exact[0].sequence) <= _order(sampled[0]):
+                try:
+                    return self._turning_plans(exact)
+                except Infeasible:
+                    pass  # forces grow while the object turns: shorter turns may leave them the room
+        return self._sampled_plans(extra)
+
+    def _turning_plans(self, found: list[TurningSequence]) -> list[RegraspPlan]:
+        if not found:
+            raise why_not(self)
+        try:
+            return [self._plan(each.sequence, self.max_turn, np.array(each.angles)) for each in found]
+        except Infeasible:
+            raise unheld_end(self) or why_not(self) from None
+
+    def _sampled_plans(self, extra: int) -> list[RegraspPlan]:
         turn, found = self.max_turn, self.sequences(extra)
         if not found:
             raise why_not(self)
@@ -265,7 +305,7 @@ class RegraspProblem(ArrayValue):
             raise InvalidInput("a bottleneck is that of fingers that may touch everywhere; leave arcs out")
         return bottleneck(self.graph, *self.places)
 
-    def _plan(self, sequence: Sequence, max_turn: float) -> RegraspPlan:
+    def _plan(self, sequence: Sequence, max_turn: float, angles: Array | None = None) -> RegraspPlan:
         start, goal, _ = self.places
         states = chosen_states(
             sequence,
@@ -273,7 +313,7 @@ class RegraspProblem(ArrayValue):
             start,
             goal,
             self.load,
-            self.graph.angles,
+            self.graph.angles if angles is None else angles,
             self.goal_orientation,
             self.criteria,
             self.one_finger,
@@ -283,3 +323,7 @@ class RegraspProblem(ArrayValue):
         if self.states == "joint":
             states = spread_states(states, self.criteria, self.least_margin)
         return regrasp_of(states, self.contacts, TimeScaling.spline(self.step_duration), self.reserve)
+
+
+def _order(sequence: Sequence) -> tuple[float, ...]:
+    return sequence.moves, -sequence.margin

@@ -7,81 +7,23 @@ time on a graph built anew.
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from math import ceil, floor, log10
-from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import with_limit
 from regrasp.planning.holds.bottleneck import bottleneck, connected
-from regrasp.planning.holds.pairs import Filter, HoldGraph
+from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.sequences import sequences
-from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.regrasps.asked import Asked
+from regrasp.planning.regrasps.turning import turning_sequences
 
 MOST_FRICTION = 16.0
 """Friction coefficients are tried up to this one, a cone of 86 degrees."""
 _MOST_LOADS = 1e4  # and force limits up to so many loads
 _DIGITS = 3
-
-
-class Asked(Protocol):
-    """What is read of a ``RegraspProblem``."""
-
-    @property
-    def graph(self) -> HoldGraph:
-        """The holds."""
-
-    @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """The contacts of both ends, then the candidates."""
-
-    @property
-    def places(self) -> tuple[tuple[int, ...], tuple[int, ...], int]:
-        """The start's and the goal's contacts, and the place of the last orientation."""
-
-    @property
-    def allowed(self) -> NDArray[np.bool_] | None:
-        """(3, V) which finger may touch which contact, or None."""
-
-    @property
-    def criteria(self) -> Criteria:
-        """Objective and limits."""
-
-    @property
-    def load(self) -> Wrench:
-        """Before the object turns."""
-
-    @property
-    def max_turn(self) -> float:
-        """Of one step [rad]."""
-
-    @property
-    def least_margin(self) -> float:
-        """That every hold must have [rad]."""
-
-    @property
-    def min_distance(self) -> float:
-        """Between two fingers [m]."""
-
-    @property
-    def keep(self) -> Filter | None:
-        """A filter of pairs."""
-
-    @property
-    def one_finger(self) -> bool:
-        """Whether one finger of a hold may carry the load alone."""
-
-    def graph_on(self, contacts: Iterable[Contact]) -> HoldGraph:
-        """The holds of other contacts."""
-
-    def allowing(self, force: float) -> "Asked":
-        """The same with at least this force [N] where it is limited."""
-
-    def plans(self, extra: int = 0) -> Any:
-        """Plans, or ``Infeasible``."""
 
 
 def possible_on(problem: Asked, graph: HoldGraph, arcs: bool = True) -> bool:
@@ -94,6 +36,8 @@ def possible_on(problem: Asked, graph: HoldGraph, arcs: bool = True) -> bool:
 
 def widest_margin(problem: Asked) -> float:
     """The widest least margin of any sequence [rad], where there is one."""
+    if problem.is_exact:
+        return turning_sequences(problem, 10**6, 0.0)[-1].sequence.margin
     start, goal, last = problem.places
     if problem.allowed is None:
         found = bottleneck(problem.graph, start, goal, last)

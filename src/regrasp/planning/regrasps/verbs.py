@@ -34,9 +34,11 @@ def plan_regrasp(
     contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan is a
     ``SpaceRegraspPlan``.
 
-    What is proven: every state, every path between two, and that no regrasp on the sampled points and
-    orientations has fewer moves or, with as few, a wider least margin; or costs less. Points and orientations
-    between the samples are not looked at.
+    What is proven: every state, every path between two, and that no regrasp on the sampled points has fewer
+    moves or, with as few, a wider least margin; or costs less. Points between the samples are not looked at.
+    All orientations are, where nothing but the load, friction, distances and ``arcs`` limits the holds;
+    ``peak_ratio`` and force limits leave several arcs of angles, of which one that is shorter than a 24th of
+    the whole may be missed. ``keep``, ``weights`` and regrasps in space look at sampled orientations.
 
     Args:
         outline: an ``Outline``, or a ``Mesh`` in space.

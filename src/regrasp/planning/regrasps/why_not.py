@@ -13,9 +13,9 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.remedies import (
     MOST_FRICTION,
-    Asked,
     allowed,
     force_needed,
     friction_needed,
@@ -64,10 +64,10 @@ def why_not(problem: Asked) -> Infeasible:
     graph, (start, goal, _) = problem.graph, problem.places
     parts = [_components(graph, places) for places in (start, goal)]
     if problem.least_margin > 0 and possible_on(problem, graph):
-        margin = widest_margin(problem)
+        margin, also = widest_margin(problem), "" if problem.is_exact else " and orientations"
         return Infeasible(
             f"no sequence of holds keeps angle margins of {problem.least_margin:.4g} rad; the widest worst "
-            f"margin on the sampled points and orientations is {margin:.4g} rad",
+            f"margin on the sampled points{also} is {margin:.4g} rad",
             RegraspObstacle(parts[0], parts[1], margin=margin),
         )
     obstacle = RegraspObstacle(

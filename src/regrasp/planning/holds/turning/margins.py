@@ -1,0 +1,85 @@
+"""Margins of pairs of contacts, each at an angle of the object of its own."""
+
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.batch import best_squeezes
+
+# As for holds at given orientations (``single_fingers``).
+_THROUGH, _IDLE = 1e-11, 2.0**-39
+
+Pairs = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""Places (m,) of the first and the second contacts."""
+
+
+class Candidates:
+    """Contacts as arrays, the load that two of them are to hold, and what limits their forces."""
+
+    def __init__(
+        self, contacts: tuple[Contact, ...], load: Wrench, peak_ratio: float, one_finger: bool
+    ) -> None:
+        self.points = np.array([c.position for c in contacts])
+        self.normals = np.array([c.normal for c in contacts])
+        self.mu = np.array([c.friction for c in contacts])
+        self.limits = np.array([inf if c.max_force is None else c.max_force for c in contacts])
+        self.load, self.peak_ratio, self.one_finger = load.force, peak_ratio, one_finger
+
+    @property
+    def direction(self) -> float:
+        """Of the load before the object turns [rad]."""
+        return float(np.arctan2(self.load[1], self.load[0]))
+
+    def of(self, places: NDArray[np.int64]) -> tuple[Array, Array, Array]:
+        """Positions, normals and frictions of contacts."""
+        return self.points[places], self.normals[places], self.mu[places]
+
+    def margins(self, pairs: Pairs, angles: Array) -> Array:
+        """(m,) widest least angle margins [rad] with the object at ``angles`` (m,) [rad]; -1 for no hold."""
+        c, s = np.cos(angles), np.sin(angles)
+        loads = np.stack([c * self.load[0] + s * self.load[1], c * self.load[1] - s * self.load[0]], axis=-1)
+        result, _ = self._best(pairs, loads, "angle")
+        if self.one_finger:
+            return result
+        through = np.zeros(angles.shape, dtype=np.bool_)
+        for places in pairs:
+            points = self.points[places]
+            across = abs(points[:, 0] * loads[:, 1] - points[:, 1] * loads[:, 0])
+            through |= across <= _THROUGH * np.hypot(*points.T) * np.hypot(*loads.T)
+        if through.any():  # one finger could carry the load alone: both are to push
+            some = (pairs[0][through], pairs[1][through])
+            shared = np.full(int(through.sum()), -1.0)
+            for objective in ("force", "angle"):
+                widest, work = self._best(some, loads[through], objective)
+                shared[work] = widest[work]
+            result[through] = shared
+        return result
+
+    def _best(self, pairs: Pairs, loads: Array, objective: str) -> tuple[Array, NDArray[np.bool_]]:
+        """(m,) margins of the states that are best for an objective, and whether both fingers push."""
+        (r1, n1, mu1), (r2, n2, mu2) = (self.of(places) for places in pairs)
+        limits = self.limits[pairs[0]], self.limits[pairs[1]]
+        x = best_squeezes(
+            r1, n1, mu1, r2, n2, mu2, loads, objective=objective, max_force=limits, peak_ratio=self.peak_ratio
+        )
+        line = r2 - r1
+        length = np.hypot(*line.T)
+        u = line / length[:, None]
+        v = np.stack([-u[:, 1], u[:, 0]], axis=-1)
+        b = (r1[:, 0] * loads[:, 1] - r1[:, 1] * loads[:, 0]) / length
+        a = -(v * loads).sum(axis=-1) - b
+        y = -x - (u * loads).sum(axis=-1)
+        forces = x[:, None] * u + a[:, None] * v, y[:, None] * u + b[:, None] * v
+        sizes = np.stack([np.hypot(*f.T) for f in forces])
+        work = sizes > _IDLE * sizes.max(axis=0)
+        margin = np.full(x.shape, inf)
+        for n, mu, f, working in zip((n1, n2), (mu1, mu2), forces, work, strict=True):
+            normal = (n * f).sum(axis=-1)
+            across = abs(n[:, 0] * f[:, 1] - n[:, 1] * f[:, 0])
+            angle = np.arctan(mu) - np.arctan2(across, normal)
+            margin = np.where(working, np.minimum(margin, angle), margin)
+        return np.where(np.isnan(x), -1.0, np.maximum(margin, 0.0)), work.all(axis=0) & ~np.isnan(x)
