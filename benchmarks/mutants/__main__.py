@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 
 os.environ.setdefault("HYPOTHESIS_STORAGE_DIRECTORY", "/tmp/regrasp-mutants-hypothesis")
@@ -74,6 +75,8 @@ def _run(area: str, fresh: bool) -> int:
 
     sources, tests, least = AREAS[area]
     modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
+    for path in modules:  # some are imported where they are needed
+        import_module(".".join(path.relative_to(ROOT / "src").with_suffix("").parts))
     wanted = sorted({str(path) for pattern in tests for path in TESTS.glob(pattern)})
     kept = KEPT / f"{area}.jsonl"
     if fresh:

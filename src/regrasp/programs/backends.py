@@ -11,6 +11,7 @@ from typing import Any
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
 from regrasp.programs.facts import BACKENDS, Backend
 from regrasp.programs.judging.verdict import judged
+from regrasp.programs.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status, failed
 
@@ -19,6 +20,8 @@ _log = logging.getLogger("regrasp.programs")
 
 # Statuses that say something of the program; the others say something of the back end.
 _CLAIMS = (Status.SOLVED, Status.INFEASIBLE, Status.UNBOUNDED)
+_WHOLE = 1e-7
+"""Largest measure of a solution that was found without some of the rows."""
 _AUTO = ("clarabel", "daqp", "osqp", "cvxpy")
 
 
@@ -153,6 +156,10 @@ def _entry(backend: str) -> Backend:
     return entry
 
 
+def _anyhow(program: Program) -> Solution:
+    return solve(program.without_objective(), throw=False)
+
+
 def _first_sound(
     program: Program, throw: bool, time_limit: float | None, isolated: bool, options: dict[str, Any]
 ) -> Solution:
@@ -168,6 +175,13 @@ def _first_sound(
         _log.warning("%s; trying the next back end", solution)
     if solution is None:
         raise SolverUnavailable(f"none of {', '.join(_AUTO)} is installed")
+    looser = without_loose_rows(program)
+    if looser is not None:
+        rest, kept = looser
+        found = _first_sound(rest, False, time_limit, isolated, options)
+        whole = judged(with_loose_rows(found, program, kept), _WHOLE, _anyhow)
+        if found.status in _CLAIMS and whole.status in _CLAIMS:
+            return whole
     if throw:
         raise SolverFailed(
             f"{program}: no back end gave a sound answer; the last: {solution}", program, solution
