@@ -5,7 +5,7 @@ import pytest
 from scipy import sparse
 
 from regrasp.programs import Block, Cone, Program, Status, solve
-from regrasp.programs.loose_rows import without_loose_rows
+from regrasp.programs.judging.loose_rows import without_loose_rows
 
 pytestmark = pytest.mark.oracle
 

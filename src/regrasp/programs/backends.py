@@ -10,8 +10,8 @@ from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
 from regrasp.programs.facts import BACKENDS, Backend
+from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.verdict import judged
-from regrasp.programs.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status, failed
 

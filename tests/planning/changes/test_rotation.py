@@ -203,3 +203,17 @@ def test_solvers_without_cones_plan_turns_with_facets(torque) -> None:
     assert {choice.method for choice in plan.record.choices} == {"daqp"}
     with pytest.raises(rg.InvalidInput, match="facets must be"):
         rg.plan_rotation(THREE, 1.0, **options, facets=2)
+
+
+@pytest.mark.parametrize("off", [(1e-6, 0.0), (0.0, 2e-6), (1e-6, 3e-6), (3e-6, 1e-6)])
+def test_given_ends_are_balanced_and_the_larger_change_is_recorded(off) -> None:
+    """A push against one finger alone is shared by both: half of it."""
+    plan = rg.plan_rotation(GRASP, 0.5, load=WEIGHT)
+    given = [
+        rg.GraspState(GRASP, state.load, state.forces + np.array([[size, 0], [0, 0]]))
+        for state, size in zip((plan.start, plan.end), off, strict=True)
+    ]
+    again = rg.plan_rotation(given[0], 0.5, end=given[1])
+    assert again.record.balancing == pytest.approx(max(off) / 2, rel=0.1)
+    assert rg.verify(again).ok
+    assert plan.record.balancing == 0.0
