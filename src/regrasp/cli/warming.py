@@ -24,6 +24,19 @@ def warm_up() -> dict[str, Any]:
     return {"seconds": took}
 
 
+def _least_forces() -> None:
+    """From the hundredth choice on."""
+    import regrasp as rg
+
+    sides = ((1.0, 0.1, 0.0), (-1.0, 0.0, 0.1), (0.0, 1.0, 0.1), (0.1, -1.0, 0.0))
+    for d in (2, 3):
+        grasp = rg.Grasp(
+            rg.Contact(side[:d], normal=[-round(x) for x in side[:d]], friction=0.8) for side in sides
+        )
+        for k in range(101):
+            rg.choose_state(grasp, rg.Wrench([0.1, -1.0 - 0.01 * k, 0.0][:d]), "effort")
+
+
 def _batches() -> None:
     import regrasp as rg
 
@@ -76,6 +89,7 @@ def _wrench_balls() -> None:
 
 
 _WORKS = {
+    "least forces": _least_forces,
     "batches of pairs": _batches,
     "regrasps in the plane": _planar_regrasps,
     "regrasps in space": _regrasps_in_space,

@@ -11,12 +11,11 @@ cone cut by a ball is a closed form, so every iterate lies inside the cones and 
 to reach: one step when no cone is touched. (Semismooth Newton: Qi and Sun, Math. Programming 58, 1993.)
 """
 
-from functools import lru_cache
-
 import numpy as np
 
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.value import kept
 
 _STEPS = 200
 # Equilibrium counts as reached at this residual relative to the largest force; a few times rounding.
@@ -48,13 +47,8 @@ def shifted(grasp: Grasp, load: Array, forces: Array, frictions: Array, limits: 
     """
     sizes = np.maximum.reduce(np.abs(forces), axis=1)
     used = sizes >= _IDLE * np.maximum.reduce(sizes)
-    f, g, normals = forces.ravel(), grasp.scaled_matrix, grasp.cones.normals
-    if np.logical_and.reduce(used):
-        back = _back(grasp)
-    else:
-        whole = np.repeat(used, forces.shape[1])
-        f, g = np.where(whole, f, 0.0), g * whole
-        back = g.T @ _inverse(g @ g.T)
+    g, back = kept(grasp, used.tobytes(), _moving)
+    f, normals = np.where(used[:, None], forces, 0.0).ravel(), grasp.cones.normals
     off, heaviest = g @ f + load, np.maximum.reduce(np.abs(load))
     for _ in range(3):  # the second time takes away the rounding of the first
         f = f - back @ off
@@ -73,11 +67,10 @@ def shifted(grasp: Grasp, load: Array, forces: Array, frictions: Array, limits: 
     return answer if np.logical_and.reduce(inside) else None
 
 
-@lru_cache(maxsize=64)
-def _back(grasp: Grasp) -> Array:
-    """G' (G G')^-1: the least forces (n w, 3 or 6) that make a wrench."""
-    g = grasp.scaled_matrix
-    return read_only(g.T @ _inverse(g @ g.T))
+def _moving(grasp: Grasp, used: bytes) -> tuple[Array, Array]:
+    """G of the fingers used, and G' (G G')^-1: the least forces (n w, 3 or 6) that make a wrench."""
+    g = grasp.scaled_matrix * np.repeat(np.frombuffer(used, dtype=np.bool_), grasp.width)
+    return g, g.T @ _inverse(g @ g.T)
 
 
 def _inverse(gram: Array) -> Array:
