@@ -87,6 +87,19 @@ class Quadratic:
         return x, flag
 
 
+def eliminated(pair: tuple[float, ...]) -> tuple[Array, ...]:
+    """The effort QP in the squeeze alone, as ``daqp.solve`` takes it: one unknown, four cone edges."""
+    (ux, uy), phi, a, b = _frame(pair)
+    along = np.array([ux, uy, -ux, -uy])
+    fixed = np.array([-a * uy, a * ux, -phi * ux - b * uy, b * ux - phi * uy])
+    edges = _cones(pair)
+    lower = -(edges @ fixed)
+    return (
+        np.array([[2 * along @ along]]), np.array([2 * fixed @ along]), (edges @ along)[:, None],
+        np.full(4, FREE), lower, np.zeros(4, dtype=np.int32),
+    )  # fmt: skip
+
+
 def quadratics(pair: tuple[float, ...], objective: str) -> list[Quadratic]:
     """The QPs whose solution is the choice: one, or as many as the bisection of a level takes."""
     if objective == "effort":
