@@ -28,6 +28,7 @@ quick: $(VENV)/installed-dev
 bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py
 	$(BIN)/python benchmarks/programs.py
+	$(BIN)/python benchmarks/felt.py
 	$(BIN)/python benchmarks/regrasps.py
 	$(BIN)/python benchmarks/space.py
 	$(BIN)/regrasp bench --settings default --settings mid --settings high --repeat 3 --time-limit 5 -o benchmarks/solvers

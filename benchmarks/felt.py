@@ -59,7 +59,10 @@ start, goal = (rg.Grasp(box.contact_at(point, friction=0.6) for point in points)
 """
 PLANE_PLAN = PLANE + "rg.plan_regrasp(outline, start, goal, rg.Wrench([0, -3.0]), friction=0.5)"
 SPACE_PLAN = SPACE + "rg.plan_regrasp(box, start, goal, rg.Wrench([0, 0, -1.0]), friction=0.6)"
-MEMORY = "from resource import *\nprint(getrusage(RUSAGE_SELF).ru_maxrss)"
+MEMORY = """
+from pathlib import Path
+print(next(line.split()[1] for line in Path("/proc/self/status").open() if line.startswith("VmHWM")))
+"""
 
 
 def processor_time(code: str, folder: str) -> float:
@@ -81,11 +84,10 @@ def first_calls(effort: Effort, quick: bool) -> Iterator[Row]:
             "first_state", "first `choose_state` of three contacts, `angle`, process and imports included",
             f'`python -c "{base}"`', Comparison(ours, theirs), Measure.TIMES, 1.5, "imports of our modules",
         )  # fmt: skip
-        shown = subprocess.run(
-            [sys.executable, "-c", THREE + MEMORY], capture_output=True, text=True, check=True
-        )
-        resident = int(shown.stdout) * (1 if sys.platform == "darwin" else 1024)
-        yield Row.alone("first_memory", "and its resident memory", resident, Measure.BYTES, 100e6)
+        plan = [sys.executable, "-c", THREE + MEMORY]
+        shown = subprocess.run(plan, capture_output=True, text=True, check=True)
+        resident = 1024 * int(shown.stdout)
+        yield Row.alone("first_memory", "and its largest resident memory", resident, Measure.BYTES, 100e6)
     for key, what, code, cold, warm in (
         ("plane", "planar `plan_regrasp`", PLANE_PLAN, 3.0, 0.6),
         ("space", "`plan_regrasp` in space", SPACE_PLAN, 5.0, 1.0),
@@ -118,8 +120,8 @@ def objectives(effort: Effort) -> Iterator[Row]:
             yield Row.of(
                 f"{objective}_{len(grasp)}_{grasp.dimension}", f"`choose_state`, `{objective}`, {what}",
                 "bare Clarabel, one program of effort", effort.of(one, bare), Measure.TIMES, 10.0,
-                "five or six programs from the level in hand to the proof, each as dear as the one of "
-                "effort, and some 100 us of Python for each to write it down and to move its forces",
+                "five or six programs from the level in hand to the proof, and 100 us of Python for each "
+                "to write it down and to move its forces; `force` is polished besides",
             )  # fmt: skip
 
 

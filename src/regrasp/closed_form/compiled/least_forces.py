@@ -3,10 +3,11 @@
 from typing import Any
 
 from regrasp.closed_form.compiled.compiling import compiled, digest
-from regrasp.closed_form.least import face_newton, faces
+from regrasp.closed_form.least import elimination, face_newton, faces
 from regrasp.compilation import kept
 
-_refined = compiled((faces, face_newton), inline=False)["refined"]
+_MODULES = faces, face_newton, elimination  # the last names count
+_refined = compiled(_MODULES, inline=False)["refined"]
 
 
 def _loop(sources: str) -> Any:
@@ -22,5 +23,5 @@ def _loop(sources: str) -> Any:
     return refined
 
 
-refined = _loop(digest((faces, face_newton)))
+refined = _loop(digest(_MODULES))
 """``face_newton.refined``."""

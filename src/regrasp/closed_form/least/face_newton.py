@@ -97,7 +97,7 @@ def _newton(x, touched, rows, matrix, load, normals, frictions, limits, squares,
             K,
             missing,
         )
-        _factor_and_solve(K, unknowns, missing)
+        eliminated(K, unknowns, missing)
         moved = 0.0
         if step > 0:
             for j in range(unknowns):
@@ -209,25 +209,14 @@ def _system(  # type: ignore[no-untyped-def]
         K[j, j] += _OF_FORCES if j < unknowns else -_OF_MULTIPLIERS
 
 
-def _factor_and_solve(K, unknowns, v):  # type: ignore[no-untyped-def]
-    """``v`` becomes K^-1 v by L D L': K is quasi-definite, so that no order of its rows is better."""
-    size = v.size
-    for j in range(size):
-        for k in range(j):
-            K[j, j] -= K[j, k] * K[j, k] * K[k, k]
-        for i in range(j + 1, size):
-            for k in range(j):
-                K[i, j] -= K[i, k] * K[j, k] * K[k, k]
-            K[i, j] /= K[j, j]
-    for i in range(size):
-        for k in range(i):
-            v[i] -= K[i, k] * v[k]
-    for i in range(size):
-        v[i] /= K[i, i]
-    for back in range(size):
-        i = size - 1 - back
-        for k in range(i + 1, size):
-            v[i] -= K[k, i] * v[k]
+def eliminated(K, unknowns, v):  # type: ignore[no-untyped-def]
+    """``v`` becomes K^-1 v, of K (N, N) the lower triangle is given. Compiled: ``elimination``."""
+    whole = np.tril(K)
+    whole += np.tril(K, -1).T
+    try:
+        v[:] = np.linalg.solve(whole, v)
+    except np.linalg.LinAlgError:
+        v[:] = np.nan
 
 
 def refined(  # type: ignore[no-untyped-def]

@@ -17,13 +17,13 @@ from regrasp.planning.states.solving import Chooser
 
 _KINDS = {Bound.NONE: 0, Bound.FORCE: 1, Bound.NORMAL: 2, Bound.MARGIN: 3}
 """The words of ``faces``."""
-_PATIENCE = 100
-"""Calls that are interpreted, at some milliseconds each: then loading or compiling the loops pays."""
+PATIENCE = 5_000
+"""Calls that are interpreted, at a millisecond each at most: then loading or compiling the loops pays."""
 _calls = count()
 
 
 def _refined() -> Any:
-    if next(_calls) < _PATIENCE:
+    if next(_calls) < PATIENCE:
         return face_newton.refined
     from regrasp.closed_form.compiled.least_forces import refined
 
