@@ -272,6 +272,7 @@ def rows() -> dict[str, Row]:
                 "fingers": "count",
                 "from_corners": "not negative",
                 "min_distance": "positive",
+                "disturbance": "value",
                 "most_boxes": "count",
                 "progress": "function",
             },

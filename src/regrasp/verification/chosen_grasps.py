@@ -1,7 +1,7 @@
 """The verdict on a grasp chosen from a shape: its states, where it touches, and the proof of its bound."""
 
 from fractions import Fraction
-from math import inf
+from math import atan, inf
 from typing import Protocol
 
 import numpy as np
@@ -31,6 +31,7 @@ class Chosen(Protocol):
     value: float
     bound: float
     certificate: Proof
+    max_force: float | None
 
 
 # objective: size of a force, norm of the sizes, power of the norm
@@ -39,7 +40,12 @@ _MEANINGS = {
     "peak_normal": ("normal", "largest", 1),
     "peak": ("force", "largest", 1),
     "effort": ("force", "squares", 2),
+    # levels at which forces below the limit must exist
+    "friction_use": ("force", "largest", 1),
+    "angle": ("force", "largest", 1),
+    "answered": ("force", "largest", 1),
 }
+_LEVELS = ("friction_use", "angle", "answered")
 _CLOSE = 1e-9  # of a value, the same in another order of the sums
 
 
@@ -50,7 +56,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     proof = chosen.certificate
     if chosen.objective not in _MEANINGS:
         return Verification((f"objective {chosen.objective!r} has no bound",), inf, 0.0, -inf)
-    size, norm, power = _MEANINGS[chosen.objective]
+    size, norm, _ = _MEANINGS[chosen.objective]
     if (proof.size, proof.norm) != (size, norm):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
     for i, state in enumerate(chosen.states, 1):
@@ -62,14 +68,10 @@ def verify_chosen(chosen: Chosen) -> Verification:
         slacks.append(slack)
         angles.append(least_angle(state.grasp, state.forces))
         broken += violations
-        if _norm(state, size, norm) ** power > chosen.value * (1 + _CLOSE):
-            broken.append(f"state {i}: {chosen.objective} is above the value {chosen.value:.12g}")
+        broken += _check_value(chosen, state, i)
     if not chosen.states:
         broken.append("no state shows the value")
-    if not chosen.bound <= chosen.value:
-        broken.append(f"bound {chosen.bound:.12g} is above the value {chosen.value:.12g}")
-    if not Fraction(chosen.bound) <= Fraction(proof.bound) ** power * (1 + RESOLUTION):
-        broken.append(f"bound {chosen.bound:.12g} is above what the proof says, {proof.bound**power:.12g}")
+    broken += _check_bound(chosen, proof)
     broken += check_proof(proof) or _check_places(chosen, proof)
     boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
     return Verification(
@@ -81,6 +83,75 @@ def verify_proof(proof: Proof) -> Verification:
     """The verdict on a proof alone."""
     boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
     return Verification(tuple(check_proof(proof)), 0.0, inf, inf, excluded=boxes, bound=proof.bound)
+
+
+def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
+    """That a state shows the value."""
+    size, norm, power = _MEANINGS[chosen.objective]
+    found, value = _norm(state, size, norm), chosen.value
+    if chosen.objective not in _LEVELS:
+        if found**power > value * (1 + _CLOSE):
+            return [f"state {i}: {chosen.objective} is above the value {value:.12g}"]
+        return []
+    broken = []
+    if chosen.max_force is None or found > chosen.max_force * (1 + _CLOSE):
+        broken.append(f"state {i}: a force of {found:.12g} is above the limit {chosen.max_force}")
+    if chosen.objective == "angle" and state.margins.least_angle < value - _CLOSE:
+        broken.append(f"state {i}: the angle margin is below the value {value:.12g}")
+    if chosen.objective == "friction_use" and state.margins.largest_friction_use > value + _CLOSE:
+        broken.append(f"state {i}: the use of friction is above the value {value:.12g}")
+    return broken
+
+
+def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
+    """That the bound is what the proof proves."""
+    _, _, power = _MEANINGS[chosen.objective]
+    value, bound = chosen.value, chosen.bound
+    largest = chosen.objective in ("angle", "answered")
+    if not (bound >= value if largest else bound <= value):
+        return [f"bound {bound:.12g} is {'below' if largest else 'above'} the value {value:.12g}"]
+    if chosen.objective not in _LEVELS:
+        if not Fraction(bound) <= Fraction(proof.bound) ** power * (1 + RESOLUTION):
+            return [f"bound {bound:.12g} is above what the proof says, {proof.bound**power:.12g}"]
+        return []
+    if chosen.max_force is None:
+        return ["a level needs the limit of its forces"]
+    if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
+        return _check_trivial(chosen, proof)
+    mu = min(c.friction for c in chosen.grasp)
+    if chosen.objective == "friction_use":
+        proven = Fraction(bound) * Fraction(mu) <= Fraction(proof.friction) * (1 + RESOLUTION)
+    elif chosen.objective == "angle":
+        proven = bound >= (atan(mu) - atan(proof.friction)) * (1 - _CLOSE)
+    else:
+        proven = _scaled(chosen, np.asarray(proof.loads))
+    return [] if proven else [f"bound {bound:.12g} is better than what the proof says"]
+
+
+def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
+    """A bound that needs no proof: friction is used by 0 or more, margins are at most the half-angle."""
+    mu = max(c.friction for c in chosen.grasp)
+    if chosen.objective == "friction_use":
+        proven = chosen.bound <= 0
+    elif chosen.objective == "angle":
+        proven = chosen.bound >= atan(mu)
+    else:  # k forces make no larger wrench than k times the limit, at the largest lever
+        reach = float(np.hypot(*(np.asarray(proof.vertices) - proof.centre_of_mass).T).max())
+        most = len(chosen.grasp) * float(chosen.max_force or 0.0) * np.array([1.0, 1.0, reach])
+        loads = np.asarray(proof.loads)
+        deviations = loads[1:] - loads[0]
+        proven = bool((np.abs(loads[0] + deviations * chosen.bound) >= most).any())
+    return [] if proven else ["the proof proves no bound"]
+
+
+def _scaled(chosen: Chosen, loads: Array) -> bool:
+    """Whether loads of a proof are those of the states, their deviations scaled from value to bound."""
+    center = loads[0]
+    shown = np.array([state.load.vector for state in chosen.states])
+    if len(shown) != len(loads) - 1 or not chosen.value > 0:
+        return False
+    wanted = center + (shown - center) * (chosen.bound / chosen.value)
+    return bool((np.abs(loads[1:] - wanted) <= _CLOSE * np.abs(loads).max()).all())
 
 
 def _norm(state: GraspState, size: str, norm: str) -> float:
@@ -111,7 +182,7 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
         turned = np.hypot(contact.normal[0] + unit[:, 1], contact.normal[1] - unit[:, 0])
         if not ((distance <= slack) & (turned <= 4 * float(RESOLUTION))).any():
             broken.append(f"contact {contact.name} is on none of the sides that the proof is about")
-        if contact.friction > proof.friction:
+        if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")
     positions = chosen.grasp.positions
     for i in range(len(positions)):
@@ -120,6 +191,6 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
                 broken.append("two contacts are nearer than the least distance")
     asked = {tuple(load) for load in np.asarray(proof.loads).tolist()}
     shown = {tuple(state.load.vector.tolist()) for state in chosen.states}
-    if len(chosen.states) > 1 and not asked <= shown:
+    if chosen.objective != "answered" and len(chosen.states) > 1 and not asked <= shown:
         broken.append("a load of the proof has no state")
     return broken

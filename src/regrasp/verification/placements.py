@@ -23,6 +23,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 
 _BITS = 96  # of roots
+_ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
 
 
 class Proof(Protocol):
@@ -80,6 +81,35 @@ def _shapes(proof: Proof) -> list[str]:
     return broken
 
 
+class _Doubles:
+    """The sides of a proof in doubles, for what rounding cannot decide."""
+
+    def __init__(self, proof: Proof) -> None:
+        points = np.asarray(proof.vertices - proof.centre_of_mass)
+        self.edges = proof.sides[:, 0].astype(int)
+        self.start = points[self.edges]
+        self.along = (np.roll(points, -1, axis=0) - points)[self.edges]
+        self.unit = self.along / np.hypot(*self.along.T)[:, None]
+        self.reach = float(np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass))
+
+    def largest(self, first: int, last: int, lo: Array, hi: Array, y: Array, proof: Proof) -> float:
+        """The largest sigma over ends (m,) of sides."""
+        part = slice(first, last + 1)
+        most = 0.0
+        for u in (lo, hi):
+            p = self.start[part] + (u - self.edges[part])[:, None] * self.along[part]
+            vx, vy = y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]
+            tx, ty = self.unit[part].T
+            ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
+            value = ahead + proof.friction * aside
+            if proof.size == "force":
+                value = value / np.sqrt(1 + proof.friction**2)
+                # inside the cone, and a little around it, the whole of v
+                value = np.where(aside <= proof.friction * ahead, np.hypot(vx, vy), value)
+            most = max(most, float(value.max(initial=0.0)))
+        return most
+
+
 class _Checked:
     """One proof in exact numbers."""
 
@@ -97,6 +127,7 @@ class _Checked:
         # 1 / |edge|, rounded up
         self.per = [1 / _root_below(x * x + y * y) for x, y in self.along]
         self.slant = 1 / _root_below(1 + self.mu**2)
+        self.filtered = _Doubles(proof)
 
     def violations(self) -> list[str]:
         """What is wrong, in words."""
@@ -179,7 +210,7 @@ class _Checked:
         y = [Fraction(c) for c in self.proof.twists[box].tolist()]
         work = -sum(Fraction(w) * c for w, c in zip(self.proof.loads[number].tolist(), y, strict=True))
         bound = Fraction(self.proof.bound)
-        if bound <= 0:
+        if bound <= 0 or self._is_clear(box, number):
             return []
         most = [self._most(arc, y) for arc in arcs]
         if self.proof.norm == "sum":
@@ -191,6 +222,26 @@ class _Checked:
         if work < bound * dual or (dual == 0 and work <= 0):
             return [f"proof: the twist of box {box} does not exclude it"]
         return []
+
+    def _is_clear(self, box: int, number: int) -> bool:
+        """Whether doubles show that a box is excluded, by more than all of their rounding together."""
+        proof, filtered = self.proof, self.filtered
+        y = proof.twists[box]
+        terms = -proof.loads[number] * y
+        most, room = (
+            [],
+            _ROUNDING * (abs(y[0]) + abs(y[1]) + abs(y[2]) * filtered.reach) * (1 + proof.friction),
+        )
+        for (first, last), (lo, hi) in zip(proof.arcs[box].tolist(), proof.ends[box].tolist(), strict=True):
+            least, largest = proof.sides[first : last + 1, 1].copy(), proof.sides[first : last + 1, 2].copy()
+            least[0], largest[-1] = lo, hi
+            most.append(filtered.largest(first, last, least, largest, y, proof) + room)
+        if proof.norm == "sum":
+            dual = max(most)
+        else:
+            dual = sum(most) if proof.norm == "largest" else float(np.sqrt(np.square(most).sum()))
+        work = float(terms.sum() - _ROUNDING * np.abs(terms).sum())
+        return bool(work > proof.bound * dual * (1 + _ROUNDING))
 
     def _most(self, arc: Arc, y: list[Fraction]) -> Fraction:
         """An upper bound of sigma over an arc, 0 or more."""

@@ -15,6 +15,7 @@ BRACKET = rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])
 TILTED = rg.LoadSet.hull(
     [rg.Wrench([0, -1], 0.2), rg.Wrench([0, -1], -0.2), rg.Wrench([0.3, -1]), rg.Wrench([-0.3, -1])]
 )
+RING = rg.LoadSet.hull(rg.Wrench([np.cos(t), np.sin(t)]) for t in np.arange(6) * np.pi / 3)
 OBJECTIVES = ("sum_normal", "peak_normal", "peak", "effort")
 
 
@@ -187,6 +188,23 @@ def test_a_search_cut_short_keeps_an_honest_gap() -> None:
     assert chosen.bound <= better.value
 
 
+def test_on_a_knifes_edge_the_gap_says_so() -> None:
+    """Loads through the centre of mass may all be held only where a cone's edge passes through it, too."""
+    chosen = rg.choose_grasp(
+        star(4, 9), 2, TILTED, friction=0.5, objective="friction_use", max_force=3.0, most_boxes=2000
+    )
+    assert chosen.gap > 1e-3
+    assert rg.verify(chosen).ok
+    # where loads may be a little beside their lines, no such placement is left
+    robust = rg.choose_grasp(star(4, 9), 2, TILTED, friction=0.4, load_offset=0.01)
+    knife = rg.choose_grasp(star(4, 9), 2, TILTED, friction=0.4)
+    assert knife.bound <= robust.value
+    assert robust.gap <= 1e-3
+    assert len(robust.certificate.loads) == 8
+    for load in robust.certificate.loads:
+        assert value_of(robust.grasp, load[None], "sum_normal") <= robust.value * (1 + 1e-6)
+
+
 def test_progress_sees_both_bounds_close_in() -> None:
     seen: list[tuple[float, float]] = []
     rg.choose_grasp(star(8, 12), 3, TILTED, friction=0.3, progress=lambda low, high: seen.append((low, high)))
@@ -197,11 +215,88 @@ def test_progress_sees_both_bounds_close_in() -> None:
 
 def test_what_cannot_be_answered_is_refused() -> None:
     for given, words in (
-        ({"objective": "angle"}, "objective must be one of sum_normal"),
+        ({"objective": "force"}, "objective must be one of sum_normal"),
         ({"shape": rg.Outline.ellipse(2, 1)}, "polygon"),
         ({"load": rg.Wrench([0, 0, 1])}, "planar load"),
         ({"tolerance": 2.0}, "tolerance"),
         ({"fingers": 5}, "fingers"),
     ):
         asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | given
+        assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))
+
+
+DEVIATIONS = rg.LoadSet.hull(
+    [rg.Wrench([0, 0], 0.2), rg.Wrench([0, 0], -0.2), rg.Wrench([0.3, 0]), rg.Wrench([-0.3, 0])]
+)
+
+
+@pytest.mark.parametrize(("objective", "largest"), [("friction_use", False), ("angle", True)])
+@pytest.mark.parametrize(
+    ("outline", "fingers", "count", "loads"), [(BRACKET, 2, 14, RING), (star(5, 8), 3, 7, TILTED)]
+)
+def test_no_sampled_placement_uses_less_friction(
+    outline: rg.Outline, fingers: int, count: int, loads: rg.LoadSet, objective: str, largest: bool
+) -> None:
+    asked = {"friction": 0.5, "max_force": 3.0, "objective": objective}
+    chosen = rg.choose_grasp(outline, fingers, loads, **asked)
+    contacts = [outline.contact_at(s, friction=0.5) for s in outline.sample(count)]
+    vertices = loads.vertices
+    assert vertices is not None
+    tried = 0
+    for few in combinations(contacts, fingers):
+        try:
+            values = [
+                rg.choose_state(rg.Grasp(few), rg.Wrench.from_vector(w), objective, max_force=3.0).value
+                for w in vertices
+            ]
+        except rg.Infeasible:
+            continue
+        tried += 1
+        assert min(values) <= chosen.bound if largest else max(values) >= chosen.bound
+    assert tried > 0
+    assert chosen.gap <= 5e-3
+    assert (chosen.bound >= chosen.value) if largest else (chosen.bound <= chosen.value)
+    assert rg.verify(chosen).ok
+
+
+@pytest.mark.parametrize(("outline", "fingers", "count"), [(star(4, 9), 2, 14), (star(5, 8), 3, 7)])
+def test_no_sampled_placement_answers_more(outline: rg.Outline, fingers: int, count: int) -> None:
+    weight, limit = rg.Wrench([0, -1]), 3.0
+    chosen = rg.choose_grasp(
+        outline, fingers, weight, friction=0.5, objective="answered", disturbance=DEVIATIONS, max_force=limit
+    )
+    contacts = [outline.contact_at(s, friction=0.5) for s in outline.sample(count)]
+
+    def answered(grasp: rg.Grasp) -> float:
+        directions = map(rg.Wrench.from_vector, DEVIATIONS.vertices)  # type: ignore[arg-type]
+        return min(rg.largest_load(grasp, d, base=weight, max_force=limit).factor for d in directions)
+
+    best = 0.0
+    for few in combinations(contacts, fingers):
+        try:
+            best = max(best, answered(rg.Grasp(few)))
+        except rg.Infeasible:
+            continue
+    assert 0.1 < best <= chosen.bound
+    assert answered(chosen.grasp) == pytest.approx(chosen.value, rel=1e-5)
+    assert chosen.gap <= 5e-3
+    assert rg.verify(chosen).ok
+
+
+def test_a_level_that_no_placement_reaches_is_refused_with_a_proof() -> None:
+    with pytest.raises(rg.Infeasible, match=r"forces of at most 0\.2 N") as caught:
+        rg.choose_grasp(BRACKET, 3, TILTED, friction=0.5, objective="friction_use", max_force=0.2)
+    assert rg.verify(caught.value.certificate).ok
+
+
+def test_limits_and_disturbances_go_with_their_objectives() -> None:
+    for more, words in (
+        ({"objective": "angle"}, "max_force"),
+        ({"objective": "peak", "max_force": 3.0}, "max_force"),
+        ({"objective": "answered", "max_force": 3.0}, "disturbance"),
+        ({"objective": "peak", "disturbance": DEVIATIONS}, "disturbance"),
+        ({"objective": "answered", "max_force": 3.0, "disturbance": DEVIATIONS}, "one load"),
+        ({"objective": "friction_use", "max_force": 3.0, "friction": 0.0}, "friction"),
+    ):
+        asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | more
         assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))

@@ -21,7 +21,6 @@ OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3
 """A box not looked into; without a better placement; halved; without fingers as far apart as they must be."""
 CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 """Why a search returns: no box is left; a placement within a fixed level; after so many boxes; no memory."""
-_NARROW = 1e-10  # of the boundary's size; an arc is not split further
 
 
 @njit(**INNER)
@@ -141,7 +140,7 @@ def _to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
 
 
 @njit(**INNER)
-def _to_split(sides, arcs, ends, seen, near):  # type: ignore[no-untyped-def]
+def _to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
     """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
     chosen, most = -1, -1.0
     for i in range(len(arcs)):
@@ -155,7 +154,7 @@ def _to_split(sides, arcs, ends, seen, near):  # type: ignore[no-untyped-def]
             j = first
             length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
             width = (ends[i, 1] - ends[i, 0]) * length
-            if width < _NARROW:
+            if width < narrow:
                 continue
             matters = 1e-3 * width
             if seen[i, 0] <= seen[i, 1]:
@@ -233,13 +232,14 @@ def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-unt
 def _loop(digest: str) -> Any:
     @kept(error_model="numpy")
     def search(  # type: ignore[no-untyped-def]
-        sides, loads, law, fixed, tolerance, least, boxes, heap, state, found, tried, budget
+        sides, loads, law, fixed, tolerance, least, narrow, boxes, heap, state, found, tried, budget
     ):
         """Goes on with a search; see the module. Returns why it ends.
 
         sides: (m, 9) as of ``wrench_gauge.gauge``. loads: (L, 3) to be made. law: mu, what placements tried
         may use of it, size, norm, precision.
         fixed: a level, or infinite to follow the least value times 1 - tolerance. least: distance of fingers.
+        narrow: arcs shorter than this are not split.
         boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), twists (N, 3), loads' numbers (N,), kinds (N,),
         first children and their number (N, 2), where forces press (N, k, 8), scratch (1, 3). state: number of
         boxes, of those in the heap, of placements tried. found: (1 + 2 k) the least value so far, sides and u
@@ -306,7 +306,7 @@ def _loop(digest: str) -> Any:
             if bounds[node] >= level:
                 kinds[node] = EXCLUDED
                 continue
-            i = _to_split(sides, arcs[node], ends[node], seen[node], near)
+            i = _to_split(sides, arcs[node], ends[node], seen[node], near, narrow)
             if i < 0:  # too small to be split: it stays open
                 continue
             at, u = _cut(sides, arcs[node], ends[node], seen[node], i)

@@ -43,10 +43,11 @@ class ChosenGrasp(ArrayValue):
         grasp: the contacts, F1, F2, ... along the boundary, relative to the centre of mass.
         states: the best forces for every load asked: each vertex of a hull, of a round set the worst found.
         value: of the worst load, in the unit of the objective.
-        bound: no placement reaches less.
+        bound: no placement reaches less; of a margin or a factor, which are largest at best, more.
         places: (k,) arc lengths of the fingers [m].
         others: the best of the grasps tried that differ in a finger by a twentieth of the length or more.
         certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
+        max_force: limit on every force that was given [N]; None where none was.
     """
 
     shape: Outline
@@ -58,11 +59,16 @@ class ChosenGrasp(ArrayValue):
     places: Array
     others: tuple[OtherGrasp, ...]
     certificate: PlacementProof
+    max_force: float | None = None
 
     @property
     def gap(self) -> float:
-        """How much better than ``value`` the best placement can be at most, as a fraction of it [-]."""
-        return (self.value - self.bound) / self.value if self.value else 0.0
+        """How much better than ``value`` the best placement can be at most, as a fraction of it [-].
+
+        Of ``friction_use`` and ``angle`` as a fraction of at least 0.001.
+        """
+        least = 1e-3 if self.objective in ("friction_use", "angle") else 0.0
+        return abs(self.value - self.bound) / max(abs(self.value), least) if self.value != self.bound else 0.0
 
     def to_dict(self) -> dict[str, Any]:
         """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one."""
@@ -79,6 +85,7 @@ class ChosenGrasp(ArrayValue):
                 for o in self.others
             ],
             "certificate": self.certificate.to_dict(),
+            "max_force": self.max_force,
         }
 
     @classmethod
@@ -92,7 +99,8 @@ class ChosenGrasp(ArrayValue):
             InvalidInput: For other keys and for entries that are not what they must be.
         """
         keys = ("shape", "objective", "grasp", "states", "value", "bound", "places", "others", "certificate")
-        given = entries(data, "a chosen grasp", keys)
+        given = entries(data, "a chosen grasp", keys, ("max_force",))
+        limit = given.get("max_force")
         grasp = Grasp.from_dict(given["grasp"])
         others = [
             entries(o, "others", ("grasp", "places", "value")) for o in listed(given["others"], "others")
@@ -116,6 +124,7 @@ class ChosenGrasp(ArrayValue):
                 for o in others
             ),
             PlacementProof.from_dict(given["certificate"]),
+            None if limit is None else number(limit, "max_force", above=0),
         )
 
     def __repr__(self) -> str:

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-from regrasp.errors import InvalidInput
-from regrasp.planning.states.objectives import Objective, objective_of
+from regrasp.errors import InvalidInput, shown
+from regrasp.planning.states.objectives import OBJECTIVES, Objective, objective_of
 
 
 class Law(NamedTuple):
@@ -29,16 +29,19 @@ LAWS: Mapping[str, Law] = MappingProxyType(
         "peak_normal": Law("normal", "largest"),
         "peak": Law("force", "largest"),
         "effort": Law("force", "squares", power=2),
+        # levels at which forces below a limit must exist (``levels``)
+        "friction_use": Law("force", "largest"),
+        "angle": Law("force", "largest"),
+        "answered": Law("force", "largest"),
     }
 )
+LEVELS = ("friction_use", "angle", "answered")
 
 
-def law_of(objective: str | Objective) -> tuple[Objective, Law]:
-    """The objective and its law. Raises ``InvalidInput`` for one that placements have no bound for."""
-    if isinstance(objective, str) and objective not in LAWS:
-        raise InvalidInput(f"objective must be one of {', '.join(LAWS)}; got {objective!r}")
-    known = objective_of(objective)
-    law = LAWS.get(known.name)
-    if law is None or known != objective_of(known.name):
-        raise InvalidInput(f"objective must be one of {', '.join(LAWS)}; got {known.name!r}")
-    return known, law
+def law_of(objective: str | Objective) -> tuple[str, Law]:
+    """The word of an objective and its law. ``InvalidInput`` for one that placements have no bound for."""
+    if isinstance(objective, Objective) and objective_of(objective) == OBJECTIVES.get(objective.name):
+        objective = objective.name
+    if not isinstance(objective, str) or objective not in LAWS:
+        raise InvalidInput(f"objective must be one of {', '.join(LAWS)}; got {shown(objective)}")
+    return objective, LAWS[objective]

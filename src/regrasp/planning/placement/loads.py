@@ -54,6 +54,14 @@ def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Ar
     return inner, center + outer @ scale
 
 
+def offset_by(loads: Array, offset: float) -> Array:
+    """Loads whose forces act ``offset`` [m] beside their lines, to both sides; as they are for 0."""
+    if not offset:
+        return loads
+    torque = np.hypot(loads[:, 0], loads[:, 1])[:, None] * [0.0, 0.0, offset]
+    return np.vstack([loads - torque, loads + torque])
+
+
 def _flat_directions(load: LoadSet) -> Array:
     """(r, 3) the axes of forces and torque along which a set has a width, each scaled to it."""
     axes = np.eye(3)

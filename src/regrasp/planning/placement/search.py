@@ -23,16 +23,17 @@ Progress = Callable[[float, float], object]
 
 
 class Search:
-    """A search for the best places of fingers on sides: boxes, the placements tried, and how it ended."""
+    """A search for the best places of fingers on sides: boxes, the placements tried, and how it ended.
+
+    apart: least distance of fingers [m]. narrow: arcs shorter than this fraction of the size are not split.
+    """
 
     def __init__(
-        self, sides: Sides, fingers: int, friction: float, loads: Array, law: Law, apart: float
+        self, sides: Sides, fingers: int, friction: float, loads: Array, law: Law, apart: float, narrow: float
     ) -> None:
         self.sides, self.fingers, self.friction, self.law, self.apart = sides, fingers, friction, law, apart
-        self.loads = loads
-        wanted = -loads / [1, 1, sides.size]
-        self.unit = float(np.abs(wanted).max()) or 1.0
-        self._wanted = np.ascontiguousarray(wanted / self.unit)
+        self.unit = float(np.abs(loads / [1, 1, sides.size]).max()) or 1.0
+        self.under(loads)
         self._table = np.ascontiguousarray(sides.table())
         self._boxes = _memory(_FIRST_BOXES, fingers)
         arcs, ends = self._boxes[:2]
@@ -42,32 +43,99 @@ class Search:
         self._state = np.array([1, 1, 0])
         self._found = np.full(1 + 2 * fingers, inf)
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
-        self.interrupted = False
+        self.closed = False
+        self.narrow = narrow
+        self._kept: list[tuple[float, np.ndarray, Array]] = []
+
+    def under(self, loads: Array) -> None:
+        """From now on, of these loads (L, 3) [N, N m]."""
+        self.loads = loads
+        self._wanted = np.ascontiguousarray(-loads / [1, 1, self.sides.size] / self.unit)
 
     def run(self, tolerance: float, most: int, progress: Progress | None) -> None:
         """Search until no placement can be better by the fraction ``tolerance``, or ``most`` boxes are used.
 
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
-        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search
-
-        law = (self.friction, kept_friction(self.friction, 2 * RESERVE), *self.law.codes(), _PRECISE)
         try:
-            while True:
-                ended = search(
-                    self._table, self._wanted, law, inf, tolerance, self.apart / self.sides.size,
-                    self._boxes, self._heap, self._state, self._found, self._tried, _AT_A_TIME,
-                )  # fmt: skip
+            going = True
+            while going:
+                going = self.goes_on(inf, tolerance, most)
                 if progress is not None:
                     progress(self.bound, self.best)
-                if ended == CLOSED:
-                    return
-                if ended == FULL and not self._grow(most):
-                    return
         except KeyboardInterrupt:
             if self.best == inf:
                 raise
-            self.interrupted = True
+
+    def goes_on(self, fixed: float, tolerance: float, most: int) -> bool:
+        """Some more boxes. False where none is left, or no room for more of them.
+
+        fixed: a level of the norm [N], at which the search is interrupted when a placement reaches it; or
+        infinite, to follow the least value times 1 - tolerance.
+        """
+        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search
+
+        law = (self.friction, kept_friction(self.friction, 2 * RESERVE), *self.law.codes(), _PRECISE)
+        ended = search(
+            self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
+            self.narrow, self._boxes, self._heap, self._state, self._found, self._tried, _AT_A_TIME,
+        )  # fmt: skip
+        self.closed = ended == CLOSED
+        return not self.closed and (ended != FULL or self._grow(most))
+
+    @property
+    def left(self) -> np.ndarray:
+        """Numbers of boxes not excluded: not looked at, or too small to be split; the least bound first."""
+        return self._left[np.argsort(self._boxes[2][self._left], kind="stable")]
+
+    @property
+    def _left(self) -> np.ndarray:
+        return np.flatnonzero(self._boxes[5][: self.count] == 0)
+
+    def excludes(self, boxes: np.ndarray, fixed: float) -> bool:
+        """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
+        from regrasp.closed_form.compiled.placement_search import search
+
+        friction = self.friction
+        law = (friction, friction, *self.law.codes(), _PRECISE)
+        for box in boxes:
+            one = (*(values[box : box + 1] for values in self._boxes[:-1]), self._boxes[-1])
+            one[2][0], one[5][0] = 0.0, 0
+            search(
+                self._table, self._wanted, law, fixed / self.unit, 0.0, 0.0, 0.0, one, np.zeros(1, np.int64),
+                np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf), self._tried[:1], 0,
+            )  # fmt: skip
+            if one[5][0] == 0:
+                return False
+        return True
+
+    def are_apart(self, places: np.ndarray, u: Array) -> bool:
+        """Whether fingers are as far apart as they must be."""
+        edges = self.sides.edges[places]
+        points = self.sides.vertices[edges] + (u - edges)[:, None] * self.sides.vectors[edges]
+        away = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
+        return bool((away + np.diag(np.full(len(u), inf)) >= self.apart).all())
+
+    def forget(self, level: float, places: np.ndarray, u: Array) -> None:
+        """Look for a first placement again: one on these sides reaches a level, a better one is sought."""
+        self._kept.append((-level, places, u))
+        self._found[:] = inf
+        self.closed = False
+
+    def norm_at(self, places: np.ndarray, u: Array) -> float:
+        """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
+        from regrasp.closed_form.compiled.placement_search import search
+
+        friction = kept_friction(self.friction, 2 * RESERVE)
+        boxes = _memory(1 + self.fingers + 1, self.fingers)
+        boxes[0][0] = places[:, None]
+        boxes[1][0] = u[:, None]
+        search(
+            self._table, self._wanted, (friction, friction, *self.law.codes(), _PRECISE), inf, 0.0, 0.0, 0.0,
+            boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf),
+            np.zeros((1, 1 + 2 * self.fingers)), 0,
+        )  # fmt: skip
+        return float(boxes[2][0]) * self.unit
 
     def _grow(self, most: int) -> bool:
         have = len(self._heap)
@@ -106,8 +174,18 @@ class Search:
         sizes = np.abs(self._wanted).sum(axis=1)
         return FAR * float(sizes[sizes > 0].min(initial=inf)) * self.unit * (1 - _SAFE)
 
+    @property
+    def found(self) -> tuple[np.ndarray, Array]:
+        """Sides and u of the best placement."""
+        return self._found[1::2].astype(int), self._found[2::2].copy()
+
     def placements(self) -> list[tuple[float, np.ndarray, Array]]:
-        """Placements tried, the best first: their norm [N], the sides and the u of their fingers."""
+        """Placements tried, the best first: their norm [N], the sides and the u of their fingers.
+
+        Where a level was sought, those that raised it, with its negative in the place of the norm.
+        """
+        if self._kept:
+            return sorted(self._kept, key=lambda kept: kept[0])
         rows = self._tried[: min(int(self._state[2]), _TRIED)]
         rows = np.vstack([self._found, rows])
         rows = rows[np.isfinite(rows[:, 0])]
@@ -117,9 +195,10 @@ class Search:
     def proof(self, bound: float, vertices: Array, centre: Array) -> PlacementProof:
         """That no norm is below ``bound`` [N]; polygon and centre of mass as they were given [m]."""
         n = self.count
-        arcs, ends, _, twists, numbers, kinds, children, *_ = (values[:n] for values in self._boxes)
+        arcs, ends, _, twists, _, kinds, children, *_ = (values[:n] for values in self._boxes)
         sides = np.column_stack([self.sides.edges, self.sides.ends])
-        number = np.where(kinds == 3, -1, numbers)
+        work = -(twists / [1, 1, self.sides.size]) @ self.loads.T
+        number = np.where(kinds == 3, -1, work.argmax(axis=1))
         split = kinds == 2
         given = {"sides": sides, "loads": self.loads, "arcs": arcs, "ends": ends}
         given["children"] = np.where(split[:, None], children, 0)

@@ -1,0 +1,234 @@
+"""From what a search found to a grasp with forces, or to words why there is none."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from math import atan, inf
+from typing import TypeVar
+
+import numpy as np
+
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
+from regrasp.planning.placement.laws import Law
+from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level
+from regrasp.planning.placement.proof import PlacementProof
+from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sides import Sides
+from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.criteria import ChosenState
+
+T = TypeVar("T")
+_ATTEMPTS = 20  # placements whose forces are computed, the best first, until one has them
+_AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found is at the edge of what holds
+_DIFFERENT = 0.05  # of the length
+_OTHERS = 4
+_BACK = (1e-8, 1e-6, 1e-4)  # of a factor answered, so that forces exist for solvers, too
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a grasp was asked for.
+
+    loads: (L, 3) that it must hold. each: whether the state of every one of them is wanted, or of the worst.
+    """
+
+    shape: Outline
+    objective: str
+    law: Law
+    friction: float
+    loads: Array
+    each: bool
+
+
+def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
+    """The best grasp of a search for the least norm. ``Infeasible`` where there is none."""
+    power = asked.law.power
+
+    def judged(grasp: Grasp, norm: float) -> tuple[list[ChosenState], ChosenState] | None:
+        states = [choose_state(grasp, Wrench.from_vector(w), asked.objective) for w in asked.loads]
+        worst = max(states, key=lambda state: state.value)
+        return (states, worst) if worst.value <= _AS_FOUND * norm**power else None
+
+    found = _first(search, asked, judged)
+    if found is None:
+        raise _none_holds(search, asked)
+    grasp, places, u, (states, worst) = found
+    bound = min(search.bound, worst.value ** (1 / power))
+    shown = tuple(map(_plain, states if asked.each else [worst]))
+    return ChosenGrasp(
+        asked.shape, asked.objective, grasp, shown, worst.value, min(bound**power, worst.value),
+        _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda norm: norm**power),
+        _proof(search, asked, min(bound, search.largest)),
+    )  # fmt: skip
+
+
+def chosen_at_level(
+    search: Search, asked: Asked, level: Level, best: float | None, beyond: float
+) -> ChosenGrasp:
+    """The best grasp of a search for a level. ``Infeasible`` where there is none."""
+    limit = level.max_force
+    if best is None:
+        proof = _proof(search, asked, limit if search.closed else 0.0)
+        what = (
+            "hold the loads"
+            if search.closed
+            else "were found to hold the loads; that there are none is not proven"
+        )
+        raise Infeasible(
+            f"no {search.fingers} fingers anywhere on this outline {what}, with friction {asked.friction:g} "
+            f"and forces of at most {limit:g} N",
+            proof,
+        )
+
+    def judged(grasp: Grasp, negative: float) -> tuple[list[ChosenState], float] | None:
+        if isinstance(level, FrictionLevel):
+            loads = map(Wrench.from_vector, asked.loads)
+            states = [choose_state(grasp, load, asked.objective, max_force=limit) for load in loads]
+            values = [state.value for state in states]
+            return states, (min(values) if level.angle else max(values))
+        assert isinstance(level, AnsweredLevel)
+        for back in _BACK:
+            factor = -negative * (1 - back)
+            loads = map(Wrench.from_vector, level.loads(factor)[1:])
+            with suppress(Infeasible):
+                return [choose_state(grasp, load, "peak", max_force=limit) for load in loads], factor
+        return None
+
+    found = _first(search, asked, judged)
+    if found is None:
+        raise Infeasible(
+            "placements that hold the loads are so few that rounding decides, and none of those tried has "
+            "forces inside the cones and the limit"
+        )
+    grasp, places, u, (states, value) = found
+    if isinstance(level, FrictionLevel):
+        bound = _of_coefficient(level, beyond)
+        search.friction = level.coefficient(beyond)
+    else:
+        bound = beyond
+    bound = max(bound, value) if asked.objective != "friction_use" else min(bound, value)
+    trivial = not search.closed or bound == 0.0
+    shown = states if asked.each else [_worst(states, asked.objective)]
+    return ChosenGrasp(
+        asked.shape, asked.objective, grasp, tuple(map(_plain, shown)), value, bound,
+        _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda negative: abs(negative)),
+        _proof(search, asked, 0.0 if trivial else limit), max_force=limit,
+    )  # fmt: skip
+
+
+def _of_coefficient(level: FrictionLevel, beyond: float) -> float:
+    """The value of an objective at a level: the use of friction [-] or the angle margin [rad]."""
+    if level.angle:
+        return min(beyond, atan(level.friction))
+    return max(-beyond, 0.0)
+
+
+def _worst(states: list[ChosenState], objective: str) -> ChosenState:
+    return (min if objective == "angle" else max)(states, key=lambda state: state.value)
+
+
+def _first(
+    search: Search, asked: Asked, judged: Callable[[Grasp, float], tuple[list[ChosenState], T] | None]
+) -> tuple[Grasp, np.ndarray, Array, tuple[list[ChosenState], T]] | None:
+    """The best placement tried whose forces come out as found, fingers in the order of the boundary."""
+    for norm, places, u in search.placements()[:_ATTEMPTS]:
+        order = np.argsort(u, kind="stable")
+        grasp = grasp_at(search.sides, places[order], u[order], asked.friction)
+        if grasp is None:
+            continue
+        try:
+            with np.errstate(all="ignore"):  # forces at the edge of what can be held
+                found = judged(grasp, norm)
+        except RegraspError:
+            continue
+        if found is not None:
+            return grasp, places[order], u[order], found
+    return None
+
+
+def _plain(state: ChosenState) -> GraspState:
+    return GraspState(state.grasp, state.load, state.forces)
+
+
+def _proof(search: Search, asked: Asked, bound: float) -> PlacementProof:
+    vertices: Array = asked.shape.boundary.vertices  # type: ignore[attr-defined]
+    return search.proof(bound, vertices, asked.shape.centre_of_mass)
+
+
+def _none_holds(search: Search, asked: Asked) -> Infeasible:
+    proof = _proof(search, asked, min(search.bound, search.largest))
+    if search.best < inf:
+        return Infeasible(
+            "placements that hold the loads are so few that rounding decides, and none of those tried has "
+            f"forces inside the cones; no placement needs less than {proof.bound:.6g} N",
+            proof,
+        )
+    if search.bound == inf:
+        return Infeasible(
+            f"no {search.fingers} fingers anywhere on this outline hold the loads with friction "
+            f"{search.friction:g}, not by forces of {proof.bound:.3g} N either",
+            proof,
+        )
+    return Infeasible(
+        f"no placement was found that holds the loads, and none needs less than {proof.bound:.6g} N; it is "
+        f"not proven that there is none: {search.count} boxes were looked at, allow more by most_boxes",
+        proof,
+    )
+
+
+def grasp_at(sides: Sides, places: np.ndarray, u: Array, friction: float) -> Grasp | None:
+    """The grasp of fingers on sides; None where two of them are at one point of one side."""
+    try:
+        return Grasp(
+            sides.contact(int(side), float(at), friction, f"F{i + 1}")
+            for i, (side, at) in enumerate(zip(places, u, strict=True))
+        )
+    except InvalidInput:
+        return None
+
+
+def _arc_lengths(sides: Sides, places: np.ndarray, u: Array) -> Array:
+    return read_only(np.array([sides.arc_length(int(j), float(at)) for j, at in zip(places, u, strict=True)]))
+
+
+def _others(
+    search: Search, asked: Asked, u: Array, value: Callable[[float], float]
+) -> tuple[OtherGrasp, ...]:
+    """The best placements tried that differ from the chosen one and from one another."""
+    sides, length = search.sides, float(search.sides.lengths.sum())
+    kept = [_along(sides, u)]
+    found: list[OtherGrasp] = []
+    for norm, places, at in search.placements():
+        if len(found) == _OTHERS:
+            break
+        order = np.argsort(at, kind="stable")
+        s = _along(sides, at[order])
+        if min(_farthest(s, other, length) for other in kept) < _DIFFERENT * length:
+            continue
+        grasp = grasp_at(sides, places[order], at[order], asked.friction)
+        if grasp is not None:
+            kept.append(s)
+            found.append(OtherGrasp(grasp, _arc_lengths(sides, places[order], at[order]), value(norm)))
+    return tuple(found)
+
+
+def _along(sides: Sides, u: Array) -> Array:
+    """Arc lengths of places in rising order, from their u alone."""
+    edge = np.minimum(u.astype(int), len(sides.vertices) - 1)
+    result: Array = sides.starts[edge] + (u - edge) * sides.lengths[edge]
+    return result
+
+
+def _farthest(s: Array, other: Array, length: float) -> float:
+    """The largest way of a finger from one placement to another, fingers in the order that fits best."""
+    ways = []
+    for turn in range(len(s)):
+        way = np.abs(np.roll(s, turn) - other)
+        ways.append(float(np.minimum(way, length - way).max()))
+    return min(ways)
