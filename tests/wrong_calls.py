@@ -344,6 +344,19 @@ def rows() -> dict[str, Row]:
             {"start": transition.end.without("P3"), "contact": GRASP["P3"]},
             {"contact": "value", "load": "load"},
         ),
+        "plan_hold": Row(rg.plan_hold, {"start": STATE}, {"load": "load"}),
+        "carried_load": Row(
+            rg.carried_load,
+            {"mass": 1.0, "gravity": [0.0, -9.81]},
+            {
+                "mass": "positive",
+                "gravity": "vector",
+                "position": "function",
+                "orientation": "function",
+                "inertia": "number",
+                "step": "positive",
+            },
+        ),
         "plan_exchange": Row(
             rg.plan_exchange,
             {"start": STATE, "leaving": "P3", "arriving": rg.Contact([9, 9], [1, 0], 1, name="P4")},

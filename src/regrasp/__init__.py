@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
     from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
+    from regrasp.planning.changes.hold import plan_hold
     from regrasp.planning.changes.rotation import plan_rotation
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
     from regrasp.planning.holds.weights import RegraspWeights
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.pyramid_loss import PyramidLosses, pyramid_losses
     from regrasp.planning.surveys.sensitivity import Sensitivity, sensitivity
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
+    from regrasp.plans.carried import carried_load
     from regrasp.plans.loads import LoadSeries
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.sampled import SampledPath
@@ -80,6 +82,8 @@ _LATER = {
     "margin_curve": "regrasp.planning.robustness.margin_curve",
     "least_stiffness": "regrasp.planning.robustness.least_stiffness",
     "LeastFriction": "regrasp.planning.surveys.extremes.least_friction",
+    "carried_load": "regrasp.plans.carried",
+    "plan_hold": "regrasp.planning.changes.hold",
     "LoadSeries": "regrasp.plans.loads",
     "LoadSet": "regrasp.mechanics.loads.load_set",
     "locus_intervals": "regrasp.planning.states.batch",
@@ -169,6 +173,7 @@ __all__ = [
     "best_squeezes",
     "bottleneck",
     "choose_grasp",
+    "carried_load",
     "choose_state",
     "closure",
     "held_centres",
@@ -181,6 +186,7 @@ __all__ = [
     "margin_curve",
     "plan_addition",
     "plan_exchange",
+    "plan_hold",
     "plan_regrasp",
     "plan_regrasps",
     "plan_removal",

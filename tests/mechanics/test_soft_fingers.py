@@ -190,12 +190,6 @@ def test_frames_and_units(length, force):
         (lambda: rg.GraspState(pair(0.2), TWIST, np.zeros((2, 3))), r"forces must have shape \(2, 4\)"),
         (lambda: rg.choose_state(pair(0.2), TWIST, facets=8), "leave them out with soft fingers"),
         (
-            lambda: rg.plan_removal(
-                pair(0.2).with_contact(rg.Contact([0, 0, 1], [0, 0, -1], 0.5)), 2, load=lambda t: TWIST
-            ),
-            "paths through instants are planned for point contacts",
-        ),
-        (
             lambda: rg.GraspState(
                 pair(0.2).with_contact(rg.Contact([0, 0, 1], [0, 0, -1], 0.5)), TWIST, np.ones((3, 4))
             ),

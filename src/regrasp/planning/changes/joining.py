@@ -31,6 +31,8 @@ PATH_OBJECTIVES = get_args(PathObjective)
 
 # Where T stands still the least change still moves with time, at this fraction of the average pace.
 _LEAST_PACE = 1e-6
+_SQUEEZED = 0.3
+"""Of the largest force at the ends: a unit of programs in which fingers squeeze far more than the load."""
 
 
 @dataclass(frozen=True)
@@ -126,8 +128,6 @@ def joined(
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
         scaling = plan.scaling
     assert scaling is not None  # a load in time brings its clock
-    if grasp.is_soft:
-        raise InvalidInput("paths through instants are planned for point contacts; a finger of these is soft")
     if demands.method == "closed-form":
         raise InvalidInput(
             "Eq. 1-3 holds under a constant load, and no straight path keeps these demands; use method='auto'"
@@ -193,8 +193,8 @@ def _path(
         grasp=grasp,
         times=times,
         loads=fine.vectors,
-        start=start.forces,
-        end=end.forces,
+        start=grasp.cones.measured(start.forces),
+        end=grasp.cones.measured(end.forces),
         active=active,
         phases=phases,
         frictions=np.array(criteria.frictions(grasp)),
@@ -202,10 +202,15 @@ def _path(
         rates=rates,
         least_normals=least,
         stays=stays,
-        unit=largest or float(max(start.magnitudes.max(), end.magnitudes.max())) or 1.0,
+        unit=max(largest, _SQUEEZED * float(max(start.magnitudes.max(), end.magnitudes.max()))) or 1.0,
         set_back=None if demand is None or d == 3 else demand.set_back(),
     )
+    if demand is not None:  # what limits keep for the set; ends may know better, and all of it is checked
+        ends = np.maximum(*(np.linalg.norm(f, axis=1) for f in (task.start, task.end)))
+        task = replace(task, limits=np.maximum(task.limits - demand.largest_changes(), ends))
     forces = planned_path(task, demands.path_objective or "change", criteria, backend, demands.facets)
+    forces = grasp.cones.forces(forces)
+    forces[0], forces[-1] = start.forces, end.forces
     if demand is not None:
         refuse_giving_path(demand, forces, times, np.array(criteria.limits(grasp)))
     return SampledPath(times, forces, fine.vectors)
@@ -213,7 +218,8 @@ def _path(
 
 def refuse_giving_path(demand: Demand, forces: Array, times: Array, limits: Array) -> None:
     """Raise ``Infeasible`` where forces (K, n, d) between the ends do not withstand what they must."""
-    spares = [demand.spare(f, limits, on_the_way=True) for f in forces[1:-1]]
+    measured = demand.grasp.cones.measured(forces[1:-1])
+    spares = [demand.spare(f, limits, on_the_way=True) for f in measured]
     least = int(np.argmin(spares))
     if spares[least] < 0:
         raise Infeasible(

@@ -39,7 +39,8 @@ OBJECTIVES = ("change", "effort", "force", "peak", "rate")
 class PathTask:
     """What a path must keep to.
 
-    times: (K,) [s]. loads: (K, 3 or 6) [N, N m]. start, end: (n, d) forces at the ends [N]. active: (K, n),
+    times: (K,) [s]. loads: (K, 3 or 6) [N, N m]. start, end: (n, w) forces at the ends, as the cones measure
+    them [N]. active: (K, n),
     false where a finger carries no force. phases: (K,) rising from 0 to 1. frictions, limits [N], rates
     [N/s] and least_normals [N]: (n,), infinite or 0 for none. stays: (n,), the fingers whose margin counts.
     unit: the size of a force [N]. set_back: in the plane (n, 2), what the edges mu n -+ t of the cones of
@@ -66,13 +67,13 @@ class PathTask:
         """The least force margin of the fingers that stay, at both ends [N]."""
         grasp, mu = self.grasp, self.frictions
         ends = np.stack([self.start, self.end])
-        normal = (ends * grasp.normals).sum(axis=-1)
+        normal = grasp.cones.normal(ends)
         margins = (mu * normal - grasp.cones.tangential(ends)) / np.sqrt(1 + mu**2)
         return float(margins[:, self.stays].min())
 
     @property
     def reference(self) -> Array:
-        """(K, n, d) the straight path by the phases, zero where a finger carries no force [N]."""
+        """(K, n, w) the straight path by the phases, zero where a finger carries no force [N]."""
         s = self.phases[:, None, None]
         straight: Array = self.start * (1 - s) + self.end * s
         return np.where(self.active[..., None], straight, 0.0)
@@ -100,7 +101,7 @@ class _Builder:
 
     def __init__(self, task: PathTask, objective: str, facets: int | None) -> None:
         self.task, self.objective, self.facets = task, objective, facets
-        self.d = task.grasp.dimension
+        self.d = task.grasp.width  # numbers of a force
         self.count, self.width = task.times.size - 2, self.d * len(task.grasp)
         self.active = task.active[1:-1]
         inner = sparse.identity(self.count * self.width, format="csc")
@@ -116,12 +117,12 @@ class _Builder:
         task, unit = self.task, self.task.unit
         grasp = task.grasp
         weight = 1 / grasp.lengths
-        balance = sparse.kron(sparse.identity(self.count), grasp.matrix * weight[:, None], format="csr")
+        balance = sparse.kron(sparse.identity(self.count), grasp.cones.matrix * weight[:, None], format="csr")
         self.rows.equal(self._wide(balance @ self.columns), (task.loads[1:-1] * weight / unit).ravel())
         self._cones(least_margin / unit)
         held = np.flatnonzero(task.least_normals > 0)
         if held.size:
-            normals = self._of_fingers(grasp.normals[held, None], held)
+            normals = self._of_fingers(grasp.cones.normals[held, None], held)
             self.rows.at_least_zero(self._wide(normals[0]), -task.least_normals[held][normals[1]] / unit)
         self._circles(np.flatnonzero(task.limits < inf), task.limits / unit, None)
         if self.objective == "peak":
@@ -172,17 +173,17 @@ class _Builder:
     def _cones(self, least_margin: float) -> None:
         grasp, mu = self.task.grasp, self.task.frictions
         rough, smooth = np.flatnonzero(mu > 0), np.flatnonzero(mu == 0)
-        n, t = grasp.normals[:, None], grasp.cones.tangents
+        n, t = grasp.cones.normals[:, None], grasp.cones.tangents
         if rough.size:
-            is_round = self.d == 3 and self.facets is None
+            is_round = self.d > 2 and self.facets is None
             each = np.hstack([mu[:, None, None] * n, t]) if is_round else cone_faces(grasp, mu, self.facets)
             matrix, place = self._of_fingers(each[rough], rough)
             per_margin = np.where(self.task.stays, np.sqrt(1 + mu**2), 0.0)[rough][place]
             if is_round:
-                per_margin[np.arange(place.size) % 3 > 0] = 0.0
+                per_margin[np.arange(place.size) % self.d > 0] = 0.0
             wide = self._wide(matrix, -per_margin if self.objective == "force" else 0.0)
             if is_round:
-                self.rows.second_order(wide, -least_margin * per_margin, size=3)
+                self.rows.second_order(wide, -least_margin * per_margin, size=self.d)
             else:
                 offset = -least_margin * per_margin
                 if self.task.set_back is not None:

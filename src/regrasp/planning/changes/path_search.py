@@ -136,13 +136,13 @@ def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
     """Whether the active fingers can hold a load within cones and limits."""
     used = np.flatnonzero(active)
     grasp = task.grasp.subset(used.tolist())
-    start = np.zeros((used.size, grasp.dimension))
+    start = np.zeros((used.size, grasp.width))
     return (
         nearest_equilibrium(
             start,
-            grasp.matrix,
+            grasp.cones.matrix,
             load.vector,
-            grasp.normals,
+            grasp.cones.normals,
             task.frictions[used],
             task.limits[used],
             grasp.size,
@@ -153,7 +153,7 @@ def _holds(task: PathTask, load: Wrench, active: NDArray[np.bool_]) -> bool:
 
 def _exact(task: PathTask, answer: Solution) -> Array:
     """The solver's path with every instant moved into exact equilibrium inside the cones."""
-    d = task.grasp.dimension
+    d = task.grasp.width
     forces = np.zeros((task.times.size, len(task.grasp), d))
     forces[0], forces[-1] = task.start, task.end
     inner = forces[1:-1]
@@ -177,29 +177,30 @@ def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp
     grasp = task.grasp.subset(used.tolist())
     mu, limits = task.frictions[used], task.limits[used]
     weight = 1 / task.grasp.lengths
-    g, w = grasp.matrix * weight[:, None], loads * weight
+    g, w = grasp.cones.matrix * weight[:, None], loads * weight
+    whole, forces = forces.shape[2], forces[..., : grasp.width]  # where no soft finger is left, narrower
     flat = forces.reshape(len(forces), -1)
     inverse = np.linalg.pinv(g)
     for _ in range(2):
         flat = flat - (flat @ g.T + w) @ inverse.T
     moved = flat.reshape(forces.shape)
-    normal = (moved * grasp.normals).sum(axis=-1)
+    normal = grasp.cones.normal(moved)
     inside = grasp.cones.tangential(moved) <= mu * normal
     inside &= (moved**2).sum(axis=-1) <= limits**2
     scale = np.maximum(abs(flat).max(axis=1), abs(w).max(axis=1))
     good = inside.all(axis=1) & (abs(flat @ g.T + w).max(axis=1) <= EQUILIBRIUM / 2 * scale)
     for k in np.flatnonzero(~good):
         exact = nearest_equilibrium(
-            forces[k], grasp.matrix, loads[k], grasp.normals, mu, limits, task.grasp.size or 1.0
+            forces[k], grasp.cones.matrix, loads[k], grasp.cones.normals, mu, limits, task.grasp.size or 1.0
         )
         moved[k] = np.inf if exact is None else exact
-    return moved
+    return np.pad(moved, ((0, 0), (0, 0), (0, whole - grasp.width)))
 
 
 def _breach(task: PathTask, forces: Array) -> float:
     """The fraction by which the exact forces break a rate or a least normal force; not above 0 if none."""
     speed = np.linalg.norm(np.diff(forces, axis=0), axis=-1) / np.diff(task.times)[:, None]
-    normal = (forces * task.grasp.normals).sum(axis=-1)
+    normal = task.grasp.cones.normal(forces)
     needed = task.active & (task.least_normals > 0)
     short = (1 - normal / np.where(task.least_normals > 0, task.least_normals, 1.0))[needed]
     return float(max((speed / task.rates - 1).max(), short.max(initial=-inf)))

@@ -105,6 +105,18 @@ class Demand:
         work = self.disturbance.support(twists)
         return work + _SPARE * np.abs(work)
 
+    def largest_changes(self) -> Array:
+        """(n,) at least the largest change of each force on the way [N]."""
+        responses, around, axes = self.cases[0].responses, self.disturbance.cover, self.disturbance.half_axes
+        if axes is None:
+            assert around is not None
+            changes = np.einsum("nwq,vq->nvw", responses, around)
+            most: Array = np.sqrt((changes * changes).sum(axis=-1)).max(axis=1)
+            return most
+        middle = np.linalg.norm(responses @ self.disturbance.center.vector, axis=1)
+        widest: Array = middle + np.linalg.norm(responses @ axes, 2, axis=(1, 2))
+        return widest
+
     def spare(self, forces: Array, limits: Array, *, on_the_way: bool = False) -> float:
         """The least distance to the edges of cones and to limits, over all members [N].
 
