@@ -47,7 +47,8 @@ class HoldGraph(ArrayValue):
     least angle margin [rad] of its states, with forces below the contacts' own limits or, without one,
     ``peak_ratio`` times the least peak force. min_distance: between two fingers [m]. keep: a filter of pairs
     by reach or collision. one_finger: whether a pair also holds where one of its fingers carries the whole
-    load; otherwise both have to push (see ``single_fingers``). ``margins`` takes 4 bytes per pair and
+    load; otherwise both have to push (see ``single_fingers``). min_normal: with which each pushes at the
+    least [N]. ``margins`` takes 4 bytes per pair and
     angle, and raises ``InvalidInput`` where that is more than ``most_bytes``; ``widest`` does without.
     """
 
@@ -59,6 +60,7 @@ class HoldGraph(ArrayValue):
     keep: Filter | None = None
     most_bytes: int = MOST_BYTES
     one_finger: bool = False
+    min_normal: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "angles", array(self.angles, "angles", (None,)))
@@ -96,18 +98,36 @@ class HoldGraph(ArrayValue):
                 f"{count} points at {len(self.angles)} orientations need {needed / 2**30:.3g} GiB, more than "
                 f"{self.most_bytes / 2**30:.3g}; take fewer, allow more by most_bytes, or ask for widest()"
             )
-        result = np.empty((len(self.angles), self.pairs[0].size), dtype=np.float32)
-        hold_margins(*self.pairs, self.loads, self._candidates, result)
-        result[:, ~self._apart] = NO_HOLD
-        for o, places in self._alone.items():
-            result[o, places] = self._shared(o, places)
+        result = np.full((len(self.angles), self.pairs[0].size), NO_HOLD, dtype=np.float32)
+        if self.min_normal:
+            self._pressed(result)
+        else:
+            hold_margins(*self.pairs, self.loads, self._candidates, result)
+            result[:, ~self._apart] = NO_HOLD
+            for o, places in self._alone.items():
+                result[o, places] = self._shared(o, places)
         if self.keep is not None:
             for o, row in enumerate(result):
                 row[~self._kept(o)] = NO_HOLD
         return result
 
+    def _pressed(self, result: NDArray[np.float32]) -> None:
+        """Writes margins (O, P) of pairs both of which push with the least normal force."""
+        from regrasp.planning.holds.turning.margins import Candidates
+
+        some = np.flatnonzero(self._apart)
+        first, second = (ends[some].astype(np.int64) for ends in self.pairs)
+        pair = Candidates(self.contacts, self.load, self.peak_ratio, self.one_finger, self.min_normal)
+        for row, angle in zip(result, self.angles.tolist(), strict=True):
+            row[some] = pair.margins((first, second), np.full(some.size, angle))
+
     def widest(self) -> WidestHolds:
         """The widest hold of every pair over all angles, in memory that does not grow with the angles."""
+        if self.min_normal:
+            table = self.margins
+            return WidestHolds(
+                table.max(axis=0), table.argmax(axis=0).astype(np.int32), (table >= 0).sum(axis=1)
+            )
         from regrasp.closed_form.compiled.holds import NO_HOLD, STRETCH, widest_margins
 
         size = self.pairs[0].size

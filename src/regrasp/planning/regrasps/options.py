@@ -39,6 +39,7 @@ class RegraspOptions(LimitOptions, total=False):
     arcs: Arcs | None
     one_finger: bool
     weights: RegraspWeights | None
+    min_normal: float
     step_duration: float
     goal_rotation: ArrayLike | None
     facets: int
@@ -62,8 +63,15 @@ def settled(problem: Any) -> Criteria:
     given = {name: getattr(problem, name) for name in entries}
     defaults = {name: option.default for name, (_, option) in entries.items()}
     changed = {k: v for k, v in given.items() if not isinstance(v, float | None) or v != defaults[k]}
+    if getattr(problem, "min_normal", 0.0):
+        changed["min_normal"] = number(problem.min_normal, "min_normal", least=0)
     criteria = criteria_of(problem.objective, changed)
-    criteria.refuse_pressing("a regrasp")
+    if not hasattr(problem, "min_normal"):
+        criteria.refuse_pressing("a regrasp in space")
+    elif criteria.presses and problem.states == "joint":
+        raise InvalidInput("states='joint' takes no min_normal; leave one of them out")
+    else:
+        object.__setattr__(problem, "min_normal", criteria.least_normal)
     for name in ("objective", *entries):
         object.__setattr__(problem, name, getattr(criteria, name))
     return criteria

@@ -80,6 +80,8 @@ class RegraspProblem(ArrayValue):
             must push.
         weights: look for the least cost in place of the fewest moves and the widest margin.
         max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
+        min_normal: with which every finger of a state pushes at the least, those that leave and arrive during
+            a step apart [N].
         peak_ratio: as for ``choose_state`` [-].
         reserve: as for ``choose_state`` [-].
         step_duration: [s] of each step.
@@ -109,6 +111,7 @@ class RegraspProblem(ArrayValue):
     peak_ratio: float = PEAK_RATIO
     reserve: float = RESERVE
     step_duration: float = 1.0
+    min_normal: float = 0.0
 
     def __post_init__(self) -> None:
         if not isinstance(self.outline, Outline):
@@ -176,7 +179,7 @@ class RegraspProblem(ArrayValue):
         kept = tuple(c.changed(friction=kept_friction(c.friction, self.reserve)) for c in contacts)
         return HoldGraph(
             kept, self.load, self.angles, self.peak_ratio, self.min_distance, self.keep,
-            one_finger=self.one_finger,
+            one_finger=self.one_finger, min_normal=self.min_normal,
         )  # fmt: skip
 
     @cached_property
@@ -322,7 +325,7 @@ class RegraspProblem(ArrayValue):
         )
         if self.states == "joint":
             states = spread_states(states, self.criteria, self.least_margin)
-        return regrasp_of(states, self.contacts, TimeScaling.spline(self.step_duration), self.reserve)
+        return regrasp_of(states, self.contacts, TimeScaling.spline(self.step_duration), self.criteria)
 
 
 def _order(sequence: Sequence) -> tuple[float, ...]:

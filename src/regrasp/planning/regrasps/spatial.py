@@ -240,7 +240,7 @@ class SpaceRegraspProblem(ArrayValue):
             states = spread_states(states, self.criteria, self.least_margin)
         scaling = TimeScaling.spline(self.step_duration)
         steps = [
-            step_between(a, b, self.contacts, scaling, self.reserve, *_turn(u, v))
+            step_between(a, b, self.contacts, scaling, self.criteria, *_turn(u, v))
             for (a, b), (u, v) in zip(pairwise(states), pairwise(ways), strict=True)
         ]
         steps += self._last_turn(steps, scaling)

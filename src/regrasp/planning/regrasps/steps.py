@@ -165,10 +165,10 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
 
 
 def regrasp_of(
-    states: list[Chosen], contacts: tuple[Contact, ...], scaling: TimeScaling, reserve: float
+    states: list[Chosen], contacts: tuple[Contact, ...], scaling: TimeScaling, criteria: Criteria
 ) -> RegraspPlan:
     """The steps between states that follow one another."""
-    steps = [step_between(a, b, contacts, scaling, reserve, b.angle - a.angle) for a, b in pairwise(states)]
+    steps = [step_between(a, b, contacts, scaling, criteria, b.angle - a.angle) for a, b in pairwise(states)]
     return RegraspPlan(tuple(steps), tuple(s.angle for s in states), least_margin(states))
 
 
@@ -203,7 +203,7 @@ def step_between(
     after: Chosen,
     contacts: tuple[Contact, ...],
     scaling: TimeScaling,
-    reserve: float,
+    criteria: Criteria,
     turn: float,
     axis: Array | None = None,
 ) -> Transition:
@@ -219,7 +219,10 @@ def step_between(
     end = GraspState(grasp, after.load, after.among(places))
     leaving = tuple(str(contacts[i].name) for i in places if i not in after.places)
     arriving = tuple(str(contacts[i].name) for i in places if i not in before.places)
-    record = Record(reserve, (_choice("start", before), _choice("end", after)))
+    stay = [i in before.places and i in after.places for i in places]
+    least = [criteria.least_normal * stays for stays in stay] if criteria.presses else []
+    choices = (_choice("start", before), _choice("end", after))
+    record = Record(criteria.reserve, choices, least_normals=tuple(least))
     path = STRAIGHT if turn == 0 else TurningPath([0.0, turn], [start.forces, end.forces], axis)
     return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving, path))
 
@@ -238,5 +241,5 @@ def _unwrapped(angles: list[float]) -> list[float]:
     result: list[float] = []
     for angle in angles:
         last = result[-1] if result else 0.0
-        result.append(last + (angle - last + pi) % (2 * pi) - pi)
+        result.append(angle + 2 * pi * round((last - angle) / (2 * pi)))
     return result

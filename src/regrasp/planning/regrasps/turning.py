@@ -24,7 +24,9 @@ def turning_sequences(problem: Asked, extra: int, least_margin: float) -> list[T
 def _search(problem: Asked, count: int, least_margin: float) -> ExactSearch:
     """The search among the first ``count`` contacts."""
     graph = problem.graph
-    candidates = Candidates(graph.contacts[:count], problem.load, graph.peak_ratio, problem.one_finger)
+    candidates = Candidates(
+        graph.contacts[:count], problem.load, graph.peak_ratio, problem.one_finger, graph.min_normal
+    )
     allowed = None if problem.allowed is None else problem.allowed[:, :count]
     apart = apart_from_each_other(candidates.points, problem.min_distance)
     return ExactSearch(candidates, apart, allowed, problem.max_turn, least_margin)

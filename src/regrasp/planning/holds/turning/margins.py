@@ -12,6 +12,7 @@ from regrasp.planning.states.batch import best_squeezes
 
 # As for holds at given orientations (``single_fingers``).
 _THROUGH, _IDLE = 1e-11, 2.0**-39
+_SPARE = 1e-9  # of limits and margins [rad] after a squeeze was moved
 
 Pairs = tuple[NDArray[np.int64], NDArray[np.int64]]
 """Places (m,) of the first and the second contacts."""
@@ -21,13 +22,19 @@ class Candidates:
     """Contacts as arrays, the load that two of them are to hold, and what limits their forces."""
 
     def __init__(
-        self, contacts: tuple[Contact, ...], load: Wrench, peak_ratio: float, one_finger: bool
+        self,
+        contacts: tuple[Contact, ...],
+        load: Wrench,
+        peak_ratio: float,
+        one_finger: bool,
+        min_normal: float = 0.0,
     ) -> None:
         self.points = np.array([c.position for c in contacts])
         self.normals = np.array([c.normal for c in contacts])
         self.mu = np.array([c.friction for c in contacts])
         self.limits = np.array([inf if c.max_force is None else c.max_force for c in contacts])
         self.load, self.peak_ratio, self.one_finger = load.force, peak_ratio, one_finger
+        self.min_normal = min_normal
 
     @property
     def direction(self) -> float:
@@ -72,7 +79,11 @@ class Candidates:
         v = np.stack([-u[:, 1], u[:, 0]], axis=-1)
         b = (r1[:, 0] * loads[:, 1] - r1[:, 1] * loads[:, 0]) / length
         a = -(v * loads).sum(axis=-1) - b
-        y = -x - (u * loads).sum(axis=-1)
+        along = (u * loads).sum(axis=-1)
+        if self.min_normal:
+            each = [((n * u).sum(axis=-1), (n * v).sum(axis=-1)) for n in (n1, n2)]
+            x = _pressing(x, along, a, b, each, self.min_normal)
+        y = -x - along
         forces = x[:, None] * u + a[:, None] * v, y[:, None] * u + b[:, None] * v
         sizes = np.stack([np.hypot(*f.T) for f in forces])
         work = sizes > _IDLE * sizes.max(axis=0)
@@ -82,4 +93,43 @@ class Candidates:
             across = abs(n[:, 0] * f[:, 1] - n[:, 1] * f[:, 0])
             angle = np.arctan(mu) - np.arctan2(across, normal)
             margin = np.where(working, np.minimum(margin, angle), margin)
+        if self.min_normal:  # the best of all states was moved: it may have left the cones or the limits
+            peak = self._peaks(pairs, loads)
+            most = [np.where(np.isinf(limit), self.peak_ratio * peak, limit) for limit in limits]
+            over = np.any(
+                [size > limit * (1 + _SPARE) for size, limit in zip(sizes, most, strict=True)], axis=0
+            )
+            x = np.where(over | (margin < -_SPARE), np.nan, x)
         return np.where(np.isnan(x), -1.0, np.maximum(margin, 0.0)), work.all(axis=0) & ~np.isnan(x)
+
+    def _peaks(self, pairs: Pairs, loads: Array) -> Array:
+        """(m,) least peak forces [N], not a number where no state exists."""
+        (r1, n1, mu1), (r2, n2, mu2) = (self.of(places) for places in pairs)
+        limits = self.limits[pairs[0]], self.limits[pairs[1]]
+        x = best_squeezes(r1, n1, mu1, r2, n2, mu2, loads, objective="peak", max_force=limits)
+        line = r2 - r1
+        length = np.hypot(*line.T)
+        u = line / length[:, None]
+        b = (r1[:, 0] * loads[:, 1] - r1[:, 1] * loads[:, 0]) / length
+        a = u[:, 1] * loads[:, 0] - u[:, 0] * loads[:, 1] - b
+        peaks: Array = np.maximum(np.hypot(x, a), np.hypot(x + (u * loads).sum(axis=-1), b))
+        return peaks
+
+
+def _pressing(
+    x: Array, along: Array, a: Array, b: Array, normals: list[tuple[Array, Array]], least: float
+) -> Array:
+    """The squeezes nearest to x (m,) with which both normal forces are at least ``least``; NaN for none.
+
+    The best margin has one peak over the squeeze, so it is there under the two bounds, c x + s a >= least and
+    -c (x + along) + s b >= least, with the normals (c, s) along the line and across it.
+    """
+    (c1, s1), (c2, s2) = normals
+    lo, hi = np.full(x.shape, -inf), np.full(x.shape, inf)
+    for slope, rest in ((c1, least - s1 * a), (-c2, least + c2 * along - s2 * b)):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            bound = rest / slope
+        lo = np.where(slope > 0, np.maximum(lo, bound), lo)
+        hi = np.where(slope < 0, np.minimum(hi, bound), hi)
+        lo = np.where((slope == 0) & (rest > 0), inf, lo)
+    return np.where(lo <= hi, np.minimum(np.maximum(x, lo), hi), np.nan)
