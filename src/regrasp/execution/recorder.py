@@ -70,13 +70,17 @@ class Recorder:
         return flat.reshape(3, 3)
 
     def _slip_of(self, data: Any, R: Array, fingers: NDArray[np.intp], contacts: NDArray[np.intp]) -> None:
-        """Add the sliding of a step."""
-        d, scene = self._d, self._scene
+        """Add the sliding of a step, whose velocities are those of its middle: q_j+1 = q_j + v_j+1 dt.
+
+        With arms of its end a turn by omega would count as sliding by omega^2 |arm| dt / 2 a second.
+        """
+        d, scene, half = self._d, self._scene, self._units.timestep / 2
         normals = self._normals[contacts]
-        reach = self._units.tip_radius * (normals @ R.T)  # from the tips' centres to where they touch
-        tips, speeds = data.qpos[scene.slides.places[fingers]], data.qvel[scene.slides.speeds[fingers]]
-        arm = tips + reach - data.qpos[:d]
         spin = data.qvel[2:3] if d == 2 else R @ data.qvel[3:6]
+        reach = self._units.tip_radius * (normals @ R.T)  # from the tips' centres to where they touch
+        reach = reach - half * _cross(spin, reach)
+        tips, speeds = data.qpos[scene.slides.places[fingers]], data.qvel[scene.slides.speeds[fingers]]
+        arm = tips + reach - data.qpos[:d] - half * (speeds - data.qvel[:d])
         relative = speeds - data.qvel[:d] - _cross(spin, arm)
         if scene.joints is not None:
             turning = data.qvel[scene.joints.speeds[fingers]]
