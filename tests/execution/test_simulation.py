@@ -81,9 +81,8 @@ def test_units_change_nothing(length: float, force: float, time: float) -> None:
 
 def test_a_whole_regrasp_holds_and_every_finger_is_where_it_should_be() -> None:
     outline = rg.Outline.ellipse(0.04, 0.02)
-    regrasp = rg.plan_regrasp(
-        outline, ellipse(0.02, 0.35, 0.7), ellipse(0.2, 0.5, 0.85), rg.Wrench([0, -3.0]), friction=0.5
-    )
+    ends = ellipse(0.02, 0.35, 0.7), ellipse(0.2, 0.5, 0.85)
+    regrasp = rg.plan_regrasp(outline, *ends, rg.Wrench([0, -3.0]), friction=0.5, orientations=1)
     execution = simulate(regrasp, shape=outline)
     assert execution.held
     assert execution.touching.sum(axis=1).min() >= 2
