@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from regrasp.measures.measure import Measure, Quality
     from regrasp.measures.quality import quality
     from regrasp.measures.wrench_ball import WrenchBall, wrench_ball
+    from regrasp.measures.wrench_balls import wrench_balls
     from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
+    from regrasp.planning.robustness.batch import BatchTolerances, batch_tolerances
     from regrasp.planning.robustness.least_stiffness import least_stiffness
     from regrasp.planning.robustness.margin_curve import MarginCurve, margin_curve
     from regrasp.planning.robustness.tolerances import Tolerances, tolerances
@@ -60,6 +62,9 @@ __version__ = "0.1.0"
 
 # Loaded when they are asked for, so that `import regrasp` stays fast: all but the choice of a state.
 _LATER = {
+    "BatchTolerances": "regrasp.planning.robustness.batch",
+    "batch_tolerances": "regrasp.planning.robustness.batch",
+    "wrench_balls": "regrasp.measures.wrench_balls",
     "best_squeezes": "regrasp.planning.states.batch",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
     "bottleneck": "regrasp.planning.holds.bottleneck",
@@ -123,6 +128,7 @@ _LATER = {
 }
 
 __all__ = [
+    "BatchTolerances",
     "Bottleneck",
     "ChosenGrasp",
     "ChosenState",
@@ -170,6 +176,7 @@ __all__ = [
     "Verification",
     "Wrench",
     "WrenchBall",
+    "batch_tolerances",
     "best_squeezes",
     "bottleneck",
     "choose_grasp",
@@ -197,6 +204,7 @@ __all__ = [
     "tolerances",
     "verify",
     "wrench_ball",
+    "wrench_balls",
 ]
 
 

@@ -21,7 +21,7 @@ ROWS = rows()
 
 # Records of results: they are made by the verbs, and hold what they are given.
 RECORDS = {
-    "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
+    "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
     "PyramidLosses", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
     "SpaceRegraspPlan", "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
     "HeldCentres", "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath",

@@ -1,0 +1,99 @@
+"""Arrays of grasps say what one grasp after the other says."""
+
+from math import inf
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from strategies import comfortable_pair, comfortable_triple
+
+pytestmark = pytest.mark.oracle
+
+
+def grasps(count: int, fingers: int):
+    """Grasps, loads and forces that balance them with room."""
+    rng, found = np.random.default_rng(fingers), []
+    while len(found) < count:
+        grasp, load = comfortable_pair(rng) if fingers == 2 else comfortable_triple(rng)
+        try:
+            state = rg.choose_state(grasp, load, "force")
+        except rg.Infeasible:
+            continue
+        found.append(rg.GraspState(grasp, load, state.forces))
+    return found
+
+
+@pytest.mark.parametrize("fingers", [2, 3])
+def test_tolerances_of_arrays_are_those_of_each(fingers: int) -> None:
+    states = grasps(40, fingers)
+    rng = np.random.default_rng(0)
+    stiffness = rng.uniform(100, 2000, (len(states), fingers))
+    found = rg.batch_tolerances(
+        np.array([s.grasp.positions for s in states]),
+        np.array([3 * s.grasp.normals for s in states]),
+        np.array([s.grasp.frictions for s in states]),
+        np.array([s.forces for s in states]),
+        stiffness=stiffness,
+    )
+    for i, state in enumerate(states):
+        alone = rg.tolerances(state, stiffness=stiffness[i]).withstood
+        for key in ("friction", "load", "tilt", "centre"):
+            value = getattr(alone, key)
+            if value < inf:
+                assert getattr(found, key)[i] == pytest.approx(value, rel=1e-8, abs=1e-10), key
+        wrench = rg.Criteria("wrench", stiffness=stiffness[i]).objective.value(state)
+        assert found.wrench[i] * state.grasp.size**0 == pytest.approx(wrench, rel=1e-8)
+
+
+@pytest.mark.parametrize("norm", ["Linf", "L1"])
+@pytest.mark.parametrize("fingers", [2, 3, 4])
+def test_wrench_balls_of_arrays_are_those_of_each(norm: str, fingers: int) -> None:
+    rng = np.random.default_rng(fingers)
+    r = rng.normal(size=(30, fingers, 2))
+    n = -r + 0.5 * rng.normal(size=r.shape)
+    mu = rng.uniform(0, 1, (30, fingers))
+    found = rg.wrench_balls(r, n, mu, limit=2.0, norm=norm).tolist()
+    closed = 0
+    for i, radius in enumerate(found):
+        grasp = rg.Grasp(rg.Contact(*c) for c in zip(r[i], n[i], mu[i], strict=True))
+        alone = rg.wrench_ball(grasp, limit=2.0, norm=norm).radius
+        assert radius == pytest.approx(alone, rel=1e-9, abs=1e-12)
+        closed += radius > 0
+    assert 0 < closed < 30
+    one = rg.wrench_balls(r[0], n[0], mu[0], limit=2.0, norm=norm, length=3.0)
+    grasp = rg.Grasp(rg.Contact(*c) for c in zip(r[0], n[0], mu[0], strict=True))
+    assert one == pytest.approx(rg.wrench_ball(grasp, limit=2.0, norm=norm, length=3.0).radius, rel=1e-9)
+
+
+def test_shapes_broadcast_and_degenerate_grasps_have_nothing() -> None:
+    r, n = np.array([[-1.0, 0], [1, 0]]), np.array([[1.0, 0], [-1, 0]])
+    balls = rg.wrench_balls(r, n, np.array([[0.1], [0.2], [0.5]]))
+    assert balls.shape == (3,)
+    assert (np.diff(balls) > 0).all()
+    assert rg.wrench_balls(r, n, 0.0) == 0
+    assert rg.wrench_balls([[0, 0], [0, 0]], n, 0.5) == 0
+    still = rg.batch_tolerances(r, n, 0.5, np.zeros((2, 2)))
+    assert np.isnan(still.wrench)
+    outside = rg.batch_tolerances(r, n, 0.5, [[1, 2], [-1, -2]])
+    assert outside.friction > 1
+    assert outside.wrench < 0
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: rg.wrench_balls([[0, 0, 0]], [[1, 0, 0]], 1), r"must have shape \(\.\.\., n, 2\)"),
+        (lambda: rg.wrench_balls([[0, 0]], [[1, 0]], 1), "2 to 8 fingers, got 1"),
+        (lambda: rg.wrench_balls(np.ones((2, 2)), np.zeros((2, 2)), 1), "normals must not be zero"),
+        (lambda: rg.wrench_balls(np.ones((2, 2)), np.ones((2, 2)), -1), "at least 0 everywhere"),
+        (lambda: rg.wrench_balls(np.ones((4, 2, 2)), np.ones((3, 2, 2)), 1), "must broadcast"),
+        (
+            lambda: rg.batch_tolerances(np.ones((2, 2)), np.ones((2, 2)), 1, np.ones(3)),
+            "forces must have shape",
+        ),
+    ],
+)
+def test_wrong_arrays_are_refused(call, said: str) -> None:
+    with pytest.raises(rg.InvalidInput, match=said):
+        call()
