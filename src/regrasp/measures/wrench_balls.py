@@ -6,7 +6,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.measures.wrench_ball import NORMS, Norm
-from regrasp.mechanics.batches import PlanarGrasps
+from regrasp.mechanics.arrays.planar import PlanarGrasps
 from regrasp.mechanics.checks import Array, ArrayLike, choice, finite, number
 
 _NOISE = 1e-14

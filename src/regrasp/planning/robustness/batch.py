@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.batches import PlanarGrasps
+from regrasp.mechanics.arrays.planar import PlanarGrasps
 from regrasp.mechanics.checks import Array, ArrayLike, finite
 
 _NOTHING = 1e-14

@@ -1,0 +1,1 @@
+"""Arrays of grasps, checked and laid out for work on many at once."""
