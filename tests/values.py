@@ -146,6 +146,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "LargestLoad": lambda: rg.largest_load(PAIR, LOAD, max_force=20.0),
     "HeldCentres": lambda: rg.held_centres(PAIR, rg.Wrench(LOAD.force), max_force=20.0),
     "ChosenGrasp": placed,
+    "ContactRegions": lambda: rg.contact_regions(SQUARE_OUTLINE, placed().grasp, WEIGHT_IN_PLANE),
     "OtherGrasp": lambda: placed().others[0],
     "PlacementProof": lambda: placed().certificate,
     "LoadSet": lambda: rg.LoadSet.ball(LOAD, force=1.0, torque=0.1),

@@ -277,6 +277,11 @@ def rows() -> dict[str, Row]:
                 "progress": "function",
             },
         ),
+        "contact_regions": Row(
+            rg.contact_regions,
+            {"shape": SQUARE_OUTLINE, "grasp": placed().grasp, "load": WEIGHT_IN_PLANE},
+            {"shape": "value"},
+        ),
         "ChosenGrasp.from_dict": Row(rg.ChosenGrasp.from_dict, {"data": placed().to_dict()}),
         "least_stiffness": Row(
             rg.least_stiffness,

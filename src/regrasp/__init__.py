@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from regrasp.planning.holds.weights import RegraspWeights
     from regrasp.planning.placement.choosing import choose_grasp
     from regrasp.planning.placement.chosen import ChosenGrasp
+    from regrasp.planning.placement.regions import ContactRegions, contact_regions
     from regrasp.planning.regrasps.planar import RegraspProblem
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
@@ -72,6 +73,8 @@ _LATER = {
     "choose_grasp": "regrasp.planning.placement.choosing",
     "Closure": "regrasp.measures.closure",
     "closure": "regrasp.measures.closure",
+    "contact_regions": "regrasp.planning.placement.regions",
+    "ContactRegions": "regrasp.planning.placement.regions",
     "EquilibriumLocus": "regrasp.planning.states.two_fingers",
     "ForceCost": "regrasp.planning.states.objectives",
     "held_centres": "regrasp.planning.surveys.extremes.held_centres",
@@ -134,6 +137,7 @@ __all__ = [
     "ChosenState",
     "Closure",
     "Contact",
+    "ContactRegions",
     "Criteria",
     "EquilibriumLocus",
     "EscapeTwist",
@@ -183,6 +187,7 @@ __all__ = [
     "carried_load",
     "choose_state",
     "closure",
+    "contact_regions",
     "held_centres",
     "held_directions",
     "held_sphere",

@@ -127,6 +127,7 @@ ROOMS: dict[str, Set[str]] = {
     "plots.escapes": _DRAWN,
     "plots.regrasps": _DRAWN,
     "plots.surveys": _DRAWN,
+    "plots.placement": _DRAWN,
     "plots.pages": _DRAWN
     | {"plots.over_time", "plots.wrench_space", "plots.escapes", "plots.regrasps", "plots.surveys"},
     "files.plans": set(),

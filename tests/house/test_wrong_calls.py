@@ -23,6 +23,7 @@ ROWS = rows()
 RECORDS = {
     "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
     "PyramidLosses", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
+    "ContactRegions",
     "SpaceRegraspPlan", "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
     "HeldCentres", "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath",
     "SampledPath", "TurningPath",

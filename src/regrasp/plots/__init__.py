@@ -32,6 +32,7 @@ from regrasp.plots.pages.overview import (
 )
 from regrasp.plots.pages.page import html
 from regrasp.plots.pages.run_film import animate_execution
+from regrasp.plots.placement.chosen import plot_chosen_grasp, plot_contact_regions
 from regrasp.plots.regrasps.hold_map import plot_hold_map
 from regrasp.plots.regrasps.steps import plot_regrasp
 from regrasp.plots.regrasps.trade_off import plot_trade_off
@@ -62,6 +63,8 @@ __all__ = [
     "iso_torque_figure",
     "load_sphere_figure",
     "plot_angles",
+    "plot_chosen_grasp",
+    "plot_contact_regions",
     "plot_directions",
     "plot_escape",
     "plot_force_components",

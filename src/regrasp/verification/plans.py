@@ -27,6 +27,7 @@ from regrasp.verification.load_gap import check_load
 from regrasp.verification.placements import Proof
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
+from regrasp.verification.regions import Regions, verify_regions
 from regrasp.verification.regrasps import Regrasp, check_joints
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
@@ -37,7 +38,7 @@ _NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "
 
 
 def verify(
-    plan: Plan | Regrasp | Chosen | Proof,
+    plan: Plan | Regrasp | Chosen | Proof | Regions,
     load: Callable[[float], Wrench] | None = None,
     *,
     curvature: float | None = None,
@@ -54,7 +55,8 @@ def verify(
     every box of the proof that no placement is better.
 
     Args:
-        plan: a transition, a regrasp or a chosen grasp, whoever made it; or the proof of a bound alone.
+        plan: a transition, a regrasp, a chosen grasp or contact regions, whoever made it; or the proof of a
+            bound alone.
         load: a function of time [s] that the plan was made for. The plan's load is linear between its
             instants and is what the forces balance exactly; the function may differ from it between them.
             That gap must be less than the margins can take: forces that balance the function must exist
@@ -76,10 +78,12 @@ def verify(
     Raises:
         InvalidInput: For what is no plan, no load function or no curvature.
     """
-    if hasattr(plan, "certificate") or hasattr(plan, "twists"):
+    if any(hasattr(plan, name) for name in ("certificate", "twists", "corners")):
         more_asked = (load, curvature, disturbance, stiffness, friction, position, surface)
         if early_loss or any(value is not None for value in more_asked):
             raise InvalidInput("a chosen grasp holds its own loads: verify takes nothing else beside it")
+        if hasattr(plan, "corners"):
+            return verify_regions(cast(Regions, plan))
         if hasattr(plan, "certificate"):
             return verify_chosen(cast(Chosen, plan))
         return verify_proof(cast(Proof, plan))
@@ -98,6 +102,7 @@ def verify(
             "early_loss": early_loss,
         }
         return _verify_regrasp(cast(Regrasp, plan), more)
+    plan = cast(Plan, plan)
     if not all(hasattr(plan, name) for name in _NEEDED) or not (
         isinstance(plan.start, GraspState) and isinstance(plan.end, GraspState)
     ):

@@ -1,0 +1,197 @@
+"""How far the fingers of a grasp may miss their places: regions within which every choice holds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
+from regrasp.mechanics.checks import Array, number, read_only
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.outline.polygon import PolygonBoundary
+from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.loads import check_planar, inner_and_outer
+from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sides import Sides, sides_of
+from regrasp.planning.states.choosing import choose_state
+
+PEAK_RATIO = 3.0
+"""Default limit on every force, as a multiple of the least largest force of the grasp as it is."""
+_ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
+_HALVINGS = 40
+_LESS = 1e-6  # of widths and of friction, given up so that forces at the corners exist for solvers, too
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactRegions(ArrayValue):
+    """Arcs of an outline, one for each finger: wherever in them the fingers are, they hold the loads.
+
+    Args:
+        shape: the outline.
+        grasp: the contacts in the middle of it all.
+        places: (k,) their arc lengths [m].
+        arcs: (k, 2) arc lengths at which regions begin and end: all may be anywhere in theirs at once [m].
+        half_width: every finger may be so far off, to either side or to the end of its side, all at once [m].
+        alone: (k, 2) how far one finger may be off, back and ahead, while the others are at their places [m].
+        max_force: no force need be larger [N].
+        corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12).
+    """
+
+    shape: Outline
+    grasp: Grasp
+    places: Array
+    arcs: Array
+    half_width: float
+    alone: Array
+    max_force: float
+    corners: tuple[GraspState, ...]
+
+    @property
+    def widths(self) -> Array:
+        """(k,) of the arcs [m]."""
+        result: Array = self.arcs[:, 1] - self.arcs[:, 0]
+        return result
+
+    def __repr__(self) -> str:
+        widths = ", ".join(f"{w:.4g}" for w in self.widths)
+        return f"ContactRegions(all off by {self.half_width:.4g}, widths {widths})"
+
+
+def contact_regions(
+    shape: Outline, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
+) -> ContactRegions:
+    """Independent regions around the contacts of a grasp: every choice within them holds the loads.
+
+    On straight sides every placement of a box of arcs holds a load, with forces below a limit, if and only if
+    the box's corners do: between two ends of one arc, forces are mixed so that the centre of pressure of that
+    finger is where it stands. So corners prove regions, and the half width is exact to rounding. From there
+    the ends of the arcs are moved out one after the other as far as they go.
+
+    Args:
+        shape: a polygon.
+        grasp: contacts on its outer boundary, all of one friction, relative to the centre of mass; up to six.
+        load: external wrench on the object about its centre of mass, or a set of them [N, N m].
+        max_force: limit on every force [N]; three times the least that the grasp needs if not given.
+
+    Raises:
+        Infeasible: Where the grasp itself does not hold the loads.
+        InvalidInput: For arguments that are not what they must be.
+    """
+    if not isinstance(shape, Outline) or not isinstance(shape.boundary, PolygonBoundary):
+        raise InvalidInput(f"shape must be an Outline that is a polygon, got {shown(shape)}")
+    if not isinstance(grasp, Grasp) or grasp.dimension != 2 or not 2 <= len(grasp) <= 6:
+        raise InvalidInput(f"grasp must be a planar Grasp of two to six contacts, got {shown(grasp)}")
+    if len(set(grasp.frictions.tolist())) > 1:
+        raise InvalidInput("contacts of a grasp with regions must all have the same friction")
+    check_planar(load)
+    given = None if max_force is None else number(max_force, "max_force", above=0)
+    sides = sides_of(shape, 0.0)
+    places, u = _on_sides(sides, grasp)
+    _, loads = inner_and_outer(load, 1e-3)
+    kept = float(grasp.frictions[0]) * (1 - _LESS)
+    search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
+    least = search.norm_at(places, u)
+    if not least < np.inf:
+        raise Infeasible(
+            "the grasp itself does not hold the loads with a millionth of its friction kept back"
+        )
+    if given is None and least == 0.0:
+        raise InvalidInput("no force follows from a zero load: give max_force")
+    limit = PEAK_RATIO * least if given is None else given
+    if least > limit:
+        raise Infeasible(f"the grasp itself needs a force of {least:.6g} N, above max_force {limit:.6g} N")
+    return _widest(shape, grasp, search, places, u, limit)
+
+
+def _widest(
+    shape: Outline, grasp: Grasp, search: Search, places: np.ndarray, u: Array, limit: float
+) -> ContactRegions:
+    sides, k = search.sides, len(places)
+    lengths = sides.lengths[sides.edges[places]]
+    ends = np.stack([u, u], axis=1)
+    room = sides.ends[places]  # (k, 2)
+    ways: Array = np.array([-1.0, 1.0])
+
+    def holds(box: Array) -> bool:
+        return all(search.norm_at(places, np.array(c)) <= limit for c in product(*box))
+
+    def off(width: float) -> Array:
+        result: Array = np.clip(u[:, None] + ways * width / lengths[:, None], room[:, :1], room[:, 1:])
+        return result
+
+    half = _farthest(lambda width: holds(off(width)), float(lengths.max()))
+    box = off(half * (1 - _LESS))
+    for i, end in product(range(k), range(2)):
+        box[i, end] = _moved_out(holds, box, i, end, room[i, end])
+    box = u[:, None] + (1 - _LESS) * (box - u[:, None])
+    alone = np.zeros((k, 2))
+    for i, end in product(range(k), range(2)):
+        reached = _moved_out(holds, ends, i, end, room[i, end])
+        alone[i, end] = abs(reached - u[i]) * lengths[i]
+    corners = []
+    for corner in product(*box):
+        at = Grasp(
+            sides.contact(int(side), float(v), c.friction, c.name or "")
+            for side, v, c in zip(places, corner, grasp, strict=True)
+        )
+        try:
+            corners += [_plain(at, Wrench.from_vector(w), limit) for w in search.loads]
+        except RegraspError as error:
+            raise Infeasible(
+                f"a corner of the regions was left without forces by rounding: {error}"
+            ) from None
+    starts = sides.starts[sides.edges[places]] - sides.edges[places] * lengths
+    return ContactRegions(
+        shape, grasp, read_only(starts + u * lengths), read_only(starts[:, None] + box * lengths[:, None]),
+        half * (1 - _LESS), read_only(alone * (1 - _LESS)), limit * (1 + _LESS), tuple(corners),
+    )  # fmt: skip
+
+
+def _plain(grasp: Grasp, load: Wrench, limit: float) -> GraspState:
+    return GraspState(grasp, load, choose_state(grasp, load, "peak", max_force=limit * (1 + _LESS)).forces)
+
+
+def _farthest(holds: Callable[[float], bool], most: float) -> float:
+    """The largest width that holds, of nested ones; 0 holds."""
+    if holds(most):
+        return most
+    lo, hi = 0.0, most
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (lo + hi)
+        lo, hi = (middle, hi) if holds(middle) else (lo, middle)
+    return lo
+
+
+def _moved_out(holds: Callable[[Array], bool], box: Array, i: int, end: int, last: float) -> float:
+    """Where one end of a box may be moved towards ``last``."""
+
+    def moved(fraction: float) -> Array:
+        there = box.copy()
+        there[i, end] = box[i, end] + fraction * (last - box[i, end])
+        return there
+
+    fraction = _farthest(lambda part: holds(moved(part)), 1.0)
+    return float(moved(fraction)[i, end])
+
+
+def _on_sides(sides: Sides, grasp: Grasp) -> tuple[np.ndarray, Array]:
+    """The sides that contacts are on, by point and normal, and their u."""
+    unit = sides.vectors / sides.lengths[:, None]
+    places, u = [], []
+    for contact in grasp:
+        away = contact.position - sides.vertices
+        along = np.clip((away * unit).sum(axis=1), 0.0, sides.lengths)
+        distance = np.hypot(*(away - along[:, None] * unit).T) / sides.size
+        turned = np.hypot(contact.normal[0] + unit[:, 1], contact.normal[1] - unit[:, 0])
+        side = int(np.argmin(distance + turned))
+        if distance[side] + turned[side] > _ON_SIDE:
+            raise InvalidInput(f"contact {contact.name} is on no side of the outline, with its inward normal")
+        places.append(side)
+        u.append(side + along[side] / sides.lengths[side])
+    return np.array(places), np.array(u)

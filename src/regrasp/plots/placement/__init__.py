@@ -1,0 +1,1 @@
+"""Pictures of grasps chosen from a shape."""

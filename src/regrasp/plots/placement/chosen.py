@@ -1,0 +1,97 @@
+"""A chosen grasp on its outline, and regions around contacts."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+
+from regrasp.mechanics.checks import Array, instance
+from regrasp.mechanics.contact import Contact
+from regrasp.planning.placement.chosen import ChosenGrasp
+from regrasp.planning.placement.regions import ContactRegions
+from regrasp.plots.grasps.outline import plot_outline
+from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
+from regrasp.plots.look.units import SI, Units
+
+_CONE = 0.16  # lengths, as fractions of the outline's size
+_OTHERS = 0.04
+
+
+def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """The outline, the fingers chosen with their friction cones, and grasps that were passed over in grey.
+
+    Above stand the value and the bound that no placement is better than; arc lengths are marked outside.
+
+    Args:
+        chosen: what ``regrasp.choose_grasp`` found.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(chosen, "chosen", ChosenGrasp)
+    ax = plot_outline(chosen.shape, ax, units=units)
+    size = float(np.ptp(chosen.shape.polygon(), axis=0).max())
+    for other in chosen.others:
+        ax.plot(
+            *other.grasp.positions.T, "o", color="white", markeredgecolor=GREY, markersize=3.5, zorder=4,
+            gid="other",
+        )  # fmt: skip
+    colours = contact_colours(chosen.grasp)
+    for contact in chosen.grasp:
+        _cone(ax, contact, _CONE * size, colours[contact.name or ""])
+    unit = {"N": units.force, "rad": "rad", "-": ""}[_UNITS.get(chosen.objective, "N")]
+    square = "$^2$" if chosen.objective == "effort" else ""
+    words = f"{chosen.objective} {short(chosen.value)}, bound {short(chosen.bound)} {unit}{square}".strip()
+    handles = [Line2D([], [], marker="o", linestyle="none", color=INK, markersize=4, label=words)]
+    if chosen.others:
+        passed = Line2D([], [], marker="o", linestyle="none", color="white", markersize=3.5, label="others")
+        passed.set_markeredgecolor(GREY)
+        handles.append(passed)
+    legend(ax, handles, ncols=2)
+    return ax
+
+
+_UNITS = {"friction_use": "-", "angle": "rad", "answered": "-"}
+
+
+def plot_contact_regions(regions: ContactRegions, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """The outline with the arc of each finger, thick, in which it may be while the others are in theirs.
+
+    Args:
+        regions: what ``regrasp.contact_regions`` found.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(regions, "regions", ContactRegions)
+    ax = plot_outline(regions.shape, ax, units=units)
+    size = float(np.ptp(regions.shape.polygon(), axis=0).max())
+    colours = contact_colours(regions.grasp)
+    for contact, (lo, hi), width in zip(regions.grasp, regions.arcs, regions.widths, strict=True):
+        colour = colours[contact.name or ""]
+        ends = regions.shape.points([lo, hi])
+        _cone(ax, contact, 0.6 * _CONE * size, colour)
+        ax.plot(*ends.T, color=colour, linewidth=4, solid_capstyle="butt", alpha=0.75, zorder=3, gid="region")
+        note(
+            ax,
+            f"{short(float(f'{width:.3g}'))} {units.length}",
+            ends.mean(axis=0),
+            contact.normal,
+            gap=14.0,
+            color=colour,
+        )
+    half = f"{short(float(f'{regions.half_width:.3g}'))} {units.length}"
+    words = f"regions; all may be off by {half} at once"
+    handles = [Line2D([], [], color=GREY, linewidth=4, label=words)]
+    legend(ax, handles)
+    return ax
+
+
+def _cone(ax: Axes, contact: Contact, length: float, colour: str) -> None:
+    n: Array = contact.normal
+    t = np.array([-n[1], n[0]])
+    edges = [n - contact.friction * t, n + contact.friction * t]
+    corners = [contact.position, *(contact.position + length * e / np.hypot(*e) for e in edges)]
+    ax.add_patch(
+        Polygon(corners, facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=0.8, zorder=3, gid="cone")
+    )
+    ax.plot(*contact.position, "o", color=colour, markersize=4, zorder=5, gid="contact")
+    note(ax, contact.name or "", contact.position, -n, gap=5.0, color=colour)

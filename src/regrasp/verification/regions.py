@@ -1,0 +1,84 @@
+"""The verdict on regions of contacts: states at all their corners.
+
+Fix all fingers but one, which may be anywhere between two ends of an arc of a straight side, and let both
+ends hold a load, with normal forces N_a and N_b of that finger. Mixed with weights 1 - c and c, its forces
+press at c N_b / ((1 - c) N_a + c N_b) of the way, which runs from 0 to 1 with c; so for each place between
+there are forces, mixtures of those at the ends, that hold the load there. Cones and limits are convex and
+keep them. Finger by finger, the corners of a box of arcs prove the whole of it.
+"""
+
+from itertools import product
+from math import inf
+from typing import Protocol
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.verification.chosen_grasps import Shape
+from regrasp.verification.exact import RESOLUTION, check_state, least_angle
+from regrasp.verification.verdict import Verification
+
+
+class Regions(Protocol):
+    """What ``verify`` needs to know of regions, whoever found them; arcs (k, 2) are arc lengths [m]."""
+
+    shape: Shape
+    grasp: Grasp
+    arcs: Array
+    max_force: float
+    corners: tuple[GraspState, ...]
+
+
+def verify_regions(regions: Regions) -> Verification:
+    """The verdict on regions: that wherever in them the fingers are, they hold the loads of the corners."""
+    broken = _check_corners(regions)
+    residuals, slacks, angles = [0.0], [inf], [inf]
+    for i, state in enumerate(regions.corners, 1):
+        residual, slack, violations = check_state(state, f"corner state {i}")
+        residuals.append(residual)
+        slacks.append(slack)
+        angles.append(least_angle(state.grasp, state.forces))
+        largest = float(np.hypot(*state.forces.T).max())
+        if not largest <= regions.max_force:
+            violations.append(
+                f"corner state {i}: a force of {largest:.12g} is above {regions.max_force:.12g}"
+            )
+        broken += violations
+    return Verification(tuple(broken), max(residuals), min(angles), min(slacks))
+
+
+def _check_corners(regions: Regions) -> list[str]:
+    """That every load has a state at every combination of ends, and that arcs are on straight sides."""
+    vertices = np.asarray(regions.shape.polygon())
+    along = np.roll(vertices, -1, axis=0) - vertices
+    lengths = np.hypot(*along.T)
+    starts = np.concatenate([[0.0], np.cumsum(lengths)])
+    slack = float(RESOLUTION) * float(starts[-1])
+    ends, normals = [], []
+    for i, (lo, hi) in enumerate(regions.arcs.tolist(), 1):
+        middle = 0.5 * (lo + hi) % starts[-1]
+        edge = min(int(np.searchsorted(starts, middle, side="right")) - 1, len(vertices) - 1)
+        off = lo - 0.5 * (lo + hi) + middle  # the arc begins here, on this turn around the outline
+        if not (starts[edge] - slack <= off and off + hi - lo <= starts[edge + 1] + slack):
+            return [f"arc {i} is not on one straight side"]
+        unit = along[edge] / lengths[edge]
+        ends.append([vertices[edge] + (s - starts[edge]) * unit for s in (off, off + hi - lo)])
+        normals.append([-unit[1], unit[0]])
+    loads = {tuple(state.load.vector.tolist()) for state in regions.corners}
+    if not loads:
+        return ["no corner has a state"]
+    frictions = regions.grasp.frictions
+    missing = 0
+    for corner in product(*ends):
+        here = {
+            tuple(state.load.vector.tolist())
+            for state in regions.corners
+            if len(state.grasp) == len(corner)
+            and np.abs(state.grasp.positions - corner).max() <= slack
+            and np.abs(state.grasp.normals - normals).max() <= 4 * float(RESOLUTION)
+            and (state.grasp.frictions <= frictions).all()
+        }
+        missing += len(loads - here)
+    return [f"{missing} states of corners are missing"] if missing else []

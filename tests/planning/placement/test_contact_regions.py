@@ -1,0 +1,96 @@
+"""Regions around contacts: every choice within holds, and a little outside some choice does not."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from refusals import refusal
+
+pytestmark = pytest.mark.laws
+
+BRACKET = rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])
+RING = rg.LoadSet.hull(rg.Wrench([np.cos(t), np.sin(t)]) for t in np.arange(5) * 2 * np.pi / 5)
+GRASP = rg.Grasp(
+    BRACKET.contact_at(s, friction=0.5, name=name) for s, name in ((2.0, "a"), (5.9, "b"), (9.6, "c"))
+)
+
+
+def holds(places: np.ndarray, limit: float, load: rg.Wrench) -> bool:
+    grasp = rg.Grasp(BRACKET.contact_at(s, friction=0.5) for s in places)
+    try:
+        rg.choose_state(grasp, load, "peak", max_force=limit)
+    except rg.Infeasible:
+        return False
+    return True
+
+
+def test_every_choice_within_regions_holds_and_corners_are_the_limit() -> None:
+    regions = rg.contact_regions(BRACKET, GRASP, RING)
+    assert rg.verify(regions).ok
+    assert regions.half_width > 0.05
+    vertices = RING.vertices
+    assert vertices is not None
+    loads = [rg.Wrench.from_vector(v) for v in vertices]
+    rng = np.random.default_rng(2)
+    for _ in range(40):
+        places = rng.uniform(regions.arcs[:, 0], regions.arcs[:, 1])
+        assert all(holds(places, regions.max_force * (1 + 1e-6), load) for load in loads)
+    wider = regions.half_width * 1.01
+    ends = np.clip(
+        regions.places[:, None] + [-wider, wider], [[0.001], [5.001], [8.001]], [[3.999], [7.999], [9.999]]
+    )
+    assert not all(
+        holds(np.array(corner), regions.max_force, load) for corner in product(*ends) for load in loads
+    )
+
+
+def test_one_finger_alone_goes_farther_than_all_at_once() -> None:
+    regions = rg.contact_regions(BRACKET, GRASP, RING)
+    room = np.abs(np.array([[0, 4], [5, 8], [8, 10]]) - regions.places[:, None])  # to the ends of the sides
+    stopped = regions.alone >= room * (1 - 1e-5)
+    assert not stopped.all()
+    assert (stopped | (regions.alone >= regions.half_width * (1 - 1e-5))).all()
+    i, end = np.unravel_index(int(np.where(stopped, np.inf, regions.alone).argmin()), (3, 2))
+    way = (-1, 1)[end]
+    vertices = RING.vertices
+    assert vertices is not None
+    for factor, expected in ((0.999, True), (1.01, False)):
+        places = regions.places.copy()
+        places[i] += way * factor * regions.alone[i, end]
+        found = all(holds(places, regions.max_force, rg.Wrench.from_vector(v)) for v in vertices)
+        assert found == expected
+
+
+def test_more_force_allows_wider_regions() -> None:
+    tight = rg.contact_regions(BRACKET, GRASP, RING, max_force=2.2)
+    loose = rg.contact_regions(BRACKET, GRASP, RING, max_force=4.0)
+    assert 0 < tight.half_width < loose.half_width
+
+
+def test_regions_that_claim_too_much_are_not_verified() -> None:
+    good = rg.contact_regions(BRACKET, GRASP, RING)
+    arcs = np.array(good.arcs)
+    arcs[0, 1] += 0.01
+    for wrong, words in (
+        (replace(good, arcs=arcs), "missing"),
+        (replace(good, corners=good.corners[1:]), "missing"),
+        (replace(good, max_force=1.0), "above"),
+        (replace(good, corners=()), "no corner"),
+        (replace(good, arcs=np.array([[3.5, 4.5], *good.arcs[1:].tolist()])), "one straight side"),
+    ):
+        assert any(words in v for v in rg.verify(wrong).violations), words
+
+
+def test_what_has_no_regions_is_refused() -> None:
+    with pytest.raises(rg.Infeasible, match="above max_force"):
+        rg.contact_regions(BRACKET, GRASP, RING, max_force=0.5)
+    for more, words in (
+        ({"shape": rg.Outline.ellipse(2, 1)}, "polygon"),
+        ({"load": rg.Wrench([0, 0])}, "max_force"),
+        ({"grasp": rg.Grasp([rg.Contact([9, 9], [1, 0], 0.5), rg.Contact([0, 0], [1, 0], 0.5)])}, "no side"),
+    ):
+        asked = {"shape": BRACKET, "grasp": GRASP, "load": RING} | more
+        assert words in str(refusal(lambda asked=asked: rg.contact_regions(**asked)))
