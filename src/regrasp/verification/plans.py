@@ -19,15 +19,15 @@ from regrasp.mechanics.checks import ArrayLike, function, number
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.verification.chosen_grasps import Chosen, verify_chosen, verify_proof
 from regrasp.verification.exact import check_state, exact, least_angle, rounded
 from regrasp.verification.float_filter import Checked, check_rows
 from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
-from regrasp.verification.placements import Proof
+from regrasp.verification.placed.chosen_grasps import Chosen, verify_chosen, verify_proof
+from regrasp.verification.placed.placements import Proof
+from regrasp.verification.placed.regions import Regions, verify_regions
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
-from regrasp.verification.regions import Regions, verify_regions
 from regrasp.verification.regrasps import Regrasp, check_joints
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification

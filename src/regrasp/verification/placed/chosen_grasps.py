@@ -10,7 +10,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
-from regrasp.verification.placements import Proof, check_proof
+from regrasp.verification.placed.placements import Proof, check_proof
 from regrasp.verification.verdict import Verification
 
 

@@ -16,8 +16,8 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
-from regrasp.verification.chosen_grasps import Shape
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
+from regrasp.verification.placed.chosen_grasps import Shape
 from regrasp.verification.verdict import Verification
 
 
