@@ -6,7 +6,9 @@ from the signatures, so a new parameter without a kind, or a new name without a 
 
 import inspect
 import os
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from math import inf, nan
 from typing import Any, NamedTuple
 
@@ -90,6 +92,23 @@ KINDS: dict[str, Sequence[Any]] = {
     "path": (None, 3, nan, HUGE, OBJECT, [], {}, b"\0", "", "\0", "\ud800", True),
     "choices": (*NOT_A_VALUE, "each"),
     "data": (*NOT_A_VALUE, {"x": 1}, {1: 2}),
+    "function name": (*ANYTHING[:6], None, 3, nan, HUGE, [], True, "nothing", "nothing:here", "math:pi"),
+    "grid": (
+        *NOT_A_VALUE,
+        {"a": []},
+        {"a": 3},
+        {"a": [nan]},
+        {"a": [1, 1]},
+        {"b": [1]},
+        {1: [2]},
+        [{}],
+        [{"a": 1}, 2],
+    ),
+    "workers": (*ANYTHING, nan, HUGE, -1, 1.5, True, []),
+    "client": (*ANYTHING[3:], 3, nan, HUGE, [], True),
+    "time limit": (*ANYTHING, nan, inf, HUGE, -1, 0, True, []),
+    "shared": (*ANYTHING[:4], *ANYTHING[5:], 3, nan, [], {1: 2}, {"a": 2}, {"c": 2}),
+    "listener": (*ANYTHING[:6], None, 3, nan, []),
 }
 
 NAMES: dict[str, str] = {
@@ -124,6 +143,14 @@ class Row(NamedTuple):
     right: dict[str, Any]
     kinds: dict[str, str] = {}  # noqa: RUF012 - never changed
     free: tuple[str, ...] = ()
+
+
+@cache
+def _study() -> str:
+    """The folder of a study that is done."""
+    folder = tempfile.mkdtemp()
+    rg.sweep("study_cases:product", {"a": [1, 2]}, out=folder, workers=0, progress=False)
+    return folder
 
 
 def rows() -> dict[str, Row]:
@@ -447,6 +474,27 @@ def rows() -> dict[str, Row]:
             {},
             dict.fromkeys(("moves", "turning", "time", "effort"), "not negative"),
         ),
+        "sweep": Row(
+            rg.sweep,
+            {"function": "study_cases:product", "grid": {"a": [1, 2]}, "out": _study(), "workers": 0},
+            {
+                "function": "function name",
+                "grid": "grid",
+                "out": "path",
+                "keep": "contact names",
+                "zipped": "flag",
+                "plans": "flag",
+                "extend": "flag",
+                "workers": "workers",
+                "client": "client",
+                "time_limit": "time limit",
+                "memory_limit": "time limit",
+                "part_seconds": "not negative",
+                "shared": "shared",
+                "progress": "listener",
+            },
+        ),
+        "read_study": Row(rg.read_study, {"folder": _study()}, {"folder": "path", "form": "word"}),
         "Outline": Row(rg.Outline, {"vertices": SQUARE}, {"vertices": "ring", "holes": "holes"}),
         "Outline.smooth": Row(rg.Outline.smooth, {"points": SQUARE}, {"points": "ring", "holes": "holes"}),
         "Outline.ellipse": Row(

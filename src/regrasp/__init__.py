@@ -58,6 +58,8 @@ if TYPE_CHECKING:
     from regrasp.plans.timing import TimeScaling
     from regrasp.plans.transition import Transition
     from regrasp.plans.turning import TurningPath
+    from regrasp.studies.study import read_study
+    from regrasp.studies.sweeping import sweep
     from regrasp.verification import Verification, verify
 __version__ = "0.1.0"
 
@@ -108,6 +110,7 @@ _LATER = {
     "PyramidLosses": "regrasp.planning.surveys.pyramid_loss",
     "Quality": "regrasp.measures.measure",
     "quality": "regrasp.measures.quality",
+    "read_study": "regrasp.studies.study",
     "RegraspObstacle": "regrasp.planning.regrasps.why_not",
     "RegraspPlan": "regrasp.plans.regrasp_plan",
     "RegraspProblem": "regrasp.planning.regrasps.planar",
@@ -119,6 +122,7 @@ _LATER = {
     "SpaceRegraspProblem": "regrasp.planning.regrasps.spatial",
     "SqueezeLocus": "regrasp.planning.surveys.squeeze_locus",
     "StraightPath": "regrasp.plans.straight",
+    "sweep": "regrasp.studies.sweeping",
     "TimeScaling": "regrasp.plans.timing",
     "Transition": "regrasp.plans.transition",
     "Tolerances": "regrasp.planning.robustness.tolerances",
@@ -205,7 +209,9 @@ __all__ = [
     "plan_rotation",
     "pyramid_losses",
     "quality",
+    "read_study",
     "sensitivity",
+    "sweep",
     "tolerances",
     "verify",
     "wrench_ball",

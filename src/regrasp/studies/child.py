@@ -1,0 +1,82 @@
+"""The process that does cases, one at a time, and may be killed at any moment.
+
+task (bytes)              -> ("ready", machine, versions) or ("cannot", words)
+[(number, case), ...]     -> (number, Outcome) for each, or ("cannot", words)
+
+After "cannot" it ends.
+"""
+
+import ctypes
+import os
+import pickle
+import signal
+import sys
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from threading import Thread
+from time import sleep
+from typing import Any
+
+from regrasp.errors import InvalidInput
+from regrasp.studies.task import NotKept, Task, machine, versions
+
+_SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
+_LOOK = 1.0  # seconds between looks whether the parent lives, where the system does not tell
+
+
+def main(channel: int, parent: int, memory_limit: int) -> None:
+    """Serve the process ``parent`` through a file descriptor until it closes it.
+
+    memory_limit: of addresses [bytes], 0 for none.
+    """
+    _die_with(parent)
+    _limit(memory_limit)
+    connection: Connection[Any, Any] = Connection(channel)
+    with suppress(EOFError, BrokenPipeError):
+        try:
+            task: Task = pickle.loads(connection.recv_bytes())
+            function = task.function()
+        except InvalidInput as error:
+            connection.send(("cannot", str(error)))
+            return
+        except Exception as error:  # of a module that is imported, or of what cases share
+            connection.send(("cannot", f"{type(error).__name__}: {error}"))
+            return
+        connection.send(("ready", machine(), versions()))
+        while True:
+            for number, case in connection.recv():
+                try:
+                    outcome = task.outcome(function, case)
+                except NotKept as error:
+                    connection.send(("cannot", str(error)))
+                    return
+                connection.send((number, outcome))
+
+
+def _limit(memory: int) -> None:
+    """Take no more addresses than ``memory`` [bytes], and leave no image of a crash."""
+    try:
+        import resource
+    except ImportError:  # not a POSIX system
+        return
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if memory:
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        soft = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+
+
+def _die_with(parent: int) -> None:
+    """Leave no orphan that goes on when the run, or the worker of a cluster, is killed."""
+    if sys.platform.startswith("linux"):
+        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
+    else:
+        Thread(target=_watch, args=(parent,), daemon=True).start()
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def _watch(parent: int) -> None:
+    while os.getppid() == parent:
+        sleep(_LOOK)
+    os._exit(1)

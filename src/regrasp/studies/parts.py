@@ -1,0 +1,95 @@
+"""Parts of a study: Parquet files that are whole or not there."""
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from regrasp.errors import InvalidInput
+from regrasp.studies.columns import Columns, held, schema_of
+
+if TYPE_CHECKING:
+    import pyarrow
+
+SUFFIX, DRAFT = ".parquet", ".draft-"
+
+
+def parquet() -> Any:
+    """``pyarrow.parquet``.
+
+    Raises:
+        ImportError: Without pyarrow, the extra ``regrasp[study]``.
+    """
+    try:
+        from pyarrow import parquet
+    except ImportError:
+        raise ImportError("studies need pyarrow: pip install 'regrasp[study]'") from None
+    return parquet
+
+
+def parts_in(folder: Path) -> list[Path]:
+    """The parts of a study, in the order of their names."""
+    return sorted(folder.glob(f"*{SUFFIX}"))
+
+
+def write_part(path: Path, rows: Sequence[Mapping[str, Any]], columns: Columns) -> None:
+    """Write rows; once this returns they are on the disk, and before that there is no such file."""
+    import pyarrow as pa
+
+    schema = schema_of(columns)
+    arrays = [
+        pa.array([held(row.get(name), kind) for row in rows], schema.field(name).type)
+        for name, kind in columns.items()
+    ]
+    _write(path, pa.Table.from_arrays(arrays, schema=schema))
+
+
+def widen_part(path: Path, columns: Columns) -> None:
+    """Bring an earlier part to the columns of today, unless it has them."""
+    table = read_part(path)
+    if not table.schema.equals(schema_of(columns)):
+        write_part(path, table.to_pylist(), columns)
+
+
+def read_part(path: Path, columns: Sequence[str] | None = None) -> "pyarrow.Table":
+    """The table of a part. Raises ``InvalidInput`` for a file that is none."""
+    try:
+        return parquet().read_table(path, columns=columns)
+    except (OSError, ValueError) as error:
+        raise InvalidInput(
+            f"{path}: not a part of a study: {error}; move it away, and its rows are made again"
+        ) from None
+
+
+def clear_drafts(folder: Path) -> None:
+    """Remove what a killed run was writing; the folder is ours."""
+    for draft in folder.glob(f"{DRAFT}*"):
+        draft.unlink(missing_ok=True)
+
+
+def replace_file(path: Path, content: bytes) -> None:
+    """Write a file whole, in the place of an earlier one."""
+    draft = path.with_name(DRAFT + path.name)
+    with draft.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    _place(draft, path)
+
+
+def _write(path: Path, table: "pyarrow.Table") -> None:
+    draft = path.with_name(DRAFT + path.name)
+    with draft.open("wb") as file:
+        parquet().write_table(table, file, compression="zstd")
+        file.flush()
+        os.fsync(file.fileno())
+    _place(draft, path)
+
+
+def _place(draft: Path, path: Path) -> None:
+    draft.replace(path)
+    number = os.open(path.parent, os.O_RDONLY)  # the name is to be durable, too
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
