@@ -175,16 +175,35 @@ def test_a_plan_without_weight_asks_for_a_mass() -> None:
         simulate(state)  # type: ignore[arg-type]
 
 
-def test_soft_fingers_are_refused() -> None:
+def soft(contact: rg.Contact, torsion: float) -> rg.Contact:
+    return rg.Contact(contact.position, contact.normal, contact.friction, torsion=torsion, name=contact.name)
+
+
+@pytest.mark.parametrize("torsion", [0.002, 0.01])
+def test_soft_fingers_hold_down_to_the_friction_predicted(torsion: float) -> None:
     _, four = bracket()
-    soft = rg.Grasp(replace_torsion(c) for c in four)
-    leaving = rg.plan_removal(soft, "P4", load=rg.Wrench([0, 0, -1.82]))
-    with pytest.raises(rg.InvalidInput, match="point fingers can be simulated, soft ones not yet"):
-        simulate(leaving)
+    grasp = rg.Grasp(soft(c, torsion) for c in four)
+    leaving = rg.plan_removal(grasp, "P4", load=rg.Wrench([0, 0, -1.82]), objective="force")
+    execution = simulate(leaving)
+    assert execution.held
+    away = abs(execution.torques - execution.planned_torques).max()
+    assert away < 0.1 * torsion * leaving.peak
+    assert simulate(leaving, friction=1.03 * leaving.friction_needed).held
+    assert not simulate(leaving, friction=0.97 * leaving.friction_needed).held
 
 
-def replace_torsion(contact: rg.Contact) -> rg.Contact:
-    return rg.Contact(contact.position, contact.normal, contact.friction, torsion=0.002, name=contact.name)
+def test_two_soft_fingers_hold_a_torque_about_their_line() -> None:
+    places = (([0, -0.02, 0], 1, "A"), ([0, 0.02, 0], -1, "B"), ([0.02, -0.02, 0], 1, "C"))
+    three = rg.Grasp(rg.Contact(p, [0, n, 0], 0.6, torsion=0.008, name=name) for p, n, name in places)
+    plan = rg.plan_removal(three, "C", load=rg.Wrench([0, 0, -1.0], [0, 0.004, 0]), objective="force")
+    execution = simulate(plan)
+    assert execution.held
+    assert abs(execution.planned_torques[-1]) == pytest.approx([0.002, 0.002, 0], abs=1e-9)
+    assert execution.torques[-1] == pytest.approx(execution.planned_torques[-1], abs=2e-5)
+    assert simulate(plan, friction=1.03 * plan.friction_needed).held
+    assert not simulate(plan, friction=0.9 * plan.friction_needed).held
+    with pytest.raises(rg.InvalidInput, match="soft fingers turn along with the object: leave rolling out"):
+        simulate(plan, rolling=True)
 
 
 def test_text_table_and_figures_say_the_same(tmp_path: Any) -> None:

@@ -11,6 +11,7 @@ from regrasp.display import Pictured
 from regrasp.execution.setup import Setup
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -32,8 +33,9 @@ class Execution(ArrayValue, Pictured):
     times: (m,) of the run, from its start [s]. clock: (m,) the plan's own time, which stands while fingers
     change places [s]. frictions: (n,) the true coefficients.
     planned, forces: (m, n, d) of the fingers on the object, each in the object's own frame [N].
-    touching: (m, n). slip: (m, n) how far the finger at a contact has slid since it touched, rolling apart
-    [m].
+    planned_torques, torques: (m, n) about the normals, of soft fingers [N m].
+    touching: (m, n). slip: (m, n) how far the finger at a contact has slid since it touched, rolling apart;
+    a soft finger's spin counts by torsion over friction [m].
     positions: (m, d) of the centre of mass, planned at rest [m]. rotations, turned: (m, d, d) of the object,
     measured and planned. tips: (m, k, d) centres of the fingertips [m]. mass, stiffness: of the object and of
     each finger, as given or derived. complete: whether the run came to its
@@ -48,6 +50,8 @@ class Execution(ArrayValue, Pictured):
     clock: Array
     planned: Array
     forces: Array
+    planned_torques: Array
+    torques: Array
     touching: NDArray[np.bool_]
     positions: Array
     rotations: Array
@@ -112,12 +116,12 @@ class Execution(ArrayValue, Pictured):
     @cached_property
     def margins(self) -> Margins:
         """(m, n) of the measured forces under the true friction; NaN for contacts that hold nothing."""
-        return self._margins(self.forces)
+        return self._margins(self.forces, self.torques)
 
     @cached_property
     def planned_margins(self) -> Margins:
         """(m, n) of the planned forces under the true friction."""
-        return self._margins(self.planned)
+        return self._margins(self.planned, self.planned_torques)
 
     def to_dataframe(self) -> "pandas.DataFrame":
         """A row for each sample: clock, motion, and for each contact planned and measured force, and slip."""
@@ -135,6 +139,9 @@ class Execution(ArrayValue, Pictured):
             for a, axis in enumerate(axes):
                 columns[f"{name}_planned_f{axis}"] = self.planned[:, i, a]
                 columns[f"{name}_f{axis}"] = self.forces[:, i, a]
+            if self.contacts[i].torsion is not None:
+                columns[f"{name}_planned_mn"] = self.planned_torques[:, i]
+                columns[f"{name}_mn"] = self.torques[:, i]
             columns[f"{name}_slip"] = self.slip[:, i]
         return columns
 
@@ -150,10 +157,11 @@ class Execution(ArrayValue, Pictured):
         carried: NDArray[np.bool_] = np.linalg.norm(forces, axis=2) > IN_USE * self._peak
         return carried
 
-    def _margins(self, forces: Array) -> Margins:
-        normals = np.array([c.normal for c in self.contacts])
-        in_use = np.where(self._in_use(forces)[..., None], forces, 0.0)
-        return margins(in_use, normals, self.frictions)
+    def _margins(self, forces: Array, torques: Array) -> Margins:
+        cones = Grasp(self.contacts).cones
+        whole = forces if cones.normals.shape[1] < 4 else np.concatenate([forces, torques[..., None]], axis=2)
+        in_use = np.where(self._in_use(forces)[..., None], whole, 0.0)
+        return margins(cones.measured(in_use), cones.normals, self.frictions)
 
     def __str__(self) -> str:
         if self.dropped:

@@ -29,7 +29,9 @@ class Recorder:
         n, d = len(wanted.contacts), wanted.targets.shape[2]
         self._d = d
         self._normals = np.array([c.normal for c in wanted.contacts])
-        self._slip = np.zeros((n, d))
+        self._slip = np.zeros((n, d + 1))  # the last is a soft finger's spin about the normal, by its arm
+        arms = ((c.torsion or 0.0) / (c.friction or 1.0) for c in wanted.contacts)
+        self._arms = np.fromiter(arms, dtype=float) / units.length
         loaded = np.linalg.norm(wanted.forces, axis=2) > IN_USE * PEAK * units.force
         self._slides = loaded & (wanted.at >= 0)
         self._slides[: wanted.gripping] = False
@@ -56,10 +58,10 @@ class Recorder:
             self._slip_of(data, R, moving, self._wanted.at[j][moving])
         since = j + 1 - self._wanted.gripping
         if since == 0 or (since > 0 and since % self._apart == 0) or over:
-            forces, touching = self._forces(mujoco, data, R, at)
+            forces, twists, touching = self._forces(mujoco, data, R, at)
             tips = data.qpos[self._scene.slides.places].copy()
             slip = np.linalg.norm(self._slip, axis=1)
-            self._rows.append((since, forces, touching, self.place(data).copy(), R, slip, tips))
+            self._rows.append((since, forces, twists, touching, self.place(data).copy(), R, slip, tips))
 
     def _rotation(self, mujoco: Any, data: Any) -> Array:
         if self._d == 2:
@@ -87,13 +89,17 @@ class Recorder:
             if d == 3:  # in each tip's own frame
                 turning = _rotated(data.qpos[scene.joints.places[fingers]], turning)
             relative = relative + _cross(turning, reach)
+            if d == 3:
+                spinning = (((turning - spin) @ R) * normals).sum(axis=1)
+                self._slip[contacts, d] += self._arms[contacts] * spinning * self._units.timestep
         inside = relative @ R
         inside -= (inside * normals).sum(axis=1, keepdims=True) * normals
-        self._slip[contacts] += inside * self._units.timestep
+        self._slip[contacts, :d] += inside * self._units.timestep
 
-    def _forces(self, mujoco: Any, data: Any, R: Array, at: list[int]) -> tuple[Array, Array]:
-        """(n, d) forces of the fingers on the object, its frame, and (n,) whether they touch."""
+    def _forces(self, mujoco: Any, data: Any, R: Array, at: list[int]) -> tuple[Array, Array, Array]:
+        """(n, d) forces of the fingers on the object, its frame; (n,) torques about normals; what touches."""
         forces, touching = np.zeros((len(self._normals), 3)), np.zeros(len(self._normals), dtype=bool)
+        twists = np.zeros(len(self._normals))
         six, geoms = self._six, self._geoms
         for number in range(data.ncon):
             contact = data.contact[number]
@@ -103,15 +109,16 @@ class Recorder:
             place = at[geoms[first]] if first in geoms else at[geoms[second]]
             if place >= 0:
                 forces[place] += force if first in geoms else -force
+                twists[place] += six[3]  # of one sign on both bodies, as axis and torque turn over together
                 touching[place] |= six[0] > 0
-        return forces[:, : self._d] @ R, touching
+        return forces[:, : self._d] @ R, twists, touching
 
     def execution(
         self, plan: Transition | RegraspPlan, setup: Setup, frictions: Array, *, complete: bool
     ) -> Execution:
         """The samples as a value, in the plan's units."""
         units, wanted = self._units, self._wanted
-        since, forces, touching, places, turned, slip, tips = (
+        since, forces, twists, touching, places, turned, slip, tips = (
             np.array(column) for column in zip(*self._rows, strict=True)
         )
         steps = since + wanted.gripping - 1
@@ -124,6 +131,8 @@ class Recorder:
             clock=read_only(wanted.clock[steps]),
             planned=read_only(wanted.planned[steps]),
             forces=read_only(forces * units.force),
+            planned_torques=read_only(wanted.twists[steps]),
+            torques=read_only(twists * units.force * units.length),
             touching=touching,
             positions=read_only(places * units.length),
             rotations=read_only(turned),

@@ -25,7 +25,7 @@ _OPTION = " ".join(
 )
 _CONTACT = " ".join(
     [
-        'condim="3"',  # a point contact: no torque about the normal
+        'condim="{dim}"',  # 3: a point contact, no torque about the normal; 4: a soft finger's limit surface
         'solref="{stiff:.12g} 1"',  # as stiff as two timesteps allow
         'solimp="0.99 0.999 0.0001"',  # what is left to softness is a thousandth
     ]
@@ -73,6 +73,7 @@ def mjcf(
     turning: whether tips have a joint to turn along with the object.
     """
     d = tips.shape[1]
+    dim = 4 if any(c.torsion for c in contacts) else 3
     spin = (
         (
             '<joint name="turn{i}" type="hinge" axis="0 0 1" armature="{a}" damping="{c}"/>'
@@ -91,7 +92,8 @@ def mjcf(
     pads = "".join(
         f'<geom name="pad{i}" type="box" size="{wide} {wide} {thick}" '
         f'pos="{_text(_three(c.position / units.length) + thick * _three(c.normal))}" '
-        f'zaxis="{_text(_three(c.normal))}" friction="{mu:.17g} 0 0" contype="{group(i)}" conaffinity="0"/>'
+        f'zaxis="{_text(_three(c.normal))}" contype="{group(i)}" conaffinity="0" '
+        f'friction="{mu:.17g} {_torsion(c, units):.17g} 0"/>'
         for i, (c, mu) in enumerate(zip(contacts, frictions, strict=True))
     )
     wheel = {"a": _TURN_INERTIA, "c": turn_gains()[1]}
@@ -109,11 +111,16 @@ def mjcf(
     moments = _text(inertia[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])
     return (
         f'<mujoco><option timestep="{units.timestep:.17g}" {_OPTION}/>'
-        f"<default><geom {_CONTACT.format(stiff=2 * units.timestep)}/></default><worldbody>"
+        f"<default><geom {_CONTACT.format(stiff=2 * units.timestep, dim=dim)}/></default><worldbody>"
         f'<body name="object">{body_joints}'
         f'<inertial pos="0 0 0" mass="{units.mass}" fullinertia="{moments}"/>'
         f"{pads}</body>{fingers}</worldbody></mujoco>"
     )
+
+
+def _torsion(contact: Contact, units: Units) -> float:
+    """Torque about the normal per normal force, which MuJoCo's elliptic cones weigh as limit surfaces do."""
+    return 0.0 if contact.torsion is None else contact.torsion / units.length
 
 
 def loaded(mujoco: Any, xml: str, fingers: int, contacts: int, dimension: int, *, turning: bool) -> Scene:

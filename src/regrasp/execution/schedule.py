@@ -49,16 +49,19 @@ class Schedule:
     """Set-points at the steps of a simulation; m instants, k fingers, n contacts.
 
     clock: (m,) the plan's own time [s]. planned: (m, n, d) forces, object frame [N].
-    forces: (m, k, d) fed forward, world frame. targets, velocities: (m, k, d) of the tips' centres, world.
-    at: (m, k) the number of the contact a finger may touch, -1 in the air.
-    rotations: (m, d, d) the object's planned orientation. loads: (m, 3) or (m, 6) in the world frame.
-    gripping: steps before the run, in which forces and load grow together from nothing.
+    twists: (m, n) planned torques about the normals of soft fingers [N m].
+    forces: (m, k, d) fed forward, world frame. spins: (m, k, d) torques fed forward in space, object frame.
+    targets, velocities: (m, k, d) of the tips' centres, world. at: (m, k) the number of the contact a finger
+    may touch, -1 in the air. rotations: (m, d, d) the object's planned orientation. loads: (m, 3) or (m, 6)
+    in the world frame. gripping: steps before the run, in which forces and load grow together from nothing.
     """
 
     contacts: tuple[Contact, ...]
     clock: Array
     planned: Array
+    twists: Array
     forces: Array
+    spins: Array
     targets: Array
     velocities: Array
     at: NDArray[np.intp]
@@ -123,15 +126,18 @@ def schedule(plan: Transition | RegraspPlan, setup: Setup, units: Units) -> Sche
         local, *rest = _block(plan, phase, contacts, ways, dt)
         done = 0.0 if done < 0 else done + phase.length
         blocks.append((starts[phase.step] + local, *rest))
-    clock, planned, forces, targets, at, rotations, loads = (
+    clock, planned, twists, forces, spins, targets, at, rotations, loads = (
         np.concatenate(p) for p in zip(*blocks, strict=True)
     )
-    forces, targets, at = _late(setup.delays, dt, forces, targets, at)
+    forces, spins, targets, at = _late(setup.delays, dt, forces, spins, targets, at)
     velocities = np.diff(targets, axis=0, prepend=targets[:1]) / dt
     gripping = max(1, round(units.settle / units.timestep / 2))
     grown = _smooth(np.minimum(np.arange(1, len(clock) + 1) / gripping, 1.0))
-    forces, loads = forces * grown[:, None, None], loads * grown[:, None]
-    return Schedule(contacts, clock, planned, forces, targets, velocities, at, rotations, loads, gripping)
+    forces, spins = forces * grown[:, None, None], spins * grown[:, None, None]
+    loads = loads * grown[:, None]
+    return Schedule(
+        contacts, clock, planned, twists, forces, spins, targets, velocities, at, rotations, loads, gripping
+    )
 
 
 def _block(
@@ -140,8 +146,8 @@ def _block(
     contacts: tuple[Contact, ...],
     ways: "_Ways",
     dt: float,
-) -> tuple[Array, Array, Array, Array, NDArray[np.intp], Array, Array]:
-    """Time in the step, planned forces, forces, targets, places, orientations and loads of a phase."""
+) -> tuple[Array, Array, Array, Array, Array, Array, NDArray[np.intp], Array, Array]:
+    """Time in the step, planned forces and twists, forces, spins, targets, places, orientations, loads."""
     step = steps_of(plan)[phase.step]
     m = max(1, round(phase.length / dt))
     s = np.arange(1, m + 1) / m
@@ -150,21 +156,27 @@ def _block(
     index = {str(c.name): i for i, c in enumerate(contacts)}
     d = step.grasp.dimension
     planned = np.zeros((m, len(contacts), d))
-    planned[:, [index[name] for name in step.grasp.names]] = step.forces(local)
+    twists, own = np.zeros((m, len(contacts))), [index[name] for name in step.grasp.names]
+    pushed = step.forces(local)
+    planned[:, own] = pushed[..., :d]
+    if pushed.shape[2] > d:
+        twists[:, own] = pushed[..., d]
     k = len(phase.before)
-    forces, targets, at = np.zeros((m, k, d)), np.zeros((m, k, d)), np.full((m, k), -1)
+    forces, spins, targets = np.zeros((m, k, d)), np.zeros((m, k, d)), np.zeros((m, k, d))
+    at = np.full((m, k), -1)
     for i, (a, b) in enumerate(zip(phase.before, phase.after, strict=True)):
         way, contact = ways.of(i, a, b, s, phase.length)
         targets[:, i] = np.einsum("mij,mj->mi", turned, way)
         at[:, i] = [index[name] if name else -1 for name in contact]
         if a == b and a.touches:
             forces[:, i] = np.einsum("mij,mj->mi", turned, planned[:, index[a.name]])
+            spins[:, i] = twists[:, index[a.name], None] * contacts[index[a.name]].normal
     load = step.load(local)
     if d == 2:
         loads = np.column_stack([np.einsum("mij,mj->mi", turned, load[:, :2]), load[:, 2:]])
     else:
         loads = np.concatenate([np.einsum("mij,mj->mi", turned, load[:, j : j + 3]) for j in (0, 3)], axis=1)
-    return local, planned, forces, targets, at, turned, loads
+    return local, planned, twists, forces, spins, targets, at, turned, loads
 
 
 @dataclass(frozen=True)
@@ -232,14 +244,14 @@ def _rotations(plan: Transition | RegraspPlan, k: int, step: Transition, local: 
 
 
 def _late(
-    delays: Array | None, dt: float, forces: Array, targets: Array, at: NDArray[np.intp]
-) -> tuple[Array, Array, NDArray[np.intp]]:
+    delays: Array | None, dt: float, forces: Array, spins: Array, targets: Array, at: NDArray[np.intp]
+) -> tuple[Array, Array, Array, NDArray[np.intp]]:
     """The set-points of every finger as late as its clock."""
     if delays is None:
-        return forces, targets, at
+        return forces, spins, targets, at
     m, k = at.shape
     if delays.shape != (k,):
         raise InvalidInput(f"delays must have shape ({k},), one for each finger, got {delays.shape}")
     rows = np.maximum(np.arange(m)[:, None] - np.round(delays / dt).astype(int), 0)
     columns = np.arange(k)
-    return forces[rows, columns], targets[rows, columns], at[rows, columns]
+    return forces[rows, columns], spins[rows, columns], targets[rows, columns], at[rows, columns]

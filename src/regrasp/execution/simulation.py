@@ -30,7 +30,8 @@ def simulate(plan: Transition | RegraspPlan, setup: Setup | None = None, **optio
     Fingers change places before the step that needs them. Nothing is drawn by chance: runs repeat to the bit.
 
     setup: the body, the hand and its errors; options: fields of ``Setup``, which change those given.
-    Raises ``InvalidInput`` for soft fingers and for plans without forces, ``ImportError`` without MuJoCo.
+    Soft fingers hold their tips' orientations and feed the torques about normals forward, too.
+    Raises ``InvalidInput`` for plans without forces, ``ImportError`` without MuJoCo.
     """
     mujoco = engine("simulate")
     setup = changed(setup, options)
@@ -38,7 +39,8 @@ def simulate(plan: Transition | RegraspPlan, setup: Setup | None = None, **optio
     contacts, wanted = contacts_of(plan), schedule(plan, setup, units)
     frictions = true_frictions(plan, setup)
     d, k = steps_of(plan)[0].grasp.dimension, wanted.at.shape[1]
-    turning = not setup.rolling and any(step.turn is not None for step in steps_of(plan))
+    turns = any(step.turn is not None or step.grasp.is_soft for step in steps_of(plan))
+    turning = not setup.rolling and turns
     size = max(step.grasp.size for step in steps_of(plan))
     mass = units.mass * units.force * units.time**2 / units.length
     inertia = setup.inertia(mass, size, d) * units.mass / (mass * units.length**2)

@@ -16,6 +16,7 @@ class TurningTips:
         self._mujoco, self._turns, self._wheels = mujoco, joints.places, joints.speeds
         self._stiffness, self._damping = turn_gains()
         R, dt = wanted.rotations, units.timestep
+        self._spins = wanted.spins / (units.force * units.length)  # in the tips' frames, which turn along
         if R.shape[1] == 2:
             angles = np.unwrap(np.arctan2(R[:, 1, 0], R[:, 0, 0]))
             self._wanted = angles[:, None]
@@ -41,4 +42,5 @@ class TurningTips:
             error = np.zeros((len(self._turns), 3))
             for row, numbers in zip(error, self._turns, strict=True):
                 self._mujoco.mju_subQuat(row, self._wanted[j], data.qpos[numbers])
-        data.qfrc_applied[self._wheels] = self._stiffness * error + ahead
+        push = self._stiffness * error + ahead
+        data.qfrc_applied[self._wheels] = push if push.shape[1] == 1 else push + self._spins[j]

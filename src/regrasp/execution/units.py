@@ -46,10 +46,8 @@ def units_of(plan: Transition | RegraspPlan, setup: Setup) -> Units:
     size, peak = max(step.grasp.size for step in steps), max(step.peak for step in steps)
     if peak == 0:
         raise InvalidInput("no finger of this plan carries a force: there is nothing to simulate")
-    if any(step.grasp.is_soft for step in steps):
-        raise InvalidInput(
-            "point fingers can be simulated, soft ones not yet: make their contacts without torsion"
-        )
+    if setup.rolling and any(step.grasp.is_soft for step in steps):
+        raise InvalidInput("soft fingers turn along with the object: leave rolling out")
     mass = setup.mass if setup.mass is not None else _weight(steps) / setup.gravity
     length, force = size / SIZE, peak / PEAK
     time = sqrt(mass * length / (MASS * force))
