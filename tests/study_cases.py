@@ -14,8 +14,8 @@ def product(a: float, b: float = 2.0) -> float:
     return a * b
 
 
-def spun(a: float, seconds: float = 0.005) -> dict[str, Any]:
-    end = time.perf_counter() + seconds
+def spun(a: float, spin: float = 0.005) -> dict[str, Any]:
+    end = time.perf_counter() + spin
     while time.perf_counter() < end:
         pass
     return {"square": a * a, "root": abs(a) ** 0.5}
@@ -66,3 +66,7 @@ def threads(a: int) -> str:
     import numba
 
     return f"{numba.get_num_threads()} {os.environ['OMP_NUM_THREADS']} {a}"
+
+
+def entry(a: int, values: Any) -> float:
+    return float(values[a])

@@ -15,7 +15,7 @@ from regrasp.errors import InvalidInput, RegraspError, shown
 from regrasp.studies.task import Task
 from regrasp.studies.worker import Batch, Done, Limits, Worker
 
-_CONNECT = "10s"
+CONNECT = "10s"
 _GRACE = 4  # looks in a row at a client that is not connected, before its scheduler counts as gone
 _PATIENCE = 30  # seconds that workers may take to come back
 _SHORT = 2**13  # bytes of a task that are sent with every batch
@@ -41,7 +41,7 @@ class Cluster:
         self._own = isinstance(client, str)
         if self._own:
             try:
-                client = distributed.Client(client, timeout=_CONNECT, set_as_default=False)
+                client = distributed.Client(client, timeout=CONNECT, set_as_default=False)
             except (OSError, TimeoutError, ValueError) as error:
                 raise RegraspError(f"no dask scheduler answers at {shown(client)}: {error}") from None
         if not isinstance(client, distributed.Client):

@@ -37,7 +37,8 @@ main(channel, parent, memory)
 """
 _LOOK = 0.1  # seconds between looks whether a silent process lives
 _START = 120.0  # seconds that a process may take to import what it needs
-_AGAIN = 1  # times a case is tried again in another process where one was killed
+_AGAIN = 2  # times a case is tried again in another process where one was killed, as dask does
+_STARTS = 10  # processes in a row that may end before they are ready
 
 
 class Limits(NamedTuple):
@@ -81,7 +82,7 @@ class Worker:
         """Whether it does nothing any more."""
 
     def done(self, batch: Batch) -> Done:
-        """What comes of each case. One that kills its process twice, or hangs, is an outcome, too.
+        """What comes of each case. One that ends its process again and again, or hangs, is an outcome, too.
 
         Raises ``Refused`` where the task itself cannot be done.
         """
@@ -95,7 +96,7 @@ class Worker:
                 left = []
             except _Ended as end:
                 self.clear()
-                left = left[len(outcomes) - (len(batch) - len(left)) :]
+                left = list(batch)[len(outcomes) :]
                 if end.verdict == LOST and tries < _AGAIN:
                     tries += 1
                     continue
@@ -124,6 +125,17 @@ class Worker:
             yield reply
 
     def _start(self) -> None:
+        """Have a process that is ready; those that end before are no case's fault."""
+        for _ in range(_STARTS):
+            try:
+                self._open()
+                return
+            except _Ended as end:
+                self.clear()
+                said = str(end)
+        raise Refused(f"{_STARTS} processes ended before they were ready: {said}")
+
+    def _open(self) -> None:
         if os.name != "posix":
             raise Refused("workers are handed a pipe as POSIX systems do; give workers=0")
         if self.closed:
@@ -140,6 +152,8 @@ class Worker:
             start_new_session=True,  # an interrupt from the keyboard is the run's to handle
         )
         theirs.close()
+        if self.closed:  # meanwhile
+            end_group(self._process)
         try:
             self._connection.send_bytes(self._task)
         except OSError:
