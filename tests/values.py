@@ -127,6 +127,9 @@ VALUES: dict[str, Callable[[], Any]] = {
     "SpaceRegraspProblem": space_problem,
     "RegraspWeights": lambda: rg.RegraspWeights(turning=0.5),
     "Bottleneck": lambda: problem().bottleneck(),
+    "RegraspCut": lambda: rg.RegraspCut(
+        tuple(three_on_ellipse(0.1, 0.3, 0.5, 0.8)), (0, 1, 2), (0, 1, 3), (2,), 0.2, 0.5
+    ),
     "Outline, polygon with a hole": lambda: rg.Outline(SQUARE, holes=[[[1, 1], [2, 1], [2, 2]]]),
     "Outline, smooth": lambda: rg.Outline.smooth(SQUARE),
     "Outline, ellipse": ellipse,

@@ -20,6 +20,7 @@ from values import (
     PAIR,
     SQUARE,
     SQUARE_OUTLINE,
+    VALUES,
     WEIGHT,
     WEIGHT_IN_PLANE,
     bent,
@@ -81,6 +82,7 @@ KINDS: dict[str, Sequence[Any]] = {
     "times": (*NOT_NUMBERS, -1.0, 1e9, [0.0, 1e9]),
     "limits": (*NOT_NUMBERS, 0, -1, [1, 2], [0, 0, 0], [[1, 1, 1]]),
     "count": NOT_A_COUNT,
+    "some or all": tuple(wrong for wrong in NOT_A_COUNT if wrong is not None),
     "seed": [value for value in NOT_A_COUNT if value is not HUGE],
     "value": NOT_A_VALUE,
     "word": (*ANYTHING, None, 3, nan, HUGE, True, [], ["angle"], "Angle", b"angle"),
@@ -121,7 +123,8 @@ NAMES: dict[str, str] = {
     "balance_tolerance": "not negative", "min_normal": "least normals", "idle_from": "not negative",
     "idle_until": "not negative", "instants": "count", "rate_limit": "limits", "count": "count",
     "seed": "seed",
-    "clearance": "not negative", "orientations": "count", "candidates": "count", "goal_orientation": "number",
+    "clearance": "not negative", "orientations": "some or all", "candidates": "count",
+    "goal_orientation": "number",
     "goal_rotation": "table", "states": "word", "max_turn": "small angle", "least_margin": "not negative",
     "min_distance": "not negative", "keep": "function", "arcs": "choices", "one_finger": "flag",
     "weights": "value", "step_duration": "positive", "extra": "count", "scale": "positive",
@@ -545,6 +548,10 @@ def file_rows() -> dict[str, Row]:
             files.parse_scenario, {"text": template("removal")}, {"text": "text", "file": "path"}
         ),
         "plan_scenario": Row(files.plan_scenario, {"scenario": scenario}),
+        "read_cut": Row(files.read_cut, {}, {"path": "path"}),
+        "write_cut": Row(
+            files.write_cut, {"cut": VALUES["RegraspCut"](), "path": os.devnull}, {"cut": "value"}
+        ),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
         "write_plan": Row(files.write_plan, {"plan": removal(), "path": os.devnull}),
         "write_mcap": Row(

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
     from regrasp.plans.carried import carried_load
     from regrasp.plans.loads import LoadSeries
+    from regrasp.plans.regrasp_cut import RegraspCut
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.sampled import SampledPath
     from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
@@ -111,6 +112,7 @@ _LATER = {
     "Quality": "regrasp.measures.measure",
     "quality": "regrasp.measures.quality",
     "read_study": "regrasp.studies.study",
+    "RegraspCut": "regrasp.plans.regrasp_cut",
     "RegraspObstacle": "regrasp.planning.regrasps.why_not",
     "RegraspPlan": "regrasp.plans.regrasp_plan",
     "RegraspProblem": "regrasp.planning.regrasps.planar",
@@ -165,6 +167,7 @@ __all__ = [
     "PyramidLosses",
     "Quality",
     "RegraspError",
+    "RegraspCut",
     "RegraspObstacle",
     "RegraspPlan",
     "RegraspProblem",

@@ -22,7 +22,7 @@ ROWS = rows()
 # Records of results: they are made by the verbs, and hold what they are given.
 RECORDS = {
     "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
-    "PyramidLosses", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
+    "PyramidLosses", "RegraspCut", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
     "ContactRegions",
     "SpaceRegraspPlan", "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
     "HeldCentres", "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath",

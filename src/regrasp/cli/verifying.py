@@ -1,11 +1,13 @@
 """Judging a plan that was written before."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import click
 
 from regrasp.cli.speech import json_option, say
+from regrasp.cli.statuses import VERIFIED
 from regrasp.cli.verdicts import names_of, verdict_facts, verified
 
 
@@ -16,13 +18,14 @@ from regrasp.cli.verdicts import names_of, verdict_facts, verified
 def verify(path: Path, rate: float | None) -> dict[str, Any]:
     """Check a PLAN in exact arithmetic.
 
-    PLAN is a plan.json or the folder that holds it. A setpoints.csv beside it is checked too: every row must
-    hold the object and be the plan's at its time.
+    PLAN is a plan.json or the folder that holds it, or a file of the cut that proves that there is none. A
+    setpoints.csv beside it is checked too: every row must hold the object and be the plan's at its time.
     """
     import numpy as np
 
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
+    from regrasp.files.plans.cut_file import holds_a_cut, read_cut
     from regrasp.files.plans.setpoints import checked, read_setpoints
     from regrasp.files.source import legible
     from regrasp.mechanics.checks import number
@@ -30,6 +33,12 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
     if rate is not None:
         number(rate, "rate", above=0)
     path = path / "plan.json" if path.is_dir() else path
+    if holds_a_cut(path):
+        cut = read_cut(path)
+        say(cut)
+        verdict = verified(verdict_on(cut), path)
+        say(verdict)
+        return {"status": "verified", "exit": VERIFIED, "verification": asdict(verdict)}
     planned = read_plan(path)
     table, count = path.with_name("setpoints.csv"), 0
     with np.errstate(all="ignore"), legible(names_of(planned)) as shown:  # any numbers at all

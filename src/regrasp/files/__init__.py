@@ -1,6 +1,7 @@
 """Scenarios in, plans and set-points out. Imports pydantic, so it is imported when it is used."""
 
 from regrasp.files.plans.bag import write_mcap
+from regrasp.files.plans.cut_file import read_cut, write_cut
 from regrasp.files.plans.motions_table import write_motions
 from regrasp.files.plans.plan_file import read_plan, write_plan
 from regrasp.files.plans.setpoints import write_setpoints
@@ -24,9 +25,11 @@ __all__ = [
     "parse_scenario",
     "plan_scenario",
     "plan_scenario_motions",
+    "read_cut",
     "read_plan",
     "read_scenario",
     "scenario_schema",
+    "write_cut",
     "write_mcap",
     "write_motions",
     "write_plan",

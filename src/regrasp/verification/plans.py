@@ -28,6 +28,7 @@ from regrasp.verification.placed.placements import Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
+from regrasp.verification.refusals.cuts import Cut, verify_cut
 from regrasp.verification.regrasps import Regrasp, check_joints
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
@@ -38,7 +39,7 @@ _NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "
 
 
 def verify(
-    plan: Plan | Regrasp | Chosen | Proof | Regions,
+    plan: Plan | Regrasp | Chosen | Proof | Regions | Cut,
     load: Callable[[float], Wrench] | None = None,
     *,
     curvature: float | None = None,
@@ -52,11 +53,11 @@ def verify(
     """Check a transition in exact arithmetic: the ends, the path between them and the idle finger.
 
     Of a regrasp every step is checked, and every joint between two steps; of a chosen grasp its states, and
-    every box of the proof that no placement is better.
+    every box of the proof that no placement is better; of a cut that no hold crosses it.
 
     Args:
         plan: a transition, a regrasp, a chosen grasp or contact regions, whoever made it; or the proof of a
-            bound alone.
+            bound alone, or of no regrasp, a ``RegraspCut``.
         load: a function of time [s] that the plan was made for. The plan's load is linear between its
             instants and is what the forces balance exactly; the function may differ from it between them.
             That gap must be less than the margins can take: forces that balance the function must exist
@@ -78,10 +79,14 @@ def verify(
     Raises:
         InvalidInput: For what is no plan, no load function or no curvature.
     """
-    if any(hasattr(plan, name) for name in ("certificate", "twists", "corners")):
+    if any(hasattr(plan, name) for name in ("certificate", "twists", "corners", "reached")):
         more_asked = (load, curvature, disturbance, stiffness, friction, position, surface)
         if early_loss or any(value is not None for value in more_asked):
-            raise InvalidInput("a chosen grasp holds its own loads: verify takes nothing else beside it")
+            raise InvalidInput(
+                "a chosen grasp or a cut says itself what it is about: verify takes nothing else beside it"
+            )
+        if hasattr(plan, "reached"):
+            return verify_cut(cast(Cut, plan))
         if hasattr(plan, "corners"):
             return verify_regions(cast(Regions, plan))
         if hasattr(plan, "certificate"):

@@ -24,6 +24,7 @@ class Verification(ArrayValue):
         load_gap_is_proven: from a bound on the load's curvature, and not measured between the instants.
         excluded: boxes of placements that a proof excludes, of a chosen grasp; None of others.
         bound: no placement has a smaller value than this, of a chosen grasp; None of others.
+        crossing: pairs of contacts that cross a cut, of which none holds; None of others.
     """
 
     violations: tuple[str, ...]
@@ -34,6 +35,7 @@ class Verification(ArrayValue):
     load_gap_is_proven: bool = False
     excluded: int | None = None
     bound: float | None = None
+    crossing: int | None = None
 
     @property
     def ok(self) -> bool:
@@ -43,6 +45,11 @@ class Verification(ArrayValue):
     def __str__(self) -> str:
         if not self.ok:
             return "\n".join(["not verified:", *(f"  {violation}" for violation in self.violations)])
+        if self.crossing is not None:
+            return (
+                f"no regrasp leads from the start to the goal on these contacts, at any orientation: none of "
+                f"{self.crossing} pairs across the cut holds a load, in exact arithmetic"
+            )
         by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
         lines = [
             f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "

@@ -63,8 +63,8 @@ def settled(problem: Any) -> Criteria:
     given = {name: getattr(problem, name) for name in entries}
     defaults = {name: option.default for name, (_, option) in entries.items()}
     changed = {k: v for k, v in given.items() if not isinstance(v, float | None) or v != defaults[k]}
-    if getattr(problem, "min_normal", 0.0):
-        changed["min_normal"] = number(problem.min_normal, "min_normal", least=0)
+    if number(getattr(problem, "min_normal", 0.0), "min_normal", least=0):
+        changed["min_normal"] = problem.min_normal
     criteria = criteria_of(problem.objective, changed)
     if not hasattr(problem, "min_normal"):
         criteria.refuse_pressing("a regrasp in space")

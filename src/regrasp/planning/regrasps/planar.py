@@ -198,19 +198,19 @@ class RegraspProblem(ArrayValue):
         off = (self.graph.angles - self.goal_orientation + pi) % (2 * pi) - pi
         return self.ends.start, self.ends.goal, int(np.argmin(abs(off)))
 
-    def sequences(
-        self, extra: int = 0, max_turn: float | None = None, reach: float = REACH
-    ) -> list[Sequence]:
-        """The best sequence of holds, and those of up to ``extra`` more moves with wider margins.
+    def sequences(self, extra: int = 0, max_turn: float | None = None) -> list[Sequence]:
+        """The best sequence among sampled orientations, and those of more moves with wider margins.
 
         Args:
             extra: finger moves beyond the fewest.
             max_turn: in place of the problem's [rad].
-            reach: of turns in several steps, with all three fingers between them [rad].
         """
         whole(extra, "extra", least=0, most=MOST_EXTRA)
+        return self._sampled(extra, self.max_turn if max_turn is None else turn_below_pi(max_turn), REACH)
+
+    def _sampled(self, extra: int, turn: float, reach: float) -> list[Sequence]:
+        """The same, with turns of at most ``reach`` [rad] from one hold to the next, in steps of ``turn``."""
         start, goal, last = self.places
-        turn = self.max_turn if max_turn is None else turn_below_pi(max_turn)
         if self.weights is None:
             return sequences(
                 self.graph, start, goal, last, max_turn=turn, least_margin=self.least_margin,
@@ -232,6 +232,7 @@ class RegraspProblem(ArrayValue):
         Args:
             extra: finger moves beyond the fewest.
         """
+        whole(extra, "extra", least=0, most=MOST_EXTRA)
         return turning_sequences(self, extra, self.least_margin)
 
     def plans(self, extra: int = 0) -> list[RegraspPlan]:
@@ -283,7 +284,7 @@ class RegraspProblem(ArrayValue):
                     raise unheld from None
                 turn = turn / 2 if reach == turn else turn
                 reach = turn
-                found = self.sequences(extra, turn, reach)
+                found = self._sampled(extra, turn, reach)
                 if not found:
                     raise Infeasible(
                         f"the force limits leave no room for forces to grow while the object turns: {error}; "

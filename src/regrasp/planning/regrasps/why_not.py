@@ -14,6 +14,7 @@ from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.regrasps.asked import Asked
+from regrasp.planning.regrasps.cut import cut_of
 from regrasp.planning.regrasps.remedies import (
     MOST_FRICTION,
     allowed,
@@ -29,6 +30,7 @@ from regrasp.planning.regrasps.remedies import (
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import FORCE
+from regrasp.plans.regrasp_cut import RegraspCut
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,8 @@ class RegraspObstacle:
             where it is not what is missing, or where nothing up to a friction of 16, or limits of ten
             thousand loads, would do.
         without: options that alone would leave a sequence if they were not given.
+        cut: the proof that there is none on these points at any orientation, for ``verify``; None where there
+            is no proof: refusals for ``arcs``, force limits and sampled orientations have none.
     """
 
     start: tuple[int, ...]
@@ -54,6 +58,7 @@ class RegraspObstacle:
     max_force: float | None = None
     margin: float | None = None
     without: tuple[str, ...] = ()
+    cut: RegraspCut | None = None
 
 
 def why_not(problem: Asked) -> Infeasible:
@@ -63,12 +68,13 @@ def why_not(problem: Asked) -> Infeasible:
         return unheld
     graph, (start, goal, _) = problem.graph, problem.places
     parts = [_components(graph, places) for places in (start, goal)]
+    cut = cut_of(problem) if problem.is_exact else None
     if problem.least_margin > 0 and possible_on(problem, graph):
         margin, also = widest_margin(problem), "" if problem.is_exact else " and orientations"
         return Infeasible(
             f"no sequence of holds keeps angle margins of {problem.least_margin:.4g} rad; the widest worst "
-            f"margin on the sampled points{also} is {margin:.4g} rad",
-            RegraspObstacle(parts[0], parts[1], margin=margin),
+            f"margin on the sampled points{also} is {margin:.4g} rad{_proven(cut)}",
+            RegraspObstacle(parts[0], parts[1], margin=margin, cut=cut),
         )
     obstacle = RegraspObstacle(
         parts[0],
@@ -76,8 +82,15 @@ def why_not(problem: Asked) -> Infeasible:
         friction_needed(problem),
         force_needed(problem),
         without=tuple(in_the_way(problem)),
+        cut=cut,
     )
-    return Infeasible(f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}", obstacle)
+    return Infeasible(
+        f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}{_proven(cut)}", obstacle
+    )
+
+
+def _proven(cut: RegraspCut | None) -> str:
+    return "" if cut is None else "; none at any orientation is proven, by the cut of the certificate"
 
 
 def _components(graph: HoldGraph, places: tuple[int, ...]) -> tuple[int, ...]:

@@ -1,0 +1,1 @@
+"""Verdicts on refusals: proofs that what was asked for does not exist."""
