@@ -28,6 +28,8 @@ _FIRST = 0.05
 _STEPS = 12
 # The level from which on a motion is a proof is found to this.
 _NARROW = 1e-10
+# Where the level is not known well yet, this part of what it is too high by is enough.
+_ROUGHLY = 0.05
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -126,7 +128,8 @@ def _by_newton(
             error = (best - level) ** 2
             following = best + max(error, tolerance / 4)
         else:
-            ceiling = narrowing.ceiling(chooser.load.vector, step.motion, bounds, held, lost, _NARROW)
+            within = max(_NARROW, _ROUGHLY * (level - best))
+            ceiling = narrowing.ceiling(chooser.load.vector, step.motion, bounds, held, lost, within)
             if ceiling >= lost:
                 break
             lost, motion = ceiling, step.motion
