@@ -98,12 +98,12 @@ def first_calls(effort: Effort, quick: bool) -> Iterator[Row]:
             seconds = processor_time(code, folder)
             yield Row.alone(
                 f"cold_{key}", f"first {what}, nothing compiled before", seconds, Measure.SECONDS, cold,
-                "Numba compiles the holds, some 5 s, and the moves, some 2 s",
+                "Numba compiles the holds of three fingers, some 6 s, and the moves, some 2 s",
             )  # fmt: skip
             again = median(processor_time(code, folder) for _ in range(3))
             yield Row.alone(
                 f"warm_{key}", f"the same with compiled code of a run before, {what}", again,
-                Measure.SECONDS, warm, "imports, loading of compiled code, and the states of the plan",
+                Measure.SECONDS, warm, "every triple of points is judged under every load, and imports",
             )  # fmt: skip
 
 

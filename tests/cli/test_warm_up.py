@@ -60,14 +60,20 @@ def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(monkeypa
     assert any(text.startswith("compiled what is twice as much in ") for text in said)
 
 
-def test_a_single_grasp_needs_no_numba() -> None:
+def test_a_single_grasp_and_a_planar_regrasp_need_no_numba() -> None:
     code = """
 import sys
 import regrasp as rg
 grasp = rg.Grasp(rg.Contact([x, y], normal=[-x, -y], friction=0.6) for x, y in ((1, 0), (-1, 1), (-1, -1)))
 for objective in ("angle", "force", "effort", "friction_use"):
     rg.choose_state(grasp, rg.Wrench([0.1, -1.0]), objective)
-print(rg.verify(rg.plan_removal(grasp, 0, load=rg.Wrench([-0.4, 0.0]))).ok, "numba" in sys.modules)
+print(rg.verify(rg.plan_removal(grasp, 0, load=rg.Wrench([-0.4, 0.0]))).ok)
+square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+start, goal = (
+    rg.Grasp(square.contact_at(s, friction=0.9) for s in places) for places in ((1, 3, 5), (1.2, 3.2, 5.2))
+)
+plan = rg.plan_regrasp(square, start, goal, rg.Wrench([0, -1.0]), friction=0.9)
+print(len(plan.moves), "numba" in sys.modules)
 """
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert ran.stdout == "True False\n"
+    assert ran.stdout == "True\n3 False\n"

@@ -1,14 +1,19 @@
 """Closed forms for millions of two-finger grasps at once."""
 
-from math import inf
+import sys
+from collections.abc import Iterator
+from math import inf, prod
 
 import numpy as np
 
+from regrasp.closed_form.choice import best_squeeze
+from regrasp.closed_form.locus import squeeze_interval
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number, numbers_in
 from regrasp.planning.states.criteria import PEAK_RATIO
 from regrasp.planning.states.objectives import Objective, objective_of
 
+_FEW, _FEW_ALONE = 8, 1_000
 # The arguments of a batch in order, each with the size of its last axis (1: a number).
 _SIZES = {
     "r1": 2, "n1": 2, "mu1": 1, "r2": 2, "n2": 2, "mu2": 1, "force": 2, "torque": 1, "limit1": 1, "limit2": 1,
@@ -28,8 +33,8 @@ def locus_intervals(
     """Ends (lo, hi) of the squeeze interval of many pairs of planar contacts [N].
 
     Leading shapes broadcast; lo and hi have that shape. An empty locus is lo = inf, hi = -inf. The same
-    function as ``EquilibriumLocus.interval``, compiled by Numba on the first call (seconds, then cached) and
-    run on all cores.
+    function as ``EquilibriumLocus.interval``, compiled by Numba where there are more than a few (seconds on the first
+    call, then kept) and run on all cores.
 
     Args:
         r1: (..., 2) positions of the first contacts, object frame [m].
@@ -46,6 +51,11 @@ def locus_intervals(
             coincident contacts.
     """
     arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque)
+    if _are_few(shape):
+        _refuse_bad_values(arrays)
+        each = [squeeze_interval(*pair) for pair in _one_by_one(arrays, shape)]
+        ends = np.array(each).reshape(*shape, 2)
+        return ends[..., 0].copy(), ends[..., 1].copy()
     from regrasp.closed_form.compiled import two_fingers as compiled
 
     lo, hi = np.empty(shape), np.empty(shape)
@@ -98,15 +108,40 @@ def best_squeezes(
         raise InvalidInput(f"max_force must be one limit or a tuple of two, got a tuple of {len(limits)}")
     limit1, limit2 = (inf if limit is None else limit for limit in limits)
     arrays, whole, shape = _prepared(r1, n1, mu1, r2, n2, mu2, force, torque, limit1, limit2)
+    code, ratio = sought.closed_form, float(peak_ratio)
+    if _are_few(shape):
+        _refuse_bad_values(arrays)
+        if sought.unbounded:
+            _refuse_endless(sought.name, *arrays[6:])
+        squeezes = (
+            best_squeeze(*p[:13], code, *p[13:], ratio)[0]  # type: ignore[arg-type, call-arg]
+            for p in _one_by_one(arrays, shape)
+        )
+        return np.array(list(squeezes)).reshape(shape)
     from regrasp.closed_form.compiled import two_fingers as compiled
 
     x = np.empty(shape)
     blocks = _blocks(arrays, compiled.BLOCK)
-    if compiled.squeezes(*blocks, sought.closed_form, float(peak_ratio), whole, x.reshape(-1)):
+    if compiled.squeezes(*blocks, code, ratio, whole, x.reshape(-1)):
         _refuse_bad_values(arrays)
         if sought.unbounded:
             _refuse_endless(sought.name, *arrays[6:])
     return x
+
+
+def _are_few(shape: tuple[int, ...]) -> bool:
+    """Whether the formulas themselves are quicker than a call of the compiled ones, or than loading these."""
+    return 0 < prod(shape) <= (_FEW if "numba" in sys.modules else _FEW_ALONE)
+
+
+def _one_by_one(arrays: list[Array], shape: tuple[int, ...]) -> Iterator[tuple[float, ...]]:
+    """The numbers of one pair after the other, as the closed forms take them."""
+    count = prod(shape)
+    columns = []
+    for flat, size in zip(arrays, _SIZES.values(), strict=False):
+        of_each = np.broadcast_to(flat.reshape(-1, size), (count, size)).T
+        columns += of_each.tolist()
+    return zip(*columns, strict=True)
 
 
 def _prepared(*arguments: ArrayLike) -> tuple[list[Array], Array, tuple[int, ...]]:
