@@ -33,8 +33,8 @@ def locus_intervals(
     """Ends (lo, hi) of the squeeze interval of many pairs of planar contacts [N].
 
     Leading shapes broadcast; lo and hi have that shape. An empty locus is lo = inf, hi = -inf. The same
-    function as ``EquilibriumLocus.interval``, compiled by Numba where there are more than a few (seconds on the first
-    call, then kept) and run on all cores.
+    function as ``EquilibriumLocus.interval``, where there are more than a few compiled by Numba (seconds on
+    the first call, then kept) and run on all cores.
 
     Args:
         r1: (..., 2) positions of the first contacts, object frame [m].
