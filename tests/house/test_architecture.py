@@ -77,7 +77,20 @@ FLOORS: dict[str, Set[str]] = {
         "planning",
         "motions",
         "execution",
+        "web",
         "plots",
+    },
+    "web": set(),  # scripts and styles of pages
+    "explore": {
+        "errors",
+        "mechanics",
+        "outline",
+        "plans",
+        "planning",
+        "verification",
+        "files",
+        "web",
+        "explore",
     },
     "bench": {
         "errors",
@@ -104,6 +117,7 @@ FLOORS: dict[str, Set[str]] = {
         "plots",
         "execution",
         "studies",
+        "explore",
         "bench",
         "cli",
     },
@@ -175,6 +189,7 @@ HEAVY = {
     "dask",
     "distributed",
     "xarray",
+    "anywidget",
 }
 LINES = 360
 """Of a file, besides the sections Args, Returns and Raises of docstrings."""
@@ -229,6 +244,8 @@ def may_import(module: str, package: str) -> bool:
         return here == "plots"
     if package == "plotly":
         return module == "regrasp.plots.pages.page"
+    if package == "anywidget":
+        return module == "regrasp.explore.widget"
     if package == "rosbags":
         return module == "regrasp.files.plans.bag"
     if package in ("pyarrow", "dask", "distributed", "xarray"):

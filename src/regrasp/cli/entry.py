@@ -13,6 +13,7 @@ import click
 
 from regrasp import __version__
 from regrasp.cli.benchmarking import bench
+from regrasp.cli.exploring import explore
 from regrasp.cli.planning import demo, plan
 from regrasp.cli.scenarios import new, schema
 from regrasp.cli.simulating import simulate
@@ -44,7 +45,7 @@ def commands() -> None:
     """
 
 
-for command in (demo, new, plan, verify, simulate, schema, bench, warm_up):
+for command in (demo, new, explore, plan, verify, simulate, schema, bench, warm_up):
     commands.add_command(command)
 
 
