@@ -2,7 +2,7 @@
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
@@ -10,7 +10,7 @@ from regrasp.cli.speech import called, json_option, say
 from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
 
 if TYPE_CHECKING:
-    from regrasp.files import AnyScenario
+    from regrasp.files.scenarios.scenario import PlannedScenario
     from regrasp.mesh.mesh import Mesh
     from regrasp.outline.outline import Outline
     from regrasp.plans.regrasp_plan import RegraspPlan
@@ -41,7 +41,8 @@ def demo(output: Path) -> dict[str, Any]:
     check_folder(output)
     name = "paper.toml"
     text = (files("regrasp.files.scenarios") / name).read_text(encoding="utf-8")
-    facts = _work(parse_scenario(text, name), name, output, copy=text)
+    example = cast("PlannedScenario", parse_scenario(text, name))
+    facts = _work(example, name, output, copy=text)
     say(f"\nNext: change {output / name}, then run  {called()} plan {output / name} -o {output}")
     return facts
 
@@ -61,22 +62,27 @@ def demo(output: Path) -> dict[str, Any]:
 @click.option("--mcap", is_flag=True, help="Write plan.mcap, a ROS 2 bag; needs regrasp[ros].")
 @json_option
 def plan(scenario: Path, output: Path, no_figures: bool, motions: bool, mcap: bool) -> dict[str, Any]:
-    """Plan the change of grasp, the turn or the whole regrasp in a SCENARIO.
+    """Plan the change of grasp, the turn or the whole regrasp in a SCENARIO, or choose its grasp.
 
     SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
     """
-    from regrasp.files import read_scenario
+    from regrasp.cli.choosing import choose
+    from regrasp.files import GraspScenario, read_scenario
     from regrasp.files.staging import check_folder
 
     check_folder(output)
     if mcap and find_spec("rosbags") is None:
         raise click.UsageError("--mcap needs rosbags: pip install 'regrasp[ros]'")
     asked = read_scenario(scenario)
+    if isinstance(asked, GraspScenario):
+        if motions or mcap:
+            raise click.UsageError("a grasp has no motions and no bag; leave --motions and --mcap out")
+        return choose(asked, scenario, output, draw=not no_figures)
     return _work(asked, scenario, output, draw=not no_figures, motions=motions, mcap=mcap)
 
 
 def _work(
-    scenario: "AnyScenario",
+    scenario: "PlannedScenario",
     name: str | Path,
     output: Path,
     *,
@@ -141,7 +147,7 @@ def _work(
     return verdict_facts(planned, verdict, count) | {"wrote": [output / file for file in written]}
 
 
-def _shape(scenario: "AnyScenario") -> "Outline | Mesh | None":
+def _shape(scenario: "PlannedScenario") -> "Outline | Mesh | None":
     """The outline or the solid of a scenario, to be drawn; None where only the contacts are known."""
     from regrasp.files import RegraspScenario
 

@@ -7,7 +7,7 @@ import click
 
 from regrasp.cli.speech import called, json_option, say
 
-KINDS = ("removal", "addition", "exchange", "rotation", "regrasp")
+KINDS = ("removal", "addition", "exchange", "rotation", "regrasp", "grasp")
 
 
 @click.command()
@@ -18,11 +18,13 @@ KINDS = ("removal", "addition", "exchange", "rotation", "regrasp")
 def new(kind: str, file: Path | None, space: bool) -> dict[str, Any]:
     """Write a scenario with comments to start from.
 
-    KIND is removal, addition, exchange, rotation or regrasp. FILE is KIND.toml unless given; one that is
-    there is left alone. The scenario plans as it is.
+    KIND is removal, addition, exchange, rotation, regrasp or grasp. FILE is KIND.toml unless given; one that
+    is there is left alone. The scenario plans as it is.
     """
     from regrasp.files.scenarios.templates import template, write_new
 
+    if space and kind == "grasp":
+        raise click.UsageError("a grasp is chosen in the plane; leave --space out")
     name = f"space-{kind}" if space else kind
     file = Path(f"{name}.toml") if file is None else file
     write_new(file, template(name))

@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from regrasp.cli.speech import json_option, say
-from regrasp.errors import RegraspError
+from regrasp.errors import InvalidInput, RegraspError
 
 
 class NotHeld(RegraspError):
@@ -43,7 +43,7 @@ def simulate(path: Path, critical: bool, output: Path | None, **options: Any) ->
     PLAN is a plan.json or the folder that holds it. Exit status 1 if it does not hold. Needs the extra
     ``regrasp[mujoco]``.
     """
-    from regrasp import execution
+    from regrasp import ChosenGrasp, execution
     from regrasp.files import read_plan
     from regrasp.files.staging import check_folder
 
@@ -52,6 +52,8 @@ def simulate(path: Path, critical: bool, output: Path | None, **options: Any) ->
     execution.Setup(**options)
     path = path / "plan.json" if path.is_dir() else path
     planned = read_plan(path)
+    if isinstance(planned, ChosenGrasp):
+        raise InvalidInput(f"{path}: a chosen grasp has no forces over time to simulate; plan its change")
     try:
         run = execution.simulate(planned, **options)
     except ImportError as error:

@@ -9,6 +9,7 @@ from regrasp.cli.statuses import VERIFIED, Unverified
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+    from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.transition import Transition
     from regrasp.verification import MotionsVerification, Verification
@@ -28,7 +29,9 @@ def verified(verdict: Judged, name: str | Path) -> Judged:
     raise Unverified("\n  ".join([f"{name}: does not verify:", *lines]), verdict.violations)
 
 
-def verdict_facts(planned: "Transition | RegraspPlan", verdict: "Verification", count: int) -> dict[str, Any]:
+def verdict_facts(
+    planned: "Transition | RegraspPlan | ChosenGrasp", verdict: "Verification", count: int
+) -> dict[str, Any]:
     """What JSON says of a plan that verified, with ``count`` set-points."""
     return {
         "status": "verified",
@@ -39,9 +42,22 @@ def verdict_facts(planned: "Transition | RegraspPlan", verdict: "Verification", 
     }
 
 
-def _plan_facts(planned: "Transition | RegraspPlan") -> dict[str, Any]:
+def _plan_facts(planned: "Transition | RegraspPlan | ChosenGrasp") -> dict[str, Any]:
+    from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.plans.regrasp_plan import RegraspPlan
 
+    if isinstance(planned, ChosenGrasp):
+        return {
+            "kind": "grasp",
+            "objective": planned.objective,
+            "value": planned.value,
+            "bound": planned.bound,
+            "gap": planned.gap,
+            "places": planned.places,
+            "contacts": planned.grasp.names,
+            "positions": planned.grasp.positions,
+            "normals": planned.grasp.normals,
+        }
     if isinstance(planned, RegraspPlan):
         return {
             "kind": "regrasp",
@@ -61,7 +77,7 @@ def _plan_facts(planned: "Transition | RegraspPlan") -> dict[str, Any]:
     }
 
 
-def names_of(planned: "Transition | RegraspPlan") -> list[str]:
+def names_of(planned: "Transition | RegraspPlan | ChosenGrasp") -> list[str]:
     """Of all contacts of a plan."""
     return [name for step in getattr(planned, "steps", [planned]) for name in step.grasp.names]
 

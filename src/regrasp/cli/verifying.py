@@ -23,6 +23,7 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
     """
     import numpy as np
 
+    from regrasp import ChosenGrasp
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
     from regrasp.files.plans.cut_file import holds_a_cut, read_cut
@@ -45,7 +46,7 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
         say(shown(planned))
         verdict = verified(verdict_on(planned), path)
         say(verdict)
-        if table.exists():
+        if table.exists() and not isinstance(planned, ChosenGrasp):
             steps = read_setpoints(table, planned, rate)
             for rows in steps:
                 verified(checked(planned, rows), table)

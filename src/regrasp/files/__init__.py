@@ -5,6 +5,7 @@ from regrasp.files.plans.cut_file import read_cut, write_cut
 from regrasp.files.plans.motions_table import write_motions
 from regrasp.files.plans.plan_file import read_plan, write_plan
 from regrasp.files.plans.setpoints import write_setpoints
+from regrasp.files.scenarios.grasp import GraspScenario
 from regrasp.files.scenarios.moving import plan_scenario_motions
 from regrasp.files.scenarios.planned import plan_scenario
 from regrasp.files.scenarios.regrasp import RegraspScenario
@@ -19,6 +20,7 @@ from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 
 __all__ = [
     "AnyScenario",
+    "GraspScenario",
     "RegraspScenario",
     "Scenario",
     "SpaceRegraspScenario",

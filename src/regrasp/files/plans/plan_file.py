@@ -21,6 +21,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.plans.path import Path as ForcePath
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -116,11 +117,11 @@ class _Regrasp(_Header):
     rotations: list[list[list[float]]] | None = None  # in space
 
 
-def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
+def write_plan(plan: Transition | RegraspPlan | ChosenGrasp, path: str | Path) -> None:
     """Write a plan with everything needed to read it back and verify it.
 
     Args:
-        plan: a ``Transition`` or a ``RegraspPlan``.
+        plan: a ``Transition``, a ``RegraspPlan`` or a ``ChosenGrasp``.
         path: the file, in JSON.
 
     Raises:
@@ -133,7 +134,7 @@ def write_plan(plan: Transition | RegraspPlan, path: str | Path) -> None:
         file.write("\n")
 
 
-def read_plan(path: str | Path) -> Transition | RegraspPlan:
+def read_plan(path: str | Path) -> Transition | RegraspPlan | ChosenGrasp:
     """The plan of a file that ``write_plan`` wrote; judge it with ``regrasp.verify``.
 
     Args:
@@ -155,21 +156,25 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan:
     return plan_of(data, path)
 
 
-def plan_document(plan: Transition | RegraspPlan, name: str | Path = "plan") -> dict[str, Any]:
+def plan_document(plan: Transition | RegraspPlan | ChosenGrasp, name: str | Path = "plan") -> dict[str, Any]:
     """What a plan file holds, as plain data. Raises ``InvalidInput``, which begins with ``name``."""
     header = {"format": FORMAT, "version": VERSION}
     if isinstance(plan, RegraspPlan):
         document = header | _regrasp_document(plan)
         validated(_Regrasp, document, name)
+    elif isinstance(plan, ChosenGrasp):
+        document = header | {"kind": "grasp"} | plan.to_dict()
     elif isinstance(plan, Transition):
         document = header | _document(plan)
         validated(_Plan, document, name)
     else:
-        raise InvalidInput(f"write_plan writes a Transition or a RegraspPlan, got {shown(plan)}")
+        raise InvalidInput(
+            f"write_plan writes a Transition, a RegraspPlan or a ChosenGrasp, got {shown(plan)}"
+        )
     return document
 
 
-def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan:
+def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan | ChosenGrasp:
     """The plan of what a plan file holds. Raises ``InvalidInput``, which begins with ``name``."""
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InvalidInput(f'{name}: expected a plan with "format": "{FORMAT}", found other JSON')
@@ -182,6 +187,11 @@ def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan:
         whole = validated(_Regrasp, data, name)
         with naming(name):
             return _regrasp(whole)
+    if data.get("kind") == "grasp":
+        with naming(name):
+            return ChosenGrasp.from_dict(
+                {key: value for key, value in data.items() if key not in ("format", "version", "kind")}
+            )
     stored = validated(_Plan, data, name)
     with naming(name):
         return _plan(stored)

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from math import radians
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar, overload
 
 from regrasp.errors import InvalidInput, shown
+from regrasp.files.scenarios.grasp import GraspScenario, chosen_by
 from regrasp.files.scenarios.regrasp import RegraspScenario, RegraspTask
-from regrasp.files.scenarios.scenario import AnyScenario, Scenario
+from regrasp.files.scenarios.scenario import AnyScenario, PlannedScenario, Scenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario, SpaceRegraspTask
 from regrasp.files.scenarios.tasks import Change, Exchange, OneFinger, Rotation
 from regrasp.mechanics.grasp import Grasp
@@ -17,6 +18,7 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
 from regrasp.planning.changes.rotation import plan_rotation
 from regrasp.planning.holds.sequences import MAX_TURN
+from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.regrasps.verbs import plan_regrasp
 from regrasp.planning.states.options import ChangeOptions, LimitOptions, PlanOptions, described
 from regrasp.plans.loads import LoadSeries
@@ -45,8 +47,12 @@ _REGRASP_OPTIONS = (
 _SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
 
 
-def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
-    """What a scenario asks for.
+@overload
+def plan_scenario(scenario: GraspScenario) -> ChosenGrasp: ...
+@overload
+def plan_scenario(scenario: PlannedScenario) -> Transition | RegraspPlan: ...
+def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan | ChosenGrasp:
+    """What a scenario asks for: a plan, or a grasp where one is to be chosen.
 
     Args:
         scenario: what ``read_scenario`` or ``parse_scenario`` returned.
@@ -57,6 +63,8 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan:
     """
     if isinstance(scenario, RegraspScenario | SpaceRegraspScenario):
         return regrasp_by(scenario, plan_regrasp)
+    if isinstance(scenario, GraspScenario):
+        return chosen_by(scenario)
     if not isinstance(scenario, Scenario):
         raise InvalidInput(f"a scenario comes from read_scenario or parse_scenario, got {shown(scenario)}")
     task, load = scenario.task, scenario.external

@@ -11,6 +11,7 @@ from pydantic import Discriminator, Field, Tag, TypeAdapter, model_validator
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.scenarios.disturbance import DisturbedLoad
+from regrasp.files.scenarios.grasp import GraspScenario
 from regrasp.files.scenarios.keys import (
     AnyForce,
     AnyVector,
@@ -253,7 +254,9 @@ class Scenario(Strict):
         return problems
 
 
-AnyScenario = Scenario | RegraspScenario | SpaceRegraspScenario
+PlannedScenario = Scenario | RegraspScenario | SpaceRegraspScenario
+"""Of forces over time."""
+AnyScenario = PlannedScenario | GraspScenario
 
 
 def read_scenario(path: str | Path) -> AnyScenario:
@@ -291,6 +294,8 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
     except ValueError as error:
         raise InvalidInput(f"{file}: not TOML: {error}") from None
     task = data.get("task")
+    if isinstance(task, dict) and task.get("kind") == "grasp":
+        return validated(GraspScenario, data, file)
     if isinstance(task, dict) and task.get("kind") == "regrasp":
         if "object" in data:
             return validated(SpaceRegraspScenario, data, file)

@@ -127,6 +127,21 @@ class ChosenGrasp(ArrayValue):
             None if limit is None else number(limit, "max_force", above=0),
         )
 
+    def __str__(self) -> str:
+        rows = [f"{'':10}{'arc length':>14}{'position':>26}{'inward normal':>22}"]
+        for contact, s in zip(self.grasp, self.places, strict=True):
+            x, y = (f"{v:.6g}" for v in contact.position)
+            nx, ny = (f"{v + 0.0:.4f}" for v in contact.normal)
+            rows.append(f"{contact.name or '':10}{s:14.6g}{f'({x}, {y})':>26}{f'({nx}, {ny})':>22}")
+        better = "above" if self.bound > self.value else "below"
+        return "\n".join(
+            [
+                *rows,
+                f"{self.objective} {self.value:.6g}; no placement is {better} {self.bound:.6g}, a gap of "
+                f"{self.gap:.2g}",
+            ]
+        )
+
     def __repr__(self) -> str:
         places = ", ".join(f"{s:.6g}" for s in self.places)
         return (

@@ -24,14 +24,37 @@ class Shape(Protocol):
 class Chosen(Protocol):
     """What ``verify`` needs to know of a chosen grasp, whoever chose it."""
 
-    shape: Shape
-    objective: str
-    grasp: Grasp
-    states: tuple[GraspState, ...]
-    value: float
-    bound: float
-    certificate: Proof
-    max_force: float | None
+    @property
+    def shape(self) -> Shape:
+        """The outline."""
+
+    @property
+    def objective(self) -> str:
+        """Its word."""
+
+    @property
+    def grasp(self) -> Grasp:
+        """The contacts."""
+
+    @property
+    def states(self) -> tuple[GraspState, ...]:
+        """Forces for the loads."""
+
+    @property
+    def value(self) -> float:
+        """Of the worst load."""
+
+    @property
+    def bound(self) -> float:
+        """No placement is better."""
+
+    @property
+    def certificate(self) -> Proof:
+        """The proof of the bound."""
+
+    @property
+    def max_force(self) -> float | None:
+        """Limit on every force [N]."""
 
 
 # objective: size of a force, norm of the sizes, power of the norm

@@ -24,11 +24,25 @@ from regrasp.verification.verdict import Verification
 class Regions(Protocol):
     """What ``verify`` needs to know of regions, whoever found them; arcs (k, 2) are arc lengths [m]."""
 
-    shape: Shape
-    grasp: Grasp
-    arcs: Array
-    max_force: float
-    corners: tuple[GraspState, ...]
+    @property
+    def shape(self) -> Shape:
+        """The outline."""
+
+    @property
+    def grasp(self) -> Grasp:
+        """The contacts."""
+
+    @property
+    def arcs(self) -> Array:
+        """Of each finger."""
+
+    @property
+    def max_force(self) -> float:
+        """Limit on every force [N]."""
+
+    @property
+    def corners(self) -> tuple[GraspState, ...]:
+        """States at all combinations of ends of arcs."""
 
 
 def verify_regions(regions: Regions) -> Verification:

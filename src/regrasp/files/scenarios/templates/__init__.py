@@ -5,8 +5,13 @@ from pathlib import Path
 
 from regrasp.errors import InvalidInput
 
-NAMES = tuple(
-    f"{where}{kind}" for where in ("", "space-") for kind in ("removal", "addition", "rotation", "regrasp")
+NAMES = (
+    *(
+        f"{where}{kind}"
+        for where in ("", "space-")
+        for kind in ("removal", "addition", "rotation", "regrasp")
+    ),
+    "grasp",
 )
 
 

@@ -1,0 +1,43 @@
+"""Choosing the grasp of a scenario: chosen, verified, and only then written and drawn."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from regrasp.cli.speech import say
+from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from regrasp.files import GraspScenario
+
+
+def choose(scenario: "GraspScenario", name: str | Path, output: Path, *, draw: bool) -> dict[str, Any]:
+    """Write the chosen grasp with its proof as plan.json, and draw it."""
+    from regrasp.files import plan_scenario, write_plan
+    from regrasp.files.source import naming
+    from regrasp.files.staging import whole_folder
+    from regrasp.mechanics.value import one_line
+    from regrasp.verification import verify
+
+    with naming(name), progress_bar() as progress:
+        task = progress.add_task("choosing", total=None)
+        chosen = plan_scenario(scenario)
+        progress.update(task, description="verifying")
+        verdict = verified(verify(chosen), name)
+    for remark in chosen.shape.notes:
+        say(f"{name}: {one_line(remark)}")
+    say(f"{one_line(scenario.title)}\n\n{chosen}" if scenario.title else chosen)
+    say(verdict)
+    with whole_folder(output) as folder:
+        write_plan(chosen, folder / "plan.json")
+        if draw:
+            from regrasp.plots import plot_chosen_grasp
+            from regrasp.plots.look.png import save_png
+
+            save_png(cast("Figure", plot_chosen_grasp(chosen).figure), folder / "grasp.png")
+        written = sorted(file.name for file in folder.iterdir())
+    say("")
+    for file in written:
+        say(f"wrote {output / file}")
+    return verdict_facts(chosen, verdict, 0) | {"wrote": [output / file for file in written]}

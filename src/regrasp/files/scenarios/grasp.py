@@ -1,0 +1,98 @@
+"""The scenario of a grasp to be chosen: an outline, what it has to hold, and with how many fingers."""
+
+from functools import cached_property
+from math import radians
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from regrasp.files.scenarios.disturbance import Disturbance
+from regrasp.files.scenarios.keys import Load, Positive
+from regrasp.files.scenarios.regrasp import OutlineEntry
+from regrasp.files.strict import Strict
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.placement.choosing import choose_grasp
+from regrasp.planning.placement.chosen import ChosenGrasp
+
+_NotNegative = Annotated[float, Field(ge=0)]
+
+
+class Loads(Load):
+    """What the grasp has to hold: one load, several, or one whose force turns."""
+
+    also: list[Load] = Field([], description="other loads that it has to hold, and all between")
+    tilt_degrees: Annotated[float, Field(gt=0, le=180)] | None = Field(
+        None, description="the load's force turns by up to this angle, any way; 180: every orientation"
+    )
+    disturbance: Disturbance | None = Field(
+        None, description="hull of deviations for objective 'answered', which scales it"
+    )
+
+    @cached_property
+    def value(self) -> Wrench | LoadSet:
+        """The load, or the set of them."""
+        if self.tilt_degrees is not None:
+            return LoadSet.tilted(self.wrench, radians(self.tilt_degrees))
+        return LoadSet.hull([self.wrench, *(load.wrench for load in self.also)]) if self.also else self.wrench
+
+    @model_validator(mode="after")
+    def _is_planar(self) -> "Loads":
+        if any(len(load.force) != 2 for load in (self, *self.also)):
+            raise ValueError("grasps are chosen in the plane: expected forces of two numbers")
+        if self.also and self.tilt_degrees is not None:
+            raise ValueError("expected also or tilt_degrees, found both")
+        if self.disturbance is not None and self.disturbance.hull is None:
+            raise ValueError("disturbance: expected a hull, which 'answered' scales")
+        return self
+
+
+class GraspTask(Strict):
+    """With how many fingers, and what is best."""
+
+    kind: Literal["grasp"]
+    fingers: int = Field(ge=2, le=4, description="how many")
+    objective: Literal["sum_normal", "peak_normal", "peak", "effort", "friction_use", "angle", "answered"] = (
+        Field("sum_normal", description="what the grasp is chosen for")
+    )
+    max_force: Positive | None = Field(
+        None, description="limit on every force, for friction_use, angle and answered [N]"
+    )
+    tolerance: Annotated[float, Field(gt=0, lt=1)] = Field(1e-3, description="gap at which the search ends")
+    min_distance: Positive | None = Field(None, description="[m], between two fingers")
+    from_corners: _NotNegative | None = Field(
+        None, description="[m], of a finger from a corner, along the outline; a thousandth of it if absent"
+    )
+    load_offset: _NotNegative = Field(0.0, description="[m], by which loads may act beside their lines")
+    most_boxes: int = Field(
+        200_000, ge=64, le=10_000_000, description="boxes of places after which the search ends"
+    )
+
+
+class GraspScenario(Strict):
+    """A planar object with its outline, the loads that it is under, and the fingers that are to hold it."""
+
+    title: str | None = Field(None, description="shown above the grasp")
+    friction: float = Field(ge=0, description="Coulomb coefficient all along the outline")
+    load: Loads
+    outline: OutlineEntry
+    task: GraspTask
+
+
+def chosen_by(scenario: GraspScenario) -> ChosenGrasp:
+    """The grasp that a scenario asks for."""
+    task, disturbance = scenario.task, scenario.load.disturbance
+    return choose_grasp(
+        scenario.outline.value,
+        task.fingers,
+        scenario.load.value,
+        friction=scenario.friction,
+        objective=task.objective,
+        max_force=task.max_force,
+        disturbance=None if disturbance is None else disturbance.around(scenario.load.wrench),
+        load_offset=task.load_offset,
+        tolerance=task.tolerance,
+        min_distance=task.min_distance,
+        from_corners=task.from_corners,
+        most_boxes=task.most_boxes,
+    )

@@ -1,0 +1,82 @@
+"""From a scenario to a chosen grasp on disk, judged again from there."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import regrasp as rg
+from regrasp.files import parse_scenario, plan_scenario, read_plan, write_plan
+from regrasp.files.scenarios.templates import template
+from scenarios import regrasp
+
+pytestmark = pytest.mark.end_to_end
+
+
+def test_a_grasp_is_chosen_written_and_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "grasp.toml").write_text(template("grasp"), encoding="utf-8")
+    status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
+    assert (status, err) == (0, "")
+    assert "no placement is below" in out
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png"}
+    status, out, err = regrasp(capsys, "verify", str(tmp_path / "out"), "--json")
+    assert (status, err) == (0, "")
+    facts = json.loads(out)
+    assert facts["plan"]["kind"] == "grasp"
+    assert facts["verification"]["excluded"] > 0
+    assert facts["plan"]["bound"] <= facts["plan"]["value"]
+
+
+def test_a_file_comes_back_equal_and_one_that_was_touched_does_not_verify(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    chosen = plan_scenario(parse_scenario(template("grasp")))
+    assert isinstance(chosen, rg.ChosenGrasp)
+    write_plan(chosen, tmp_path / "plan.json")
+    assert read_plan(tmp_path / "plan.json") == chosen
+    data = json.loads((tmp_path / "plan.json").read_text(encoding="utf-8"))
+    data["bound"] = data["value"] * 1.5
+    (tmp_path / "plan.json").write_text(json.dumps(data), encoding="utf-8")
+    status, _, err = regrasp(capsys, "verify", str(tmp_path / "plan.json"))
+    assert status != 0
+    assert "above the value" in err
+    status, _, err = regrasp(capsys, "simulate", str(tmp_path / "plan.json"))
+    assert status == 2
+    assert "no forces over time" in err or "mujoco" in err
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("fingers = 3", "fingers = 9"), "task.fingers"),
+        (('objective = "peak_normal"', 'objective = "angle"'), "max_force"),
+        (("force = [0.3, -1.0]", "force = [0.3, -1.0, 0.0]"), "plane"),
+    ],
+)
+def test_what_is_wrong_is_said(
+    change: tuple[str, str], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = template("grasp")
+    assert change[0] in text
+    (tmp_path / "grasp.toml").write_text(text.replace(*change), encoding="utf-8")
+    status, _, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
+    assert status in (2, 3)
+    assert words in err
+
+
+def test_every_way_to_give_loads_and_objectives() -> None:
+    text = template("grasp").replace("[0.0, -1.0]\n", "[0.0, -1.0]\ntilt_degrees = 20.0\n")
+    text = "\n".join(line for line in text.splitlines() if "[[load.also]]" not in line)
+    text = text.replace("force = [0.3, -1.0]\n", "").replace("force = [-0.3, -1.0]\ntorque = -0.005\n", "")
+    tilted = plan_scenario(parse_scenario(text))
+    assert isinstance(tilted, rg.ChosenGrasp)
+    assert len(tilted.states) == 1
+    answered = text.replace('objective = "peak_normal"', 'objective = "answered"\nmax_force = 3.0')
+    answered = answered.replace("tilt_degrees = 20.0", "")
+    answered = answered.replace(
+        "[outline]", "[load.disturbance]\nhull = [{force = [0.2, 0.0]}, {force = [-0.2, 0.0]}]\n[outline]"
+    )
+    found = plan_scenario(parse_scenario(answered))
+    assert isinstance(found, rg.ChosenGrasp)
+    assert found.objective == "answered"
+    assert rg.verify(found).ok
