@@ -1,14 +1,12 @@
 """Choosing the grasp of a scenario: chosen, verified, and only then written and drawn."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from regrasp.cli.speech import say
 from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from regrasp.files import GraspScenario
 
 
@@ -32,10 +30,9 @@ def choose(scenario: "GraspScenario", name: str | Path, output: Path, *, draw: b
     with whole_folder(output) as folder:
         write_plan(chosen, folder / "plan.json")
         if draw:
-            from regrasp.plots import plot_chosen_grasp
-            from regrasp.plots.look.png import save_png
+            from regrasp.plots.placement.chosen import chosen_grasp_png
 
-            save_png(cast("Figure", plot_chosen_grasp(chosen).figure), folder / "grasp.png")
+            (folder / "grasp.png").write_bytes(chosen_grasp_png(chosen))
         written = sorted(file.name for file in folder.iterdir())
     say("")
     for file in written:

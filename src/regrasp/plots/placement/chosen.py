@@ -1,7 +1,10 @@
 """A chosen grasp on its outline, and regions around contacts."""
 
+from typing import cast
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
@@ -10,6 +13,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.regions import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
+from regrasp.plots.look.png import png
 from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
 from regrasp.plots.look.units import SI, Units
 
@@ -51,6 +55,15 @@ def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Uni
 
 
 _UNITS = {"friction_use": "-", "angle": "rad", "answered": "-"}
+
+
+def chosen_grasp_png(chosen: ChosenGrasp) -> bytes:
+    """``plot_chosen_grasp`` as a PNG image.
+
+    Args:
+        chosen: what ``regrasp.choose_grasp`` found.
+    """
+    return png(cast(Figure, plot_chosen_grasp(chosen).figure))
 
 
 def plot_contact_regions(regions: ContactRegions, ax: Axes | None = None, *, units: Units = SI) -> Axes:
