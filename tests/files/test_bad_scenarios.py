@@ -229,7 +229,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(('kind = "removal"', "")),
         2,
         [
-            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'hold' or 'rotation' or 'regrasp', "
             "found no such key"
         ],
     ),
@@ -237,7 +237,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(('kind = "removal"', 'kind = "juggling"')),
         2,
         [
-            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'rotation' or 'regrasp', "
+            "task.kind: expected 'removal' or 'addition' or 'exchange' or 'hold' or 'rotation' or 'regrasp', "
             "got 'juggling'"
         ],
     ),
@@ -250,8 +250,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(('objective = "angle"', 'objective = "safest"')),
         2,
         [
-            "task.objective: expected 'angle', 'force', 'effort', 'peak', 'peak_normal', 'friction_use' or "
-            "'sum_normal', got 'safest'"
+            "task.objective: expected 'angle', 'force', 'effort', 'peak', 'peak_normal', 'friction_use', "
+            "'sum_normal' or 'wrench', got 'safest'"
         ],
     ),
     "unknown method": (
@@ -263,9 +263,9 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         edited(("duration = 1.0", "time = 1.0")),
         2,
         [
-            "task.time: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, min_normal, contact, rate_limit, "
-            "path_objective, instants, facets, whole_objective, idle_time, kind"
+            "task.time: unknown key; known here: objective, method, facets, duration, rate, scaling, "
+            "control, max_force, peak_ratio, reserve, balance_tolerance, min_normal, stiffness, rate_limit, "
+            "path_objective, instants, contact, early_loss, whole_objective, idle_time, kind"
         ],
     ),
     "no duration": (
@@ -358,9 +358,9 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "contacts[0].normal[1]: expected a finite number, got nan",
             "contacts[0].friction: expected a number of at least 0, got -1",
             "task.rate: expected a number greater than 0, got 0",
-            "task.kin: unknown key; known here: objective, method, duration, rate, scaling, control, "
-            "max_force, peak_ratio, reserve, balance_tolerance, min_normal, contact, rate_limit, "
-            "path_objective, instants, facets, whole_objective, idle_time, kind",
+            "task.kin: unknown key; known here: objective, method, facets, duration, rate, scaling, "
+            "control, max_force, peak_ratio, reserve, balance_tolerance, min_normal, stiffness, rate_limit, "
+            "path_objective, instants, contact, early_loss, whole_objective, idle_time, kind",
         ],
     ),
     # -- infeasible -------------------------------------------------------------------------------------

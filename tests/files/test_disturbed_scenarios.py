@@ -1,10 +1,13 @@
 """Scenarios with a disturbance: planned so that it is withstood, and refused in one line where they are "
 "wrong."""
 
+from pathlib import Path
+
 import pytest
 
 import regrasp as rg
-from regrasp.files import parse_scenario, plan_scenario
+from regrasp.files import parse_scenario, plan_scenario, read_plan, write_plan
+from regrasp.files.scenarios.templates import template
 
 pytestmark = pytest.mark.contract
 
@@ -78,3 +81,20 @@ def test_arriving_fingers_bring_their_stiffness_and_objects_turn() -> None:
 def test_wrong_sets_are_refused(words: str, task: str, said: str) -> None:
     with pytest.raises(rg.InvalidInput, match="(?s)" + said.replace(".", r"\.").replace("[", r"\[")):
         parse_scenario(TEXT.format(set=words, task=task))
+
+
+def test_a_hold_follows_its_load_and_is_written_and_read(tmp_path: Path) -> None:
+    for name in ("hold", "space-hold"):
+        plan = plan_scenario(parse_scenario(template(name)))
+        assert plan.kind == "hold"
+        assert plan.duration == 0.8
+        assert rg.verify(plan).ok
+        write_plan(plan, tmp_path / f"{name}.json")
+        assert rg.verify(read_plan(tmp_path / f"{name}.json")).ok
+    still = TEXT.format(set="force = 0.1", task='kind = "hold"\nstart_objective = "force"')
+    plan = plan_scenario(parse_scenario(still))
+    loads = rg.LoadSet.ball(rg.Wrench([0, 0]), force=0.1)
+    assert rg.verify(plan, disturbance=loads).ok
+    assert isinstance(plan.path, rg.StraightPath)
+    with pytest.raises(rg.InvalidInput, match="early_loss"):
+        parse_scenario(TEXT.format(set="force = 0.1", task='kind = "hold"\nearly_loss = true'))

@@ -496,8 +496,8 @@ def check_bad(text: str, lines: list[str], capsys: pytest.CaptureFixture[str], t
 
 
 ROTATION_KEYS = (
-    "objective, method, duration, rate, scaling, control, max_force, peak_ratio, reserve, balance_tolerance, "
-    "min_normal, degrees, axis, kind"
+    "objective, method, facets, duration, rate, scaling, control, max_force, peak_ratio, reserve, "
+    "balance_tolerance, min_normal, stiffness, degrees, axis, kind"
 )
 
 
@@ -650,7 +650,7 @@ TASK_KEYS = (
          ["friction: expected a number of at least 0, got -1.0",
           "load.force: a required key is missing",
           "load.torque: unknown key; known here: force",
-          "contacts: unknown key; known here: title, friction, load, outline, start, goal, task"]),
+          "contacts: unknown key; known here: title, friction, load, outline, start, goal, motions, task"]),
         ([("[load]", "[[load]]\ntime = 0.0")],
          ["load: expected a table, got [{'time': 0.0, 'force': [0.0, -2.0]}]"]),
         ([("[start] ", "[start]\narc_lengths = [0.0, 0.1, 0.2]\n")],

@@ -381,7 +381,7 @@ TASK_KEYS = (
         ([('part = "bracket"', 'part = "spoon"')],
          ["object.part: expected 'bracket', 'wrench', 'cam', 'nut' or 'bottle', got 'spoon'"]),
         ([("[load]", "[outline]\npart = 'wrench'\n[load]")],
-         ["outline: unknown key; known here: title, friction, load, object, start, goal, task"]),
+         ["outline: unknown key; known here: title, friction, load, object, start, goal, motions, task"]),
         ([("friction = 0.6", "")], ["friction: a required key is missing"]),
         ([("[0.0, 0.0, -1.82]", "[0.0, -1.82]")],
          ["load.force: expected at least 3 entries, got [0.0, -1.82]"]),

@@ -7,7 +7,7 @@ import click
 
 from regrasp.cli.speech import called, json_option, say
 
-KINDS = ("removal", "addition", "exchange", "rotation", "regrasp", "grasp")
+KINDS = ("removal", "addition", "exchange", "hold", "rotation", "regrasp", "grasp")
 
 
 @click.command()
@@ -18,8 +18,8 @@ KINDS = ("removal", "addition", "exchange", "rotation", "regrasp", "grasp")
 def new(kind: str, file: Path | None, space: bool) -> dict[str, Any]:
     """Write a scenario with comments to start from.
 
-    KIND is removal, addition, exchange, rotation, regrasp or grasp. FILE is KIND.toml unless given; one that
-    is there is left alone. The scenario plans as it is.
+    KIND is removal, addition, exchange, hold, rotation, regrasp or grasp. FILE is KIND.toml unless given; one
+    that is there is left alone. The scenario plans as it is.
     """
     from regrasp.files.scenarios.templates import template, write_new
 

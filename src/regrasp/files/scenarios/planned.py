@@ -9,13 +9,14 @@ from regrasp.files.scenarios.grasp import GraspScenario, chosen_by
 from regrasp.files.scenarios.regrasp import RegraspScenario, RegraspTask
 from regrasp.files.scenarios.scenario import AnyScenario, PlannedScenario, Scenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario, SpaceRegraspTask
-from regrasp.files.scenarios.tasks import Change, Exchange, OneFinger, Rotation
+from regrasp.files.scenarios.tasks import Change, Exchange, Hold, OneFinger, Rotation
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
+from regrasp.planning.changes.hold import plan_hold
 from regrasp.planning.changes.rotation import plan_rotation
 from regrasp.planning.holds.sequences import MAX_TURN
 from regrasp.planning.placement.chosen import ChosenGrasp
@@ -70,8 +71,11 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan | ChosenGra
     task, load = scenario.task, scenario.external
     if isinstance(task, Rotation):
         return _rotation(scenario, task)
-    own = "start_objective" if isinstance(task, Exchange) else "whole_objective"
-    options = _taken(task, (*_CHANGE_OPTIONS, own)) | _withstood(scenario, task)
+    own = "whole_objective" if isinstance(task, OneFinger) else "start_objective"
+    keys = (*_CHANGE_OPTIONS, own)
+    if isinstance(task, Hold):
+        keys = tuple(key for key in keys if key != "early_loss")  # no finger leaves
+    options = _taken(task, keys) | _withstood(scenario, task)
     rate_limit = _per_finger(scenario, task, task.rate_limit)
     options["load"], options["rate_limit"] = load, rate_limit
     options["scaling"] = task.time_scaling
@@ -84,16 +88,16 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan | ChosenGra
 
 
 def _per_finger(
-    scenario: Scenario, task: Change, values: float | list[float] | None
+    scenario: Scenario, task: Change | Hold, values: float | list[float] | None
 ) -> float | list[float] | None:
     """Values in the order of the plan's fingers, in which the one that arrives is the last."""
-    if not isinstance(values, list) or not task.arriving:
+    if isinstance(task, Hold) or not isinstance(values, list) or not task.arriving:
         return values
     arriving = scenario.grasp.index(task.arriving[0])
     return [*values[:arriving], *values[arriving + 1 :], values[arriving]]
 
 
-def _withstood(scenario: Scenario, task: Change | Rotation) -> dict[str, Any]:
+def _withstood(scenario: Scenario, task: Change | Hold | Rotation) -> dict[str, Any]:
     """The set of deviations and the stiffness of the plan's fingers."""
     springs = task.stiffness
     if isinstance(task, Change):
@@ -101,8 +105,10 @@ def _withstood(scenario: Scenario, task: Change | Rotation) -> dict[str, Any]:
     return {"disturbance": scenario.disturbance, "stiffness": springs}
 
 
-def _idle_times(task: Change) -> dict[str, float | None]:
+def _idle_times(task: Change | Hold) -> dict[str, float | None]:
     """When fingers are idle, by the verbs' own words."""
+    if isinstance(task, Hold):
+        return {}
     if isinstance(task, Exchange):
         return {"idle_from": task.idle_from, "idle_until": task.idle_until}
     assert isinstance(task, OneFinger)
@@ -156,8 +162,11 @@ def _taken(task: Any, keys: tuple[str, ...]) -> dict[str, Any]:
     return {key: getattr(task, key) for key in keys}
 
 
-def _planned(scenario: Scenario, task: Change, **options: Any) -> Transition:
+def _planned(scenario: Scenario, task: Change | Hold, **options: Any) -> Transition:
     whole = scenario.grasp
+    if isinstance(task, Hold):
+        start, end = _given(scenario, whole, "force"), _given(scenario, whole, "end_force")
+        return plan_hold(start or whole, options.pop("load"), end=end, **options)
     if not task.arriving:
         rest = whole.without(task.contact)
         start, end = _given(scenario, whole, "force"), _given(scenario, rest, "end_force")

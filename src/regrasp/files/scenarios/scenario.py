@@ -24,7 +24,7 @@ from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
-from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Removal, Rotation
+from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Hold, Removal, Rotation
 from regrasp.files.source import text_of
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.checks import file_path
@@ -112,7 +112,7 @@ class Scenario(Strict):
     object: ObjectEntry | None = Field(None, description="the solid that contacts in space are on")
     contacts: list[ContactEntry] = Field(min_length=2)
     motions: MotionsEntry | None = Field(None, description="ways of free fingers, asked for by --motions")
-    task: Annotated[Removal | Addition | Exchange | Rotation, Field(discriminator="kind")]
+    task: Annotated[Removal | Addition | Exchange | Hold | Rotation, Field(discriminator="kind")]
 
     @cached_property
     def grasp(self) -> Grasp:

@@ -58,15 +58,30 @@ class Task(Strict):
         return self
 
 
-class Change(Task):
+class Timed(Task):
+    """What tasks have in common whose path may go through instants."""
+
+    rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
+    path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
+    instants: int = option(ChangeOptions, "instants", ge=3)
+
+
+class Hold(Timed):
+    """No finger moves: forces follow a load that changes, or go from one state to another."""
+
+    objective: ObjectiveName = Field("angle", description="what the state at the end is chosen for")
+    start_objective: ObjectiveName | None = Field(
+        None, description="what the state at the start is chosen for; the same if absent"
+    )
+    kind: Literal["hold"]
+
+
+class Change(Timed):
     """What changes of the fingers in use have in common."""
 
     contact: Name = Field(description="name of the finger that leaves or arrives")
     objective: ObjectiveName = Field("angle", description="what the state without the finger is chosen for")
-    rate_limit: PerFinger | None = option(ChangeOptions, "rate_limit")
-    path_objective: PathObjective | None = option(ChangeOptions, "path_objective")
     early_loss: bool = option(ChangeOptions, "early_loss")
-    instants: int = option(ChangeOptions, "instants", ge=3)
 
     @property
     def leaving(self) -> tuple[str, ...]:

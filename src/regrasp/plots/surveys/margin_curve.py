@@ -54,7 +54,7 @@ def plot_margin_curve(
         )
     label_axis(ax.xaxis, names[curve.x], of_x, float(np.abs(curve.at).max()))
     largest = float(np.nanmax(np.abs(factor * curve.values), initial=0.0))
-    label_axis(ax.yaxis, curve.objective.words, unit, largest)
+    label_axis(ax.yaxis, f"best {curve.objective.quantity}", unit, largest)
     if at_value is not None:
         place = curve.least(number(at_value, "at_value"))
         if np.isfinite(place):
