@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test quick bench mutants clean
+.PHONY: demo test quick docs bench mutants clean
 
 demo: $(VENV)/installed
 	$(BIN)/regrasp demo
@@ -24,6 +24,11 @@ quick: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/pytest -n auto -m "not slow"
+
+# The site, for a browser without a network: .venv/site/index.html. Warnings are errors.
+docs: $(VENV)/installed-dev
+	$(BIN)/sphinx-build --quiet --fresh-env --nitpicky --fail-on-warning --keep-going -c docs/site . $(VENV)/site
+	$(BIN)/python docs/site/check.py $(VENV)/site
 
 bench: $(VENV)/installed-dev
 	$(BIN)/python benchmarks/closed_form.py
