@@ -1,8 +1,8 @@
 """Directives of the reference, which is written from the code: `public-names` and `all-names`.
 
 `public-names` documents every name of `regrasp.__all__` whose code lies in the rooms listed, one a line (of
-all pages the closest room has it), or with `module regrasp.plots` all that this module exports. `all-names` is
-a table of them with their first lines.
+all pages the closest room has it), or with `module regrasp.plots` all that this module exports. `all-names`
+is a table of them with their first lines.
 """
 
 import importlib
