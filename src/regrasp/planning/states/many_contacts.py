@@ -14,9 +14,6 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.degenerate.flat_minima import polished
-from regrasp.planning.states.degenerate.near_the_edge import best_near_the_edge
-from regrasp.planning.states.degenerate.no_load import best_squeeze
 from regrasp.planning.states.escape import infeasible, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
@@ -186,6 +183,8 @@ def _by_newton(
         with suppress(SolverFailed):
             found = highest(chooser, narrowing, forces, limits)
     elif isinstance(objective, ConvexObjective) and not is_least:
+        from regrasp.planning.states.degenerate.near_the_edge import best_near_the_edge
+
         found = best_near_the_edge(chooser, objective, forces, frictions, limits)
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
@@ -203,6 +202,8 @@ def _solved(
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
     if criteria.unbounded and chooser.load_size <= VANISHING * min(limits) and max(limits) < inf:
+        from regrasp.planning.states.degenerate.no_load import best_squeeze
+
         squeezed = best_squeeze(grasp, criteria, backend, facets, frictions, limits)
         if not any(load.plain):  # nothing to hold, and where nothing squeezes nothing to hold it with
             forces, gap = squeezed or Found(np.zeros((len(grasp), grasp.width)), 0.0)
@@ -242,6 +243,8 @@ def _solved(
     if isinstance(objective, LevelObjective):
         forces, gap = highest(chooser, Narrowing(grasp, objective, frictions), forces, limits)
     elif isinstance(objective, ConvexObjective) and facets is None:
+        from regrasp.planning.states.degenerate.flat_minima import polished
+
         forces = polished(chooser, objective, forces, frictions, limits)
     return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
 
