@@ -93,6 +93,9 @@ def test_infeasible_in_json(here: Path, capsys: pytest.CaptureFixture[str]) -> N
         ("bench", "--solver", "x", "report", "missing"),
         ("bench", "export", "folder", "--family", "none"),
         ("bench", "-o", "out", "--time-limit", "nan"),
+        ("sweep", "paper.toml", "-o", "paper.toml"),
+        ("sweep", "none.toml", "-o", "out"),
+        ("sweep", "status", "none"),
         ("bench", "-o", "out", "--time-limit", "inf"),
         ("bench", "-o", "out", "--time-limit", "0"),
         ("bench", "-o", "out", "--repeat", "9" * 400),
@@ -113,9 +116,9 @@ def test_bad_input_in_json(
 def test_every_command_speaks_json() -> None:
     from regrasp.cli.entry import commands
 
-    bench = commands.commands["bench"]
-    every = {**commands.commands, **bench.commands}  # type: ignore[attr-defined]
-    assert len(every) >= 11
+    groups = [commands, commands.commands["bench"], commands.commands["sweep"]]
+    every = {name: found for group in groups for name, found in group.commands.items()}  # type: ignore[attr-defined]
+    assert {"run", "status", "report", "plan"} < set(every)
     for name, found in every.items():
         assert "--json" in [option for parameter in found.params for option in parameter.opts], name
 
@@ -327,6 +330,9 @@ def test_page_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
         ("bench", "-o", "paper.toml"),
         ("bench", "export", "paper.toml"),
         ("bench", "-o", "out", "--time-limit", "nan"),
+        ("sweep", "paper.toml", "-o", "paper.toml"),
+        ("sweep", "none.toml", "-o", "out"),
+        ("sweep", "status", "none"),
     ],
 )
 def test_what_is_wrong_is_refused_before_any_work(

@@ -28,6 +28,7 @@ from regrasp.cli.statuses import (
     facts_of,
     status_of,
 )
+from regrasp.cli.sweeping import sweep
 from regrasp.cli.verifying import verify
 from regrasp.cli.warming import warm_up
 from regrasp.errors import RegraspError
@@ -45,7 +46,7 @@ def commands() -> None:
     """
 
 
-for command in (demo, new, explore, plan, verify, simulate, schema, bench, warm_up):
+for command in (demo, new, explore, plan, verify, simulate, schema, bench, sweep, warm_up):
     commands.add_command(command)
 
 

@@ -25,7 +25,7 @@ _MOST_WORKERS = 1000
 
 
 def sweep(
-    function: Callable[..., Any] | str,
+    function: Callable[..., Any] | str | Path,
     grid: Any,
     *,
     out: str | Path,
@@ -49,7 +49,9 @@ def sweep(
 
     Args:
         function: called with the keys of a case as keyword arguments; processes import it by its name, so it
-            stands in a module, or is that name, ``"module:function"``.
+            stands in a module, or is that name, ``"module:function"``. Or the path of a scenario, which is
+            planned and verified for each case with its keys changed: ``friction``, ``task.objective``,
+            ``contacts.P1.friction`` or ``contacts.*.friction``.
         grid: a mapping of keys to values: each a list, ``{"from", "to", "count"}`` (``"spacing": "log"``), or
             one of ``{"uniform" | "log_uniform" | "normal" | "integers": [a, b], "count", "seed"}``; all
             combinations are cases. Or a table: a list of cases, or a data frame.
@@ -91,6 +93,12 @@ def sweep(
     apart = client is not None or workers != 0
     if not apart and (time_limit is not None or memory_limit is not None):
         raise InvalidInput("limits need processes that can be ended: give workers of at least 1")
+    if isinstance(function, Path) or (isinstance(function, str) and function.endswith(".toml")):
+        from regrasp.studies.scenario_cases import NAME, shared_of
+
+        if shared is not None:
+            raise InvalidInput("what cases of a scenario share is the scenario; leave shared out")
+        function, shared = NAME, shared_of(file_path(function), cases)
     called, name = _function(function, apart)
     task = Task(name, _names(keep), dict(shared or {}), _flag(plans, "plans"))
     _check_arguments(called, name, cases, task.shared)

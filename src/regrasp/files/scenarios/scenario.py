@@ -293,6 +293,16 @@ def parse_scenario(text: str, file: str | Path = "scenario") -> AnyScenario:
         raise InvalidInput(f"{file}: not a scenario: lists within lists, hundreds deep") from None
     except ValueError as error:
         raise InvalidInput(f"{file}: not TOML: {error}") from None
+    return scenario_of(data, file)
+
+
+def scenario_of(data: dict[str, Any], file: str | Path = "scenario") -> AnyScenario:
+    """The scenario of what a TOML file holds. Raises as ``read_scenario``.
+
+    Args:
+        data: tables and values.
+        file: the name that errors give; files that the data names are relative to its folder.
+    """
     task = data.get("task")
     if isinstance(task, dict) and task.get("kind") == "grasp":
         return validated(GraspScenario, data, file)
