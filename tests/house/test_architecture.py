@@ -66,7 +66,7 @@ FLOORS: dict[str, Set[str]] = {
         "verification",
         "files",
     },
-    "studies": {"errors", "mechanics", "plans", "programs", "verification", "files", "studies"},
+    "studies": {"errors", "mechanics", "plans", "planning", "programs", "verification", "files", "studies"},
     "plots": {
         "errors",
         "mechanics",

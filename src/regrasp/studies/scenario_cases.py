@@ -10,6 +10,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.files import plan_scenario, read_scenario
 from regrasp.files.scenarios.scenario import scenario_of
 from regrasp.files.source import text_of
+from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 from regrasp.studies.cases import Cases
@@ -22,7 +23,7 @@ NAME = f"{__name__}:planned"
 class Answer:
     """A plan that verified. It has what its verification has, and what it has itself."""
 
-    def __init__(self, plan: Transition | RegraspPlan, verification: Verification) -> None:
+    def __init__(self, plan: Transition | RegraspPlan | ChosenGrasp, verification: Verification) -> None:
         self.plan, self.verification = plan, verification
 
     @property
