@@ -129,12 +129,8 @@ def _system(  # type: ignore[no-untyped-def]
             j = w * i + k
             missing[j] = -2 * squares[i] * x[j] - linear[i, k]
             K[j, j] = 2 * squares[i]
-    for s in range(r):
-        off = load[s]
-        for j in range(n * w):
-            K[unknowns + s, j] = matrix[s, j]
-            off += matrix[s, j] * x[j]
-        missing[unknowns + s] = -off
+    K[unknowns : unknowns + r, : n * w] = matrix
+    missing[unknowns : unknowns + r] = -load - (matrix * x[: n * w]).sum(axis=1)
     row = unknowns + r
     direction = np.zeros(w)
     for i in range(n):
@@ -198,13 +194,11 @@ def _system(  # type: ignore[no-untyped-def]
             row += 1
     if first:
         missing[unknowns:] = 0.0
+        K[:unknowns, :unknowns] = 0.0
         for j in range(unknowns):
-            K[j, : j + 1] = 0.0
             K[j, j] = 1.0
     else:
-        for s in range(z.size):
-            for j in range(unknowns):
-                missing[j] -= K[unknowns + s, j] * z[s]
+        missing[:unknowns] -= (K[unknowns:, :unknowns] * z.reshape(-1, 1)).sum(axis=0)
     for j in range(unknowns + z.size):
         K[j, j] += _OF_FORCES if j < unknowns else -_OF_MULTIPLIERS
 
