@@ -303,6 +303,8 @@ def rows() -> dict[str, Row]:
                 "from_corners": "not negative",
                 "min_distance": "positive",
                 "disturbance": "value",
+                "arcs": "table",
+                "tip_radius": "not negative",
                 "most_boxes": "count",
                 "progress": "function",
             },

@@ -300,3 +300,41 @@ def test_limits_and_disturbances_go_with_their_objectives() -> None:
     ):
         asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | more
         assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))
+
+
+def test_fingers_stay_within_arcs() -> None:
+    arcs = [(13.5, 2.0), (6.0, 7.0)]  # the first runs past the first vertex
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=arcs, load_offset=1e-3)
+    for s in chosen.places:
+        assert 0 <= s <= 2.0 or 6.0 <= s <= 7.0 or 13.5 <= s
+    free = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, load_offset=1e-3)
+    assert free.bound <= chosen.value
+    assert rg.verify(chosen).ok
+    assert float((chosen.certificate.sides[:, 2] - chosen.certificate.sides[:, 1]).max()) <= 1.0
+    whole = rg.choose_grasp(
+        BRACKET, 2, TILTED, friction=0.6, arcs=[(1.0, 1.0 + BRACKET.length)], load_offset=1e-3
+    )
+    assert whole.value == pytest.approx(free.value, rel=1e-3)
+    assert "arcs" in str(refusal(lambda: rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=[])))
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.3, 0.45, 0.6])
+def test_round_tips_touch_nothing_else(radius: float) -> None:
+    """Against the distance of the tip's centre to the outline, by sampling; a slot one wide takes no 0.6."""
+    from regrasp.planning.placement.sides import sides_of
+
+    slotted = rg.Outline([[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]])
+    sides = sides_of(slotted, 0.0, None, radius)
+    ring = slotted.points(np.linspace(0, slotted.length, 4001))
+    for s in np.linspace(0.01, slotted.length - 0.01, 331):
+        point, normal = slotted.points(s), slotted.normals(s)
+        reach = np.hypot(*(ring - (point - radius * normal)).T).min()
+        edge = int(np.searchsorted(sides.starts, s, side="right")) - 1
+        u = edge + (s - sides.starts[edge]) / sides.lengths[edge]
+        allowed = bool(((sides.ends[:, 0] <= u) & (u <= sides.ends[:, 1])).any())
+        if abs(reach - radius) > 0.01:
+            assert not allowed
+        elif allowed:
+            assert reach >= radius - 1e-3
+    inside = (sides.edges == 4).any()
+    assert inside == (radius < 0.5)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from regrasp.files.scenarios.disturbance import Disturbance
-from regrasp.files.scenarios.keys import Load, Positive
+from regrasp.files.scenarios.keys import Load, Positive, Vector
 from regrasp.files.scenarios.regrasp import OutlineEntry
 from regrasp.files.strict import Strict
 from regrasp.mechanics.loads.load_set import LoadSet
@@ -63,6 +63,11 @@ class GraspTask(Strict):
     from_corners: _NotNegative | None = Field(
         None, description="[m], of a finger from a corner, along the outline; a thousandth of it if absent"
     )
+    arcs: Annotated[list[Vector], Field(min_length=1)] | None = Field(
+        None,
+        description="[m], the only stretches for fingers, counter-clockwise from one arc length to another",
+    )
+    tip_radius: _NotNegative = Field(0.0, description="[m], of round fingertips")
     load_offset: _NotNegative = Field(0.0, description="[m], by which loads may act beside their lines")
     most_boxes: int = Field(
         200_000, ge=64, le=10_000_000, description="boxes of places after which the search ends"
@@ -90,6 +95,8 @@ def chosen_by(scenario: GraspScenario) -> ChosenGrasp:
         objective=task.objective,
         max_force=task.max_force,
         disturbance=None if disturbance is None else disturbance.around(scenario.load.wrench),
+        arcs=task.arcs,
+        tip_radius=task.tip_radius,
         load_offset=task.load_offset,
         tolerance=task.tolerance,
         min_distance=task.min_distance,

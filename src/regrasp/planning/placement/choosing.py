@@ -1,7 +1,9 @@
 """Choosing where the fingers go."""
 
+from collections.abc import Sequence
+
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number, whole
+from regrasp.mechanics.checks import Array, array, number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
@@ -31,6 +33,8 @@ def choose_grasp(
     objective: str | Objective = "sum_normal",
     max_force: float | None = None,
     disturbance: LoadSet | None = None,
+    arcs: Sequence[Sequence[float]] | None = None,
+    tip_radius: float = 0.0,
     load_offset: float = 0.0,
     tolerance: float = 1e-3,
     min_distance: float | None = None,
@@ -55,6 +59,10 @@ def choose_grasp(
             which a ``disturbance`` may be scaled and forces still exist.
         max_force: limit on every force, for the last three [N].
         disturbance: a hull of deviations, added to the load, for ``answered``.
+        arcs: the only stretches where fingers may be: pairs of arc lengths, counter-clockwise from the first
+            to the second [m]; the whole outline if not given.
+        tip_radius: of round fingertips, which do not reach into corners and slots where they would meet
+            another part of the outline [m].
         load_offset: each load may act this far beside its line, to either side [m]. Without it the best
             placement may be one where loads balance on a knife's edge: the search tells no places apart that
             are closer than a fraction of ``tolerance``, and leaves a gap there.
@@ -82,7 +90,9 @@ def choose_grasp(
     whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
     level = _level(goal, mu, load, max_force, disturbance)
-    sides = sides_of(shape, FROM_CORNERS * shape.length if away is None else away)
+    stretches = None if arcs is None else _pairs(arcs)
+    radius = number(tip_radius, "tip_radius", least=0)
+    sides = sides_of(shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius)
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
     distance = DISTINCT * sides.size if apart is None else apart
     search = Search(sides, fingers, mu, inner, law, distance, _NARROW * tolerance)
@@ -95,6 +105,13 @@ def choose_grasp(
     # half of the tolerance is for loads around a round set and for friction kept back
     search.run(0.5 * tolerance / law.power, most_boxes, progress)
     return chosen_by_norm(search, asked)
+
+
+def _pairs(arcs: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    found = array(arcs, "arcs", (None, 2))
+    if not len(found) or (found[:, 0] == found[:, 1]).any():
+        raise InvalidInput("arcs must be one pair of arc lengths or more, of two different numbers each")
+    return [(float(a), float(b)) for a, b in found]
 
 
 def _level(
