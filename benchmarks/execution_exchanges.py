@@ -103,7 +103,7 @@ def by(rival: Rival, plan: rg.RegraspPlan) -> rg.RegraspPlan:
 
 
 def rows() -> Iterator[dict[str, Any]]:
-    """What every rival needs by computation and in physics, and what it does with the friction planned with."""
+    """What every rival needs by computation and in physics, and what it does with the friction planned."""
     plans: list[tuple[str, str, Any]] = []
     for case in (paper(), *map(disc, EXCHANGE_SEEDS)):
         for name, rival in RIVALS.items():

@@ -104,8 +104,8 @@ def main() -> None:
         to_object, to_fingers = (1e3 * min(r[key] for r in done) for key in ("to object", "to fingers"))
         shut = sum("shut in" in r for r in found if r["space"] == space)
         print(
-            f"{'space' if space else 'plane'}: {len(done)} regrasps, {ways} ways, {bad} with violations; least "
-            f"gap to the object {to_object:.3f} mm, to fingers {to_fingers:.3f} mm, asked for "
+            f"{'space' if space else 'plane'}: {len(done)} regrasps, {ways} ways, {bad} with violations; "
+            f"least gap to the object {to_object:.3f} mm, to fingers {to_fingers:.3f} mm, asked for "
             f"{1e3 * CLEARANCE:g} mm; {sum(r['seconds'] for r in done) / ways:.2f} s a way; "
             f"{shut} sequences with a finger shut in"
         )

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from executed_plans import ellipse, removal
+from executed_plans import ellipse, lifted, removal
 from regrasp.execution import simulate
+from regrasp.mesh import parts
 from regrasp.motions import plan_motions
 
 pytestmark = pytest.mark.laws
@@ -45,3 +46,14 @@ def test_motions_of_another_plan_are_refused() -> None:
         simulate(removal(), motions=motions)
     with pytest.raises(rg.InvalidInput, match="leave contact_errors and tip_radius out"):
         simulate(plan, motions=motions, tip_radius=0.001)
+
+
+def test_in_space_three_fingers_touch_at_every_instant() -> None:
+    plan, solid = lifted(), parts.bracket()
+    motions = plan_motions(plan, solid, tip_radius=0.003, clearance=0.002)
+    run = simulate(plan, shape=solid, motions=motions)
+    assert run.held
+    assert run.touching.sum(axis=1).min() >= 3
+    assert motions.touching(np.linspace(0, motions.duration, 500)).sum(axis=1).min() == 3
+    last = np.linalg.norm(run.tips[-1][3] - plan.grasp["P4"].position)
+    assert last > 0.003 + 0.002  # the fourth has lifted off
