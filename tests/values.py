@@ -143,6 +143,9 @@ VALUES: dict[str, Callable[[], Any]] = {
     "WrenchBall": lambda: rg.wrench_ball(GRASP, limit=1.0),
     "Measure": lambda: rg.quality(GRASP).measures[0],
     "Quality": lambda: rg.quality(GRASP),
+    "BatchTolerances": lambda: rg.batch_tolerances(
+        GRASP.positions, GRASP.normals, GRASP.frictions, STATE.forces
+    ),
     "MarginCurve": lambda: rg.margin_curve(PAIR, LOAD, count=3),
     "Tolerances": lambda: rg.tolerances(STATE.balanced()),
     "LeastFriction": lambda: rg.least_friction(PAIR, LOAD),

@@ -69,7 +69,8 @@ def verify(
             changing by R d with the stiffness of the fingers that stay (docs/robustness.md); decided for
             every member, or one is named that is not withstood.
         stiffness: of the fingers, as in ``Criteria``, by the contacts in play [N/m]; all alike if not given.
-        friction: the factor on all friction coefficients that is judged [-]; 1 if not given.
+        friction: the factor on all friction coefficients, torsions with them, that is judged [-]; 1 if not
+            given.
         position: (n,) or (m, n), in space (n, 2) or (m, n, 2): contacts off along their tangents [m]; each of
             m rows is judged by itself.
         surface: curvature of the surface at the contacts [1/m], a number or (n,), positive where it bulges

@@ -1,30 +1,35 @@
 """What forces withstand, for planar grasps by the hundred thousand: the closed forms of ``tolerances``."""
 
+from dataclasses import dataclass
 from math import inf, pi
-from typing import NamedTuple
 
 import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.arrays.planar import PlanarGrasps
-from regrasp.mechanics.checks import Array, ArrayLike, finite
+from regrasp.mechanics.checks import Array, ArrayLike, finite, read_only
+from regrasp.mechanics.value import ArrayValue
 
 _NOTHING = 1e-14
 
 
-class BatchTolerances(NamedTuple):
-    """Arrays (...), as in ``Tolerated``; where forces are outside, friction is above 1 and wrench below 0."""
+@dataclass(frozen=True, eq=False)
+class BatchTolerances(ArrayValue):
+    """Arrays (...), as in ``Tolerated``; where forces are outside, friction is above 1 and wrench below 0.
+
+    Args:
+        friction: least factor on all coefficients [-].
+        load: largest factor of the load [-].
+        tilt: how far the load's force may turn [rad].
+        centre: how far the centre of mass may be off, across the load [m].
+        wrench: radius of the ball of deviations withstood, torques divided by the grasp's size [N].
+    """
 
     friction: Array
-    """Least factor on all coefficients [-]."""
     load: Array
-    """Largest factor of the load [-]."""
     tilt: Array
-    """How far the load's force may turn [rad]."""
     centre: Array
-    """How far the centre of mass may be off, across the load [m]."""
     wrench: Array
-    """Radius of the ball of deviations withstood, torques divided by the grasp's size [N]."""
 
 
 def batch_tolerances(
@@ -66,7 +71,7 @@ def batch_tolerances(
     found = np.empty((5, len(f)))
     for rows in grasps.blocks():
         found[:, rows] = _of(grasps, rows, f[rows], k[rows])
-    return BatchTolerances(*(values.reshape(grasps.shape) for values in found))
+    return BatchTolerances(*(read_only(values.reshape(grasps.shape)) for values in found))
 
 
 @np.errstate(divide="ignore", invalid="ignore")

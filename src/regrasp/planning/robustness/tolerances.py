@@ -40,7 +40,7 @@ class Tolerated(ArrayValue):
     """How far each thing may be off by itself.
 
     Args:
-        friction: the least factor on all coefficients [-].
+        friction: the least factor on all coefficients, of soft fingers on their torsions, too [-].
         load: the largest factor of the load [-]; infinite where it has none.
         tilt: how far the load's force may turn, any way, its torque staying [rad]; pi for any direction.
         centre: how far the centre of mass may be off, across the load [m]; infinite without a force.
@@ -65,13 +65,14 @@ class Tolerances(ArrayValue, Pictured):
         stiffness: the least factor of the stiffness given with which the object stays in its fingers; all
             alike at 1 N/m unless given otherwise, so the stiffness itself [N/m].
         first: by quantity, the finger that fails first, how and when.
+        asked: what was asked, for the side that is worked out later.
     """
 
     names: tuple[str, ...]
     withstood: Tolerated
     stiffness: float
     first: Mapping[str, Failure]
-    _asked: "_Asked" = field(compare=False)
+    asked: "Asked" = field(compare=False)
 
     _drawn_by = "regrasp.plots.surveys.tolerances:tolerances_png"
 
@@ -82,7 +83,7 @@ class Tolerances(ArrayValue, Pictured):
         Worked out when it is asked for, by programs. Of a plan over at most 12 states; tilts, centres and
         positions in space in eight directions; of a disturbance over a hull's vertices, others are left out.
         """
-        asked = self._asked
+        asked = self.asked
         found = [Answered(view, asked.base) for view in some(asked.views)]
         position = np.full(len(self.names), inf)
         for one in found:
@@ -154,7 +155,7 @@ class Tolerances(ArrayValue, Pictured):
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
+class Asked(ArrayValue):
     """What was asked, for the side that is worked out later."""
 
     views: tuple[View, ...]
@@ -202,7 +203,7 @@ def tolerances(
     curved = finite(0.0 if surface is None else surface, "surface")
     if curved.shape not in ((), (len(names),)):
         raise InvalidInput(f"surface must be one curvature or {len(names)}, got shape {curved.shape}")
-    asked = _Asked(
+    asked = Asked(
         views,
         disturbance,
         np.broadcast_to(curved, len(names)),
@@ -226,7 +227,7 @@ def tolerances(
     )
 
 
-def _refuse_what_gives(asked: _Asked) -> None:
+def _refuse_what_gives(asked: Asked) -> None:
     for view in asked.views:
         spare = view.withstanding(asked.base).spare()
         i = int(spare.argmin())

@@ -9,13 +9,14 @@ from math import cos, inf
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, number, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.robust.stiffness import Stiffness, response
 from regrasp.mechanics.robust.withstanding import Withstanding, measured_response
 from regrasp.mechanics.rotated_loads import load_between, turned_load
 from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
@@ -24,7 +25,7 @@ Subject = GraspState | Transition | RegraspPlan
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class View(ArrayValue):
     """Forces of a grasp under a load at one instant.
 
     label: when, in words; empty for a state alone. controlled: places of the fingers whose force is
@@ -67,7 +68,7 @@ class View:
             return self
         rest = self.grasp.subset(used)
         state = GraspState(rest, self.state.load, self.state.forces[used][:, : rest.width])
-        return replace(self, state=state, controlled=(), limits=self.limits[used])
+        return replace(self, state=state, controlled=(), limits=read_only(self.limits[used]))
 
 
 def views_of(subject: Subject, stiffness: Stiffness, max_force: float | None) -> list[View]:
@@ -122,7 +123,7 @@ def _of_turn(plan: Transition, stiffness: Stiffness, limits: Array, idle: tuple[
     share = 1.0 if turn.middles is not None else cos(max(abs(b - a) for a, b in pairwise(angles)) / 2)
     for angle, forces in zip(angles, turn.forces, strict=True):
         state = GraspState(grasp, turned_load(load, angle, turn.axis), forces)
-        yield View(f"angle {angle:.6g} rad", state, idle, stiffness, share * limits)
+        yield View(f"angle {angle:.6g} rad", state, idle, stiffness, read_only(share * limits))
     for (a, b), forces in zip(pairwise(angles), () if turn.middles is None else turn.middles, strict=False):
         state = GraspState(grasp, load_between(load, a, b, turn.axis), forces)
         yield View(f"between {a:.6g} and {b:.6g} rad", state, idle, stiffness, limits)
@@ -135,7 +136,7 @@ def _idle(forces: Array) -> tuple[int, ...]:
 
 
 def _limits(grasp: Grasp, max_force: float | None) -> Array:
-    return np.minimum(grasp.max_forces, inf if max_force is None else max_force)
+    return read_only(np.minimum(grasp.max_forces, inf if max_force is None else max_force))
 
 
 def names_of(views: Sequence[View]) -> tuple[str, ...]:

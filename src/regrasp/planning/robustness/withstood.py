@@ -8,7 +8,6 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
-from regrasp.mechanics.margins import friction_needed
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.robust.withstanding import SLIPS, Worst
 from regrasp.mechanics.wrench import Wrench, torque
@@ -34,7 +33,7 @@ Found = tuple[float, Failure | None]
 
 
 def friction_factor(views: Iterable[View], base: LoadSet | None) -> Found:
-    """The least factor on all coefficients with which forces stay in their cones."""
+    """The least factor on all coefficients, torsions with them, with which forces stay in their cones."""
     best: Found = (0.0, None)
     for view in views:
         factors = _friction_factors(view, base)
@@ -47,8 +46,10 @@ def friction_factor(views: Iterable[View], base: LoadSet | None) -> Found:
 def _friction_factors(view: View, base: LoadSet | None) -> Array:
     grasp = view.grasp
     if base is None:
-        needed = friction_needed(view.state.forces, grasp.normals, grasp.torsions)
-        return np.divide(needed, grasp.frictions, out=np.zeros_like(needed), where=needed > 0)
+        measured = grasp.cones.measured(view.state.forces)
+        used = grasp.cones.tangential(measured)
+        available = grasp.frictions * np.maximum(grasp.cones.normal(measured), 0.0)
+        return np.divide(used, available, out=np.where(used > 0, inf, 0.0), where=available > 0)
     low, high = np.zeros(len(grasp)), np.ones(len(grasp))
     unlimited = np.full(len(grasp), inf)
     for _ in range(_STEPS):
