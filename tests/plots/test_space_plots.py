@@ -480,11 +480,8 @@ def test_a_page_is_written_whole_or_not_at_all(lift, tmp_path):
         plots.html(lift.start, tmp_path / "nowhere" / "lift.html")
 
 
-def test_a_page_shows_states_and_transitions_in_space_only(lift):
-    planar = rg.GraspState(rg.Grasp([rg.Contact([1, 0], [-1, 0], 0.5)]), rg.Wrench([0, 0]), [[0, 0]])
-    with pytest.raises(rg.InvalidInput, match="a page shows a grasp in space"):
-        plots.html(planar)
-    with pytest.raises(rg.InvalidInput, match="Transition, such as a step of a regrasp; got Grasp"):
+def test_a_page_shows_states_and_plans_only(lift):
+    with pytest.raises(rg.InvalidInput, match="a Transition, a RegraspPlan or Motions; got Grasp"):
         plots.html(lift.grasp)
 
 

@@ -15,7 +15,9 @@ from regrasp import plots
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.mesh import Mesh
 from regrasp.plots.look.arrows import Arrow3D
+from regrasp.plots.look.units import Units
 from regrasp.plots.pages.film import moments
+from regrasp.plots.pages.page_regrasp import regrasp_figure
 from regrasp.plots.regrasps.moments import as_regrasp, moment_of
 
 pytestmark = pytest.mark.contract
@@ -239,3 +241,19 @@ def test_arrows_of_the_worlds_axes(plan):
         assert isinstance(arrow, Arrow3D)
         along = arrow.ends[1] - arrow.ends[0]
         assert along / np.linalg.norm(along) == pytest.approx(axis, abs=1e-12)
+
+
+def test_a_page_shows_every_step_of_a_regrasp(plan):
+    pytest.importorskip("plotly")
+    figure = regrasp_figure(plan, None, Units("mm", "N", "s"))
+    words = [frame["layout"]["annotations"][0]["text"] for frame in figure["frames"]]
+    assert list(dict.fromkeys(words)) == [
+        f"step {k} of {len(plan.steps)}: {step.in_words}" for k, step in enumerate(plan.steps, 1)
+    ]
+    load = next(trace for trace in figure["frames"][-1]["data"] if trace["name"] == "load")
+    end = plan.steps[-1].load(plan.steps[-1].duration)[:3]
+    tail, neck = np.array([load[axis] for axis in "xyz"]).T
+    np.testing.assert_allclose(np.cross(neck - tail, end), 0, atol=1e-9)
+    for trace in figure["frames"][0]["data"]:
+        assert len(trace["x"]) == len(trace["y"])
+    assert plots.html(plan, title="<b>").count("&lt;b&gt;") >= 1

@@ -59,9 +59,14 @@ def demo(output: Path) -> dict[str, Any]:
 )
 @click.option("--no-figures", is_flag=True, help="Write no figures.")
 @click.option("--motions", is_flag=True, help="Plan the fingers' ways by [motions], too; writes motions.csv.")
+@click.option(
+    "--html", is_flag=True, help="Write plan.html, a page that plays; in space it needs regrasp[html]."
+)
 @click.option("--mcap", is_flag=True, help="Write plan.mcap, a ROS 2 bag; needs regrasp[ros].")
 @json_option
-def plan(scenario: Path, output: Path, no_figures: bool, motions: bool, mcap: bool) -> dict[str, Any]:
+def plan(
+    scenario: Path, output: Path, no_figures: bool, motions: bool, html: bool, mcap: bool
+) -> dict[str, Any]:
     """Plan the change of grasp, the turn or the whole regrasp in a SCENARIO, or choose its grasp.
 
     SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
@@ -75,10 +80,10 @@ def plan(scenario: Path, output: Path, no_figures: bool, motions: bool, mcap: bo
         raise click.UsageError("--mcap needs rosbags: pip install 'regrasp[ros]'")
     asked = read_scenario(scenario)
     if isinstance(asked, GraspScenario):
-        if motions or mcap:
-            raise click.UsageError("a grasp has no motions and no bag; leave --motions and --mcap out")
+        if motions or html or mcap:
+            raise click.UsageError("a grasp has nothing to play; leave --motions, --html and --mcap out")
         return choose(asked, scenario, output, draw=not no_figures)
-    return _work(asked, scenario, output, draw=not no_figures, motions=motions, mcap=mcap)
+    return _work(asked, scenario, output, draw=not no_figures, motions=motions, html=html, mcap=mcap)
 
 
 def _work(
@@ -89,6 +94,7 @@ def _work(
     draw: bool = True,
     copy: str | None = None,
     motions: bool = False,
+    html: bool = False,
     mcap: bool = False,
 ) -> dict[str, Any]:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
@@ -136,6 +142,8 @@ def _work(
             write_motions(ways, folder / "motions.csv", rate)
         if mcap:
             write_mcap(planned if ways is None else ways, folder / "plan.mcap")
+        if html:
+            _page(planned if ways is None else ways, shape, scenario.title, str(verdict), folder)
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:
@@ -154,6 +162,18 @@ def _shape(scenario: "PlannedScenario") -> "Outline | Mesh | None":
     if isinstance(scenario, RegraspScenario):
         return scenario.outline.value
     return None if scenario.object is None else scenario.object.value
+
+
+def _page(planned: Any, shape: Any, title: str | None, verdict: str, folder: Path) -> None:
+    """Write a page that plays the plan."""
+    from regrasp.mesh.mesh import Mesh
+    from regrasp.plots import html
+
+    solid = {"mesh": shape} if isinstance(shape, Mesh) else {"outline": shape}
+    try:
+        html(planned, folder / "plan.html", **solid, title=title, caption=" ".join(verdict.split()))
+    except ImportError as error:
+        raise click.UsageError(f"--html: {error}") from None
 
 
 def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", folder: Path) -> None:

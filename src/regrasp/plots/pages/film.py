@@ -12,22 +12,21 @@ from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import number
 from regrasp.motions.value import Motions
 from regrasp.outline.outline import Outline
-from regrasp.plans.regrasp_plan import FingerMove, RegraspPlan
+from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.solids import triangles_of
 from regrasp.plots.look.space_axes import space_panel
 from regrasp.plots.look.style import SMALL, TEXT, label_axis, new_figure, short, tidy
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import shared_view
-from regrasp.plots.regrasps.moments import Moment, Stage, as_regrasp, joined, moment_of
+from regrasp.plots.pages.timeline import LIFT, timeline
+from regrasp.plots.regrasps.moments import Moment, Stage, as_regrasp, moment_of
 from regrasp.plots.regrasps.space_moments import SpaceStage, measures
 from regrasp.plots.regrasps.ways import motion_moments
 
-# A finger in the air keeps this far from where it touched, as a fraction of the object's size.
-_LIFT = 0.08
 _DPI = 100
 
 
@@ -84,35 +83,12 @@ def animate(
 def moments(
     plan: RegraspPlan, rate: float, move_time: float, radius: float, units: Units = SI
 ) -> list[tuple[str, Moment]]:
-    """What every frame shows: a title and a moment; fingers move before the step they are needed in.
-
-    radius: of the object [m], around which they move.
-    """
-    normals = joined([step.grasp for step in plan.steps])
-    lift, far = 2 * _LIFT * radius, (1 + 2 * _LIFT) * radius
-    idle: dict[int, Array] = {}
-    frames: list[tuple[str, Moment]] = []
-    elapsed = 0.0
-    for k, step in enumerate(plan.steps):
-        for move in (m for m in plan.moves if m.step == k):
-            ends = [
-                move.origin - lift * normals[move.origin_name],
-                move.target - lift * normals[move.target_name],
-            ]
-            count = max(2, ceil(move_time * rate)) if move_time else 0
-            title = f"{short(_rounded(elapsed, plan))} {units.time}: a finger moves"
-            frames += [
-                (title, _moving(plan, k, idle, move, _way(ends[0], ends[1], far, u)))
-                for u in np.linspace(0, 1, count).tolist()
-            ]
-            idle.pop(move.finger, None)
-        for t in np.linspace(0, step.duration, max(2, ceil(step.duration * rate) + 1)).tolist():
-            title = f"{short(_rounded(elapsed + t, plan))} {units.time}: {step.in_words}".replace("$", r"\$")
-            frames.append((title, moment_of(plan, k, t, idle)))
-        elapsed += step.duration
-        for number_, name in enumerate(plan.fingers[k]):
-            if name is not None and name in step.idle_at_end:
-                idle[number_] = step.grasp[name].position - lift * normals[name]
+    """What every frame shows: a title and a moment; see ``timeline``."""
+    frames = []
+    for instant in timeline(plan, rate, move_time, radius):
+        words = "a finger moves" if instant.moving else plan.steps[instant.step].in_words
+        title = f"{short(_rounded(instant.time, plan))} {units.time}: {words}"
+        frames.append((title.replace("$", r"\$"), instant.moment))
     return frames
 
 
@@ -133,31 +109,6 @@ def _rounded(t: float, plan: RegraspPlan) -> float:
     """A time to show, to a thousandth of the plan's."""
     step = 10.0 ** floor(log10(plan.duration) - 2)
     return float(f"{round(t / step) * step:.6g}")
-
-
-def _moving(plan: RegraspPlan, k: int, idle: dict[int, Array], move: FingerMove, at: Array) -> Moment:
-    """The start of a step, with the arriving finger still in the air."""
-    moment = moment_of(plan, k, 0.0, {n: r for n, r in idle.items() if n != move.finger})
-    others = tuple(f for f in moment.fingers if f.number != move.finger)
-    here = next(f for f in moment.fingers if f.number == move.finger)
-    flying = type(here)(here.number, here.name, moment.turn @ at, None, 0.0, np.zeros(at.size))
-    return Moment(moment.turn, moment.load, (*others, flying))
-
-
-def _way(origin: Array, target: Array, far: float, u: float) -> Array:
-    """Away from the centre of mass to a distance ``far`` [m], around it the shorter way, and back."""
-    a, b = (r / (np.linalg.norm(r) or 1.0) for r in (origin, target))
-    across = b - (a @ b) * a
-    if np.linalg.norm(across) < 1e-6:  # to the same side, or to the opposite one by any way around
-        across = np.eye(a.size)[np.argmin(abs(a))]
-        across = across - (across @ a) * a
-    across /= np.linalg.norm(across)
-    turn = float(np.arctan2(across @ b, a @ b))
-    rise, around, fall = (float(np.clip((u - start) / (1 / 3), 0, 1)) for start in (0, 1 / 3, 2 / 3))
-    radii = float(np.linalg.norm(origin)), float(np.linalg.norm(target))
-    start_or_end, share = (radii[1], 1 - fall) if fall else (radii[0], rise)
-    radius = start_or_end + share * max(0.0, far - start_or_end)
-    return np.asarray(radius * (np.cos(around * turn) * a + np.sin(around * turn) * across))
 
 
 class _Scene:
@@ -192,7 +143,7 @@ class _SpaceScene:
         ]
         window = self.stage.window(shown, shared_view([moment.touching for moment in shown]))
         # room for fingers in the air
-        self.window = replace(window, side=max(window.side, (1 + 2 * _LIFT) * self.stage.radius))
+        self.window = replace(window, side=max(window.side, (1 + 2 * LIFT) * self.stage.radius))
 
     def axes(self, figure: Figure) -> Any:
         """New axes for all moments."""

@@ -1,4 +1,4 @@
-"""A grasp in space as one HTML page to turn and to play, which needs no network. The only user of plotly."""
+"""A plan as one HTML page that plays and needs no network; in space to turn, too. The only user of plotly."""
 
 from html import escape
 from os import PathLike
@@ -10,13 +10,18 @@ import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.state import GraspState
+from regrasp.motions import Motions
+from regrasp.outline.outline import Outline
+from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 from regrasp.plots.grasps.body import extent
 from regrasp.plots.grasps.space_state import CONE
 from regrasp.plots.grasps.state import force_scale_of, surface_of
-from regrasp.plots.look.style import INK, contact_colours, short
+from regrasp.plots.look.style import INK, contact_colours
 from regrasp.plots.look.units import SI, Units
-from regrasp.plots.look.view import facing_view, sight
+from regrasp.plots.look.view import facing_view
+from regrasp.plots.pages.page_look import layout_of, playing
+from regrasp.plots.pages.page_regrasp import regrasp_figure
 from regrasp.plots.pages.page_scene import Trace, arrow_traces, body_traces, history_traces, marker_traces
 
 _FRAMES = 40
@@ -25,49 +30,76 @@ _DRAWN = "document.documentElement.setAttribute('data-regrasp', 'drawn');"
 """Marks the page once plotly has drawn it."""
 
 
+Shown = GraspState | Transition | RegraspPlan | Motions
+
+
 @overload
 def html(
-    value: GraspState | Transition, path: None = None, *, mesh: Any = None, units: Units = SI
+    value: Shown,
+    path: None = None,
+    *,
+    mesh: Any = None,
+    outline: Outline | None = None,
+    title: str | None = None,
+    caption: str | None = None,
+    units: Units = SI,
 ) -> str: ...
 
 
 @overload
 def html(
-    value: GraspState | Transition, path: str | PathLike[str], *, mesh: Any = None, units: Units = SI
+    value: Shown,
+    path: str | PathLike[str],
+    *,
+    mesh: Any = None,
+    outline: Outline | None = None,
+    title: str | None = None,
+    caption: str | None = None,
+    units: Units = SI,
 ) -> Path: ...
 
 
 def html(
-    value: GraspState | Transition,
+    value: Shown,
     path: str | PathLike[str] | None = None,
     *,
     mesh: Any = None,
+    outline: Outline | None = None,
+    title: str | None = None,
+    caption: str | None = None,
     units: Units = SI,
 ) -> str | Path:
-    """A page that shows a state in space; of a transition, with forces that move and margins over time.
+    """A page that shows a state; of a plan, playing, with forces that move and margins over time.
 
-    The page holds all it needs (about 5 MB) and opens without a network; drag to turn, scroll to come nearer.
-    Of the load its force is drawn, not its torque.
+    In the plane it is drawn in the world frame by our own module, under 1 MB, fingers' motions as they are
+    planned. In space it is drawn in the object's frame by plotly (about 5 MB): drag to turn, scroll to come
+    nearer; of the load its force is drawn, not its torque. The page holds all it needs and opens without a
+    network.
 
     Args:
-        value: a state or a transition in space.
+        value: a state, a transition, a whole regrasp, or the ``Motions`` of a plan.
         path: where to write it, whole or not at all; returned. Without a path the text is returned.
-        mesh: the object, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), as for
+        mesh: the object in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), as for
             ``plot_state``.
+        outline: the object in the plane. Without it the hull of all contacts stands for it.
+        title: shown above; what happens, if not given.
+        caption: a line below the title, in the plane; the first of the value's own words, if not given.
         units: what one unit of length, force and time is called; nothing is converted.
 
     Raises:
-        InvalidInput: For a planar grasp and a path that cannot be written.
-        ImportError: Without plotly, the extra ``regrasp[html]``.
+        InvalidInput: For anything else and a path that cannot be written.
+        ImportError: In space without plotly, the extra ``regrasp[html]``.
     """
-    if not isinstance(value, (GraspState, Transition)):
+    if not isinstance(value, Shown):
         raise InvalidInput(
-            f"a page shows a GraspState or a Transition, such as a step of a regrasp; "
-            f"got {type(value).__name__}"
+            f"a page shows a GraspState, a Transition, a RegraspPlan or Motions; got {type(value).__name__}"
         )
-    if value.grasp.dimension != 3:
-        raise InvalidInput("a page shows a grasp in space; of a planar plan, animate writes one")
-    text = _page(value, mesh, units)
+    if _dimension(value) == 2:
+        from regrasp.plots.pages.planar_page import planar_page
+
+        text = planar_page(value, outline, title, caption, units)
+    else:
+        text = _page(value.plan if isinstance(value, Motions) else value, mesh, title, units)
     if path is None:
         return text
     target = Path(path)
@@ -81,12 +113,25 @@ def html(
     return target
 
 
-def _page(value: GraspState | Transition, mesh: Any, units: Units) -> str:
+def _dimension(value: Shown) -> int:
+    if isinstance(value, (GraspState, Transition)):
+        return value.grasp.dimension
+    return value.steps[0].grasp.dimension
+
+
+def _page(value: GraspState | Transition | RegraspPlan, mesh: Any, title: str | None, units: Units) -> str:
     try:
         from plotly.graph_objects import Figure
     except ImportError:
         raise ImportError("pages need plotly: pip install 'regrasp[html]'") from None
-    figure = Figure(_figure(value, mesh, units))
+    if isinstance(value, RegraspPlan):
+        shown = regrasp_figure(value, mesh, units)
+    else:
+        shown = _figure(value, mesh, units)
+    if title is not None:
+        shown["layout"]["title"] = {"text": escape(title), "x": 0.01, "font": {"size": 15}}
+        shown["layout"]["margin"]["t"] = 84
+    figure = Figure(shown)
     page: str = figure.to_html(
         include_plotlyjs=True,
         full_html=True,
@@ -113,7 +158,7 @@ def _figure(value: GraspState | Transition, mesh: Any, units: Units) -> Trace:
         return moving + arrow_traces("load", np.zeros(3), load[:3], scale, size, INK, units)
 
     stays = body_traces(grasp, colours, triangles, CONE * size)
-    layout = _layout(units, facing_view(grasp.positions, grasp.normals))
+    layout = layout_of(units, facing_view(grasp.positions, grasp.normals))
     if isinstance(value, GraspState):
         return {"data": stays + forces(value.wrenches[:, :3], value.load.vector), "layout": layout}
     stays += history_traces(value, colours, units)
@@ -124,56 +169,5 @@ def _figure(value: GraspState | Transition, mesh: Any, units: Units) -> Trace:
     return {
         "data": stays + moves[0],
         "frames": frames,
-        "layout": layout | _playing(value, times, layout["scene"], units),
-    }
-
-
-def _layout(units: Units, view: tuple[float, float]) -> Trace:
-    """One scale on all axes, which name their units, seen from ``view``, elevation and azimuth [deg]."""
-    axes = {
-        f"{axis}axis": {"title": {"text": f"{axis} [{escape(units.length)}]"}, "backgroundcolor": "white"}
-        | {"gridcolor": "#e0e0e0", "zerolinecolor": "#cccccc"}
-        for axis in "xyz"
-    }
-    eye = dict(zip("xyz", (1.8 * sight(*view)).tolist(), strict=True))
-    camera = {"projection": {"type": "orthographic"}, "eye": eye}
-    return {
-        "scene": {"aspectmode": "data", "camera": camera, **axes},
-        "legend": {"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0.0},
-        "margin": {"l": 60, "r": 20, "t": 40, "b": 40},
-        "template": "none",
-        "font": {"family": "sans-serif", "size": 13, "color": INK},
-    }
-
-
-def _playing(transition: Transition, times: list[float], scene: Trace, units: Units) -> Trace:
-    """Curves at the right of the scene, and under everything a slider of time with its buttons."""
-    step = 1000 * transition.duration / _FRAMES if units.time == "s" else 50.0
-    now = {"mode": "immediate", "frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}}
-    play = now | {"frame": {"duration": step, "redraw": True}, "fromcurrent": True}
-    unit = escape(units.time)
-    steps = [
-        {"method": "animate", "args": [[str(k)], now], "label": short(float(f"{t:.3g}"))}
-        for k, t in enumerate(times)
-    ]
-    buttons = [
-        {"method": "animate", "args": [None, play], "label": "play"},
-        {"method": "animate", "args": [[None], now], "label": "pause"},
-    ]
-    time = {"domain": [0.66, 1.0], "range": [0, transition.duration]}
-    return {
-        "scene": scene | {"domain": {"x": [0.0, 0.58], "y": [0.1, 1.0]}},
-        "xaxis": {**time, "anchor": "y"},
-        "yaxis": {"title": {"text": "angle margin [deg]"}, "domain": [0.62, 0.98], "anchor": "x"},
-        "xaxis2": {**time, "anchor": "y2", "title": {"text": f"t [{unit}]"}},
-        "yaxis2": {"title": {"text": f"force [{escape(units.force)}]"}, "domain": [0.14, 0.5], "anchor": "x2"}
-        | {"rangemode": "tozero"},
-        "sliders": [
-            {"steps": steps, "x": 0.16, "len": 0.84, "y": 0.02, "pad": {"t": 30}}
-            | {"currentvalue": {"prefix": "t = ", "suffix": f" {unit}"}}
-        ],
-        "updatemenus": [
-            {"type": "buttons", "direction": "left", "buttons": buttons, "x": 0.0, "y": 0.0}
-            | {"xanchor": "left", "yanchor": "top", "pad": {"t": 40}, "showactive": False}
-        ],
+        "layout": layout | playing(value.duration, times, layout["scene"], units),
     }

@@ -124,6 +124,28 @@ def marker_traces(t: float, transition: Transition) -> list[Trace]:
     ]
 
 
+def line_traces(
+    times: list[float], lines: list[list[float | None]], colours: list[str], axis: str, unit: str
+) -> list[Trace]:
+    """A line over time for each finger, on the axes named."""
+    return [
+        {"type": "scatter", "mode": "lines", "x": times, "y": values, "line": {"color": colour, "width": 2}}
+        | {"xaxis": f"x{axis}", "yaxis": f"y{axis}", "showlegend": False, "name": f"finger {i}"}
+        | {"hovertemplate": f"finger {i}: %{{y:.4g}} {escape(unit)}<extra></extra>"}
+        for i, (values, colour) in enumerate(zip(lines, colours, strict=True), 1)
+    ]
+
+
+def point_traces(t: float, values: list[list[float | None]]) -> list[Trace]:
+    """Where the time is, dots on the lines of the first axes and of the second."""
+    look = {"type": "scatter", "mode": "markers", "marker": {"color": INK, "size": 7}}
+    rest = {"showlegend": False, "hoverinfo": "skip", "name": "now"}
+    return [
+        {**look, **rest, "x": [t] * len(now), "y": now, "xaxis": f"x{a}", "yaxis": f"y{a}"}
+        for now, a in zip(values, ("", "2"), strict=True)
+    ]
+
+
 def _at(points: Array) -> Trace:
     return {axis: _numbers(column) for axis, column in zip("xyz", points.T, strict=True)}
 

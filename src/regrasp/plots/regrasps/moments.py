@@ -148,6 +148,11 @@ class Stage:
             )
 
     @property
+    def hull(self) -> Array:
+        """(k, 2) corners of the convex hull of all contacts, object frame [m]."""
+        return np.asarray(_hull(self.positions))
+
+    @property
     def finger(self) -> float:
         """The radius of a finger's tip [m]."""
         return _FINGER * self.size
