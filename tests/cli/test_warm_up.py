@@ -48,7 +48,10 @@ def test_after_a_warm_up_nothing_compiles(tmp_path: Path) -> None:
     assert used.stdout == "[]\n"
 
 
-def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(monkeypatch, caplog) -> None:
+def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(
+    monkeypatch, caplog, tmp_path
+) -> None:
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))  # nothing is kept of a run before
     monkeypatch.setattr(compilation, "_LONG", -1.0)  # everything takes long
     caplog.set_level(logging.INFO, "regrasp")
 

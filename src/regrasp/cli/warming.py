@@ -44,7 +44,8 @@ def _least_forces() -> None:
 def _batches() -> None:
     import regrasp as rg
 
-    pairs = ([-1.0, 0.0], [1.0, 0.0], 0.5, [1.0, 0.0], [-1.0, 0.0], 0.5, [[0.1, -1.0]] * 3)
+    many = [[0.1, -1.0]] * 2_000  # a few go by the formulas themselves
+    pairs = ([-1.0, 0.0], [1.0, 0.0], 0.5, [1.0, 0.0], [-1.0, 0.0], 0.5, many)
     rg.locus_intervals(*pairs)
     rg.best_squeezes(*pairs)
 
