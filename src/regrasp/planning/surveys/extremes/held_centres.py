@@ -27,6 +27,7 @@ GAP = 1e-3
 REACH = 100.0
 """The region is sought within this many sizes of the grasp, where nothing bounds it."""
 _SIDES = 200
+_NOTHING = 1e-8  # of a region: rounding
 _STALLED = 6  # asks that add nothing to what is known
 
 
@@ -88,7 +89,7 @@ class HeldCentres(ArrayValue):
         edge = "" if self.is_bounded else ", as far as was sought"
         return (
             f"{', '.join(self.grasp.names)} hold {self.weight!r} with centres of mass over a region of "
-            f"{what} {self.size:.6g}{edge}, {100 * self.gap:.2g} % undecided"
+            f"{what} {self.size:.6g}{edge}, {100 * max(self.gap, _NOTHING):.2g} % undecided or less"
         )
 
     def __repr__(self) -> str:
