@@ -65,10 +65,7 @@ def plan_regrasp_motions(
     radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
     most = whole(attempts, "attempts", least=1)
     barred = _Barred(options.get("keep"), _SAME * max(start.size, goal.size))
-    asked: Any = options | {
-        "min_distance": max(options.get("min_distance", 0.0), 2 * radius + keep),
-        "keep": barred,
-    }
+    asked: Any = options | {"min_distance": max(options.get("min_distance", 0.0), 2 * radius + keep)}
     first: Infeasible | None = None
     for tried in range(most):
         try:
@@ -92,6 +89,7 @@ def plan_regrasp_motions(
                 raise
             first = first or error
             barred.add(error.certificate, plan)
+            asked["keep"] = barred  # not before: with a rule of ours orientations are sampled
     assert first is not None
     raise _none(first, most)
 
