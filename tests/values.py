@@ -127,6 +127,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "SpaceRegraspProblem": space_problem,
     "RegraspWeights": lambda: rg.RegraspWeights(turning=0.5),
     "Bottleneck": lambda: problem().bottleneck(),
+    "HoldGraph": lambda: problem().graph,
     "RegraspCut": lambda: rg.RegraspCut(
         tuple(three_on_ellipse(0.1, 0.3, 0.5, 0.8)), (0, 1, 2), (0, 1, 3), (2,), 0.2, 0.5
     ),

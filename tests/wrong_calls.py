@@ -82,6 +82,7 @@ KINDS: dict[str, Sequence[Any]] = {
     "times": (*NOT_NUMBERS, -1.0, 1e9, [0.0, 1e9]),
     "limits": (*NOT_NUMBERS, 0, -1, [1, 2], [0, 0, 0], [[1, 1, 1]]),
     "count": NOT_A_COUNT,
+    "angles": (*NOT_NUMBERS, 5, [], np.zeros((2, 2))),
     "some or all": tuple(wrong for wrong in NOT_A_COUNT if wrong is not None),
     "seed": [value for value in NOT_A_COUNT if value is not HUGE],
     "value": NOT_A_VALUE,
@@ -469,6 +470,16 @@ def rows() -> dict[str, Row]:
         "SpaceRegraspProblem.sequences": Row(space_problem().sequences, {}),
         "plan_regrasp": Row(rg.plan_regrasp, {"outline": outline, **asked, **small}, free=("options",)),
         "plan_regrasps": Row(rg.plan_regrasps, {"outline": outline, **asked, **small}, free=("options",)),
+        "HoldGraph": Row(
+            rg.HoldGraph,
+            {"contacts": problem().contacts, "load": rg.Wrench([0, -3.0]), "angles": [0.0, 1.0]},
+            {
+                "contacts": "contacts",
+                "angles": "angles",
+                "most_bytes": "count",
+                "min_normal": "not negative",
+            },
+        ),
         "bottleneck": Row(
             rg.bottleneck,
             {"graph": problem().graph, "start": (0, 1, 2), "goal": (3, 4, 5)},

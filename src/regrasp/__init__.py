@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from regrasp.planning.changes.hold import plan_hold
     from regrasp.planning.changes.rotation import plan_rotation
     from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
+    from regrasp.planning.holds.pairs import HoldGraph
     from regrasp.planning.holds.weights import RegraspWeights
     from regrasp.planning.placement.choosing import choose_grasp
     from regrasp.planning.placement.chosen import ChosenGrasp
@@ -86,6 +87,7 @@ _LATER = {
     "HeldCentres": "regrasp.planning.surveys.extremes.held_centres",
     "HeldDirections": "regrasp.planning.surveys.held_directions",
     "HeldSphere": "regrasp.planning.surveys.held_sphere",
+    "HoldGraph": "regrasp.planning.holds.pairs",
     "largest_load": "regrasp.planning.surveys.extremes.largest_load",
     "LargestLoad": "regrasp.planning.surveys.extremes.largest_load",
     "least_friction": "regrasp.planning.surveys.extremes.least_friction",
@@ -153,6 +155,7 @@ __all__ = [
     "HeldCentres",
     "HeldDirections",
     "HeldSphere",
+    "HoldGraph",
     "Infeasible",
     "InvalidInput",
     "LargestLoad",

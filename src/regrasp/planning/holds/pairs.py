@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, function, whole
+from regrasp.mechanics.checks import Array, array, function, items, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.value import ArrayValue
@@ -43,13 +43,25 @@ class WidestHolds:
 class HoldGraph(ArrayValue):
     """Pairs of contacts that hold a load through the centre of mass while the object has one of some angles.
 
-    contacts: candidates. load: at angle 0. angles: (O,) of the object [rad]. A hold's margin is the widest
-    least angle margin [rad] of its states, with forces below the contacts' own limits or, without one,
-    ``peak_ratio`` times the least peak force. min_distance: between two fingers [m]. keep: a filter of pairs
-    by reach or collision. one_finger: whether a pair also holds where one of its fingers carries the whole
-    load; otherwise both have to push (see ``single_fingers``). min_normal: with which each pushes at the
-    least [N]. ``margins`` takes 4 bytes per pair and
-    angle, and raises ``InvalidInput`` where that is more than ``most_bytes``; ``widest`` does without.
+    A hold's margin is the widest least angle margin [rad] of its states, with forces below the contacts' own
+    limits or, without one, ``peak_ratio`` times the least peak force. ``margins`` takes 4 bytes per pair and
+    angle; ``widest`` does without. A regrasp looks at all angles (docs/facts.md, 7); this is for maps of
+    holds, bottlenecks and orientations chosen on purpose.
+
+    Args:
+        contacts: candidates, planar, relative to the centre of mass [m].
+        load: a force through the centre of mass, seen from the object at angle 0 [N].
+        angles: (O,) of the object [rad].
+        peak_ratio: as for ``choose_state`` [-].
+        min_distance: between two fingers [m].
+        keep: a filter of pairs by reach or collision.
+        most_bytes: of ``margins``, which raises ``InvalidInput`` where it would take more.
+        one_finger: whether a pair also holds where one of its fingers carries the whole load; otherwise both
+            have to push.
+        min_normal: with which each finger pushes at the least [N].
+
+    Raises:
+        InvalidInput: For arguments that are not what they must be.
     """
 
     contacts: tuple[Contact, ...]
@@ -64,8 +76,18 @@ class HoldGraph(ArrayValue):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "angles", array(self.angles, "angles", (None,)))
-        if len(self.contacts) < 2 or any(c.dimension != 2 for c in self.contacts):
+        if not self.angles.size:
+            raise InvalidInput("angles has none; give the object's angles [rad], such as [0.0]")
+        contacts = tuple(items(self.contacts, "contacts"))
+        if len(contacts) < 2 or any(not isinstance(c, Contact) or c.dimension != 2 for c in contacts):
             raise InvalidInput("a hold graph needs two planar contacts or more")
+        object.__setattr__(self, "contacts", contacts)
+        number(self.peak_ratio, "peak_ratio", least=1)
+        number(self.min_distance, "min_distance", least=0)
+        number(self.min_normal, "min_normal", least=0)
+        whole(self.most_bytes, "most_bytes", least=0)
+        if not isinstance(self.one_finger, bool):
+            raise InvalidInput(f"one_finger must be True or False, got {shown(self.one_finger)}")
         if not isinstance(self.load, Wrench):
             raise InvalidInput(f"load must be a Wrench, got {shown(self.load)}; write Wrench(force=[...])")
         if self.load.dimension != 2 or self.load.torque.any() or not self.load.force.any():
@@ -225,12 +247,23 @@ class HoldGraph(ArrayValue):
         return np.array([turned_load(self.load, a).force for a in self.angles.tolist()])
 
     def pair(self, i: int, j: int) -> int:
-        """The place of a pair of contacts in ``pairs``."""
+        """The place of a pair of contacts in ``pairs``.
+
+        Args:
+            i: the place of one contact.
+            j: the place of another.
+        """
         i, j = min(i, j), max(i, j)
         return i * len(self.contacts) - i * (i + 1) // 2 + (j - i - 1)
 
     def margin(self, i: int, j: int, o: int) -> float:
-        """The margin of a hold at the orientation of place ``o`` [rad]; negative where it does not hold."""
+        """The margin of a hold [rad]; negative where it does not hold.
+
+        Args:
+            i: the place of one contact.
+            j: the place of another.
+            o: the place of an angle.
+        """
         return float(self.margins[o, self.pair(i, j)])
 
     def components(self, o: int | None = None) -> NDArray[np.int32]:
@@ -238,6 +271,9 @@ class HoldGraph(ArrayValue):
 
         Two holds can be exchanged into one another, without turning or with turns, exactly when their points
         are in one component.
+
+        Args:
+            o: the place of an angle; over all if not given.
         """
         from scipy.sparse import coo_matrix
         from scipy.sparse.csgraph import connected_components
@@ -252,7 +288,11 @@ class HoldGraph(ArrayValue):
         return np.where(used, labels, -1).astype(np.int32)
 
     def reachable(self, places: Iterable[int]) -> NDArray[np.bool_]:
-        """(V,) the contacts in holds that can be reached, with turns, from holds within ``places``."""
+        """(V,) the contacts in holds that can be reached, with turns, from holds within some places.
+
+        Args:
+            places: of contacts.
+        """
         start = sorted(set(places))
         labels = self.components()
         own = {
@@ -264,7 +304,12 @@ class HoldGraph(ArrayValue):
         return np.isin(labels, sorted(own)) & (labels >= 0)
 
     def row(self, i: int, o: int) -> Array:
-        """(V,) margins of contact i with every other at an orientation; negative where they do not hold."""
+        """(V,) margins of a contact with every other [rad]; negative where they do not hold.
+
+        Args:
+            i: the place of the contact.
+            o: the place of an angle.
+        """
         count = len(self.contacts)
         others = np.arange(count)
         low, high = np.minimum(others, i), np.maximum(others, i)

@@ -21,6 +21,7 @@ TOLERANCE = 1e-6
 _GRID = 25
 _SLACK = 1e-12  # [rad] of margins, for rounding
 _HALVINGS = 46
+_PULLED = 1e-9  # [rad]
 _GOLDEN = 0.5 * (5**0.5 - 1)
 
 
@@ -89,7 +90,11 @@ class Arcs:
             holds = self.candidates.margins(some, middle) >= level - _SLACK
             inside, outside = np.where(holds, middle, inside), np.where(holds, outside, middle)
         ends = np.full(rises.shape, np.nan)
-        ends[where] = inside
+        inner = inside + np.where(up, _PULLED, -_PULLED)  # off an end that is open, and would round out
+        room = (
+            self.candidates.margins(some, inner) >= level - _SLACK if inside.size else np.empty(0, np.bool_)
+        )
+        ends[where] = np.where(room, inner, inside)
         return [
             _runs(angles[row], held[row], ends[row], bool(length[row] >= 2 * pi))
             for row in range(len(angles))

@@ -1,0 +1,126 @@
+"""Regrasps over all orientations beside sampled ones: 200 tasks, a quarter of them at whole numbers.
+
+    python benchmarks/turning.py
+    python benchmarks/turning.py --tasks 20
+
+A sampled sequence is better where it has fewer moves, or as many and a margin wider by more than a millionth
+of it and of a radian.
+"""
+
+import argparse
+from collections import Counter
+from time import process_time
+
+import numpy as np
+
+import regrasp as rg
+from regrasp.outline import parts
+from regrasp.planning.holds.pairs import HoldGraph, evenly, named
+from regrasp.planning.holds.sequences import MAX_TURN, Sequence, sequences
+from regrasp.planning.holds.turning.margins import Candidates
+from regrasp.planning.holds.turning.search import ExactSearch, TurningSequence, apart_from_each_other
+
+SAMPLES = (24, 72, 360, 1440)
+POINTS = 24
+SHAPES = (rg.Outline.ellipse(2, 1), parts.wrench(), parts.bracket(), parts.cam(), parts.bottle())
+Task = tuple[tuple[rg.Contact, ...], rg.Wrench, tuple[int, ...], tuple[int, ...], int]
+
+
+def on_an_outline(rng: np.random.Generator) -> list[rg.Contact]:
+    """Contacts at random places of a part, of one friction."""
+    shape, friction = SHAPES[int(rng.integers(len(SHAPES)))], float(rng.choice([0.1, 0.3, 0.6]))
+    return [shape.contact_at(float(s), friction=friction) for s in rng.uniform(0, shape.length, POINTS)]
+
+
+def at_whole_numbers(rng: np.random.Generator) -> list[rg.Contact]:
+    """Contacts at whole coordinates, with normals along axes and diagonals, some without friction."""
+    cells = rng.permutation(49)[:POINTS]
+    contacts = []
+    for cell in cells.tolist():
+        normal = rng.integers(-1, 2, 2)
+        normal = normal if normal.any() else np.array([0, 1])
+        friction = float(rng.choice([0.0, 0.5, 1.0]))
+        contacts.append(rg.Contact([cell % 7 - 3, cell // 7 - 3], normal, friction))
+    return contacts
+
+
+def tasks(count: int) -> list[Task]:
+    """Every fourth one at whole numbers."""
+    rng = np.random.default_rng(2026)
+    result = []
+    for k in range(count):
+        whole = k % 4 == 3
+        contacts = tuple(named((at_whole_numbers if whole else on_an_outline)(rng), "c"))
+        angle = rng.integers(8) * np.pi / 4 if whole else rng.uniform(0, 2 * np.pi)
+        start, goal = (tuple(rng.choice(POINTS, 3, replace=False).tolist()) for _ in range(2))
+        load = rg.Wrench([0.0, -1.0]) if whole else rg.Wrench([np.cos(angle), np.sin(angle)])
+        result.append((contacts, load, start, goal, int(rng.integers(24))))
+    return result
+
+
+def exact(task: Task) -> TurningSequence | None:
+    """The best sequence over all orientations."""
+    contacts, load, start, goal, last = task
+    candidates = Candidates(contacts, load, 3.0, one_finger=False)
+    search = ExactSearch(candidates, apart_from_each_other(candidates.points, 0.0), None, MAX_TURN, 0.0)
+    found = search.sequences(start, goal, 2 * np.pi * last / 24)
+    return found[0] if found else None
+
+
+def sampled(task: Task, count: int) -> Sequence | None:
+    """The best sequence at ``count`` orientations."""
+    contacts, load, start, goal, last = task
+    graph = HoldGraph(contacts, load, evenly(count))
+    found = sequences(graph, start, goal, last * count // 24)
+    return found[0] if found else None
+
+
+def verdict(mine: TurningSequence | None, theirs: Sequence | None) -> tuple[str, float]:
+    """How the exact sequence does beside a sampled one, and how much wider its margin is [rad]."""
+    if mine is None or theirs is None:
+        return ("neither" if mine is None and theirs is None else "only exact" if mine else "WORSE"), 0.0
+    ours = mine.sequence
+    if ours.moves != theirs.moves:
+        return ("fewer moves" if ours.moves < theirs.moves else "WORSE"), 0.0
+    gain = ours.margin - theirs.margin
+    if gain < -1e-6 * (1 + theirs.margin):
+        return "WORSE", gain
+    return ("wider" if gain > 1e-5 else "alike"), gain
+
+
+def main() -> None:
+    """Prints the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--tasks", type=int, default=200)
+    parser.add_argument("--samples", type=int, nargs="+", default=SAMPLES, help="multiples of 24")
+    asked = parser.parse_args()
+    every, samples = tasks(asked.tasks), asked.samples
+    counted = {count: Counter[str]() for count in samples}
+    gains: dict[int, list[float]] = {count: [] for count in samples}
+    spent = []
+    for number, task in enumerate(every):
+        begun = process_time()
+        mine = exact(task)
+        spent.append(process_time() - begun)
+        for count in samples:
+            word, gain = verdict(mine, sampled(task, count))
+            counted[count][word] += 1
+            gains[count] += [gain] if word in ("wider", "alike") else []
+            if word == "WORSE":
+                print(f"task {number} at {count}: worse by {-gain:.3g} rad", flush=True)
+    words = ("only exact", "fewer moves", "wider", "alike", "neither", "WORSE")
+    print(f"| orientations | {' | '.join(words)} | median gain [deg] | largest [deg] |")
+    print("|--:" * (len(words) + 3) + "|")
+    for count in samples:
+        row = np.degrees(gains[count] or [0.0])
+        cells = " | ".join(str(counted[count][word]) for word in words)
+        print(f"| {count} | {cells} | {np.median(row):.3g} | {row.max():.3g} |")
+    print(
+        f"\n{len(every)} tasks on {POINTS} points; exact search {1e3 * np.median(spent):.3g} ms in the median"
+    )
+
+
+if __name__ == "__main__":
+    main()
