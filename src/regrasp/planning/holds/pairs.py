@@ -85,7 +85,7 @@ class HoldGraph(ArrayValue):
         number(self.peak_ratio, "peak_ratio", least=1)
         number(self.min_distance, "min_distance", least=0)
         number(self.min_normal, "min_normal", least=0)
-        whole(self.most_bytes, "most_bytes", least=0)
+        whole(self.most_bytes, "most_bytes", least=0, most=2**62)
         if not isinstance(self.one_finger, bool):
             raise InvalidInput(f"one_finger must be True or False, got {shown(self.one_finger)}")
         if not isinstance(self.load, Wrench):
