@@ -13,7 +13,7 @@ from multiprocessing import Pipe
 from threading import TIMEOUT_MAX, Event, Timer
 from typing import TYPE_CHECKING, Any
 
-from regrasp.errors import RegraspError
+from regrasp.errors import InvalidInput, RegraspError
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, failed
 
@@ -36,6 +36,11 @@ def solved_apart(
     program: Program, backend: str, time_limit: float | None, options: dict[str, Any]
 ) -> Solution:
     """What ``backends.asked`` answers in another process within ``time_limit`` [s]."""
+    if os.name != "posix":
+        raise InvalidInput(
+            f"a process of its own for {backend} is handed a pipe as POSIX systems do; "
+            "leave isolated and time_limit out"
+        )
     ours, theirs = Pipe()
     process = subprocess.Popen(
         [sys.executable, "-c", _CODE, json.dumps([sys.path, theirs.fileno()])],

@@ -88,6 +88,8 @@ def _write(path: Path, table: "pyarrow.Table") -> None:
 
 def _place(draft: Path, path: Path) -> None:
     draft.replace(path)
+    if os.name != "posix":  # folders cannot be opened
+        return
     number = os.open(path.parent, os.O_RDONLY)  # the name is to be durable, too
     try:
         os.fsync(number)

@@ -144,6 +144,8 @@ def _parsed(content: bytes, path: Path) -> Iterator[Row]:
 
 def _sync_folder(folder: Path) -> None:
     """Make the names in a folder durable, too."""
+    if os.name != "posix":  # folders cannot be opened
+        return
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

@@ -1,0 +1,66 @@
+"""What is said of the package in several places is the same, and the source archive stays small."""
+
+import io
+import re
+import tarfile
+import tomllib
+
+import pytest
+
+import regrasp
+from places import ROOT
+
+pytestmark = pytest.mark.contract
+
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = SETTINGS["project"]
+OTHER_NAMES = {"cvxpy": "cvxpy-base", "matplotlib": "matplotlib-base"}  # without what the core does not use
+
+
+def bounds(lines: list[str]) -> dict[str, str]:
+    """Lower bound by package."""
+    pairs = [line.replace(" ", "").split(">=") for line in lines]
+    return {pair[0]: pair[1] for pair in pairs}
+
+
+def test_the_recipe_asks_for_what_the_package_asks_for() -> None:
+    recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
+    run = re.findall(r"    - (.+)", recipe.partition("  run:\n")[2].partition("\n\n")[0])
+    asked = bounds(PROJECT["dependencies"]) | {"python": PROJECT["requires-python"].removeprefix(">=")}
+    assert bounds(run) == {OTHER_NAMES.get(name, name): bound for name, bound in asked.items()}
+
+
+def test_versions_agree() -> None:
+    recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.findall(r'set version = "(.+)"', recipe) == [regrasp.__version__]
+    assert re.findall(r"^version: (.+)$", citation, re.M) == [regrasp.__version__]
+
+
+def test_the_citation_has_what_archives_ask_for() -> None:
+    keys = set(re.findall(r"^([\w-]+):", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.M))
+    assert {"title", "abstract", "type", "authors", "version", "date-released", "license", "keywords"} <= keys
+
+
+def test_only_lower_bounds() -> None:
+    lines = list(PROJECT["dependencies"])
+    for extra in PROJECT["optional-dependencies"].values():
+        lines += [line for line in extra if not line.startswith("regrasp[")]
+    assert [line for line in lines if re.search(r"==|<|~=|!=", line)] == []
+
+
+def test_dev_has_every_extra() -> None:
+    extras = PROJECT["optional-dependencies"]
+    named = extras["dev"][0].removeprefix("regrasp[").removesuffix("]").split(",")
+    assert named == sorted(extras.keys() - {"dev"})
+
+
+def test_the_source_archive_is_below_a_megabyte() -> None:
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w:gz") as archive:
+        for pattern in SETTINGS["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]:
+            found = sorted(ROOT.glob(pattern.removeprefix("/")))
+            assert found, f"nothing is {pattern}"
+            for path in found:
+                archive.add(path, filter=lambda info: None if "__pycache__" in info.name else info)
+    assert 200e3 < packed.tell() < 1e6
