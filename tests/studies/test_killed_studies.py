@@ -18,7 +18,7 @@ import pytest
 
 import regrasp as rg
 import study_cases
-from processes import is_running
+from processes import hear_interrupts, is_running
 from regrasp.studies.study import study_in
 from studies_compared import raw_keys, rows
 
@@ -58,6 +58,7 @@ def started() -> Iterator[Callable[..., "subprocess.Popen[bytes]"]]:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
+            preexec_fn=hear_interrupts,
         )
         all_started.append(program)
         return program
@@ -103,6 +104,19 @@ def test_the_run_is_killed(undisturbed: Any, started: Any, tmp_path: Path) -> No
     assert swept(tmp_path, workers=2).left == 0
     pd.testing.assert_frame_equal(rows(tmp_path), undisturbed, check_exact=True)
     assert [path.name for path in tmp_path.glob(".*")] == []
+
+
+def test_an_interrupt_keeps_what_was_done_and_leaves_nobody_behind(started: Any, tmp_path: Path) -> None:
+    run = started(
+        "-c", CODE.replace("OUT", repr(str(tmp_path))).replace("part_seconds=0.05", "part_seconds=1e3")
+    )
+    until(lambda: len(psutil.Process(run.pid).children()) == 2)
+    time.sleep(0.5)
+    children = [child.pid for child in psutil.Process(run.pid).children()]
+    os.kill(run.pid, signal.SIGINT)
+    run.wait(20)
+    assert 0 < intact(tmp_path) <= CASES
+    until(lambda: not any(map(is_running, children)))
 
 
 class Killer(Thread):

@@ -186,7 +186,7 @@ def test_what_is_not_there_to_keep_ends_the_run_at_once(workers: int, tmp_path: 
         (study_cases.product, {"grid": {"b": [1]}}, "missing a required argument: 'a'"),
         (study_cases.product, {"time_limit": 1.0}, "give workers of at least 1"),
         (study_cases.product, {"workers": 1, "client": "tcp://127.0.0.1:1"}, "one of workers and client"),
-        (study_cases.spun, {"grid": {"a": [1], "root": [2]}}, "takes a, seconds"),
+        (study_cases.spun, {"grid": {"a": [1], "root": [2]}}, "takes a, spin"),
     ],
 )
 def test_bad_input_is_refused_before_any_work(

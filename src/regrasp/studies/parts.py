@@ -1,7 +1,8 @@
 """Parts of a study: Parquet files that are whole or not there."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,15 +47,26 @@ def write_part(path: Path, rows: Sequence[Mapping[str, Any]], columns: Columns) 
 
 def widen_part(path: Path, columns: Columns) -> None:
     """Bring an earlier part to the columns of today, unless it has them."""
-    table = read_part(path)
-    if not table.schema.equals(schema_of(columns)):
-        write_part(path, table.to_pylist(), columns)
+    if not read_schema(path).equals(schema_of(columns)):
+        write_part(path, read_part(path).to_pylist(), columns)
 
 
 def read_part(path: Path, columns: Sequence[str] | None = None) -> "pyarrow.Table":
     """The table of a part. Raises ``InvalidInput`` for a file that is none."""
-    try:
+    with _parsing(path):
         return parquet().read_table(path, columns=columns)
+
+
+def read_schema(path: Path) -> "pyarrow.Schema":
+    """The columns of a part. Raises ``InvalidInput`` for a file that is none."""
+    with _parsing(path):
+        return parquet().read_schema(path)
+
+
+@contextmanager
+def _parsing(path: Path) -> Iterator[None]:
+    try:
+        yield
     except (OSError, ValueError) as error:
         raise InvalidInput(
             f"{path}: not a part of a study: {error}; move it away, and its rows are made again"
