@@ -102,7 +102,7 @@ def multi_start(norm: Callable[[np.ndarray], float], fingers: int, seconds: floa
 
 def integer_program(outline: rg.Outline, fingers: int, points: int, seconds: float) -> Found:
     """Which of some points, z, and forces for each load, by HiGHS: minimise t >= sum of normals, f <= M z."""
-    contacts = [outline.contact_at(s, friction=FRICTION) for s in outline.sample(points)]
+    contacts = [outline.contact_at(s, friction=FRICTION) for s in outline.sample(points, clearance=1e-6)]
     n, G = len(contacts), []
     for c in contacts:
         for side in (-FRICTION, FRICTION):
@@ -145,7 +145,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("-o", "--output", type=Path, default=None)
     given = parser.parse_args()
-    patience, points, rounds = (0.3, 12, 1) if given.quick else (20.0, 60, 5)
+    patience, points, rounds = (0.3, 12, 1) if given.quick else (10.0, 60, 5)
     report: dict[str, Any] = {}
     for name, outline in (("gear of 48 edges", gear()), ("pebble of 50 edges", pebble())):
         for fingers in (2, 3):

@@ -297,6 +297,7 @@ def test_limits_and_disturbances_go_with_their_objectives() -> None:
         ({"objective": "peak", "disturbance": DEVIATIONS}, "disturbance"),
         ({"objective": "answered", "max_force": 3.0, "disturbance": DEVIATIONS}, "one load"),
         ({"objective": "friction_use", "max_force": 3.0, "friction": 0.0}, "friction"),
+        ({"objective": "angle", "max_force": 3.0, "load": rg.Wrench([0, 0])}, "other than zero"),
     ):
         asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | more
         assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))
@@ -338,3 +339,44 @@ def test_round_tips_touch_nothing_else(radius: float) -> None:
             assert reach >= radius - 1e-3
     inside = (sides.edges == 4).any()
     assert inside == (radius < 0.5)
+
+
+DEGENERATE = {
+    "needle": rg.Outline([[0, 0], [10, 0], [10, 1e-3], [0, 1e-3]]),
+    "collinear points and tiny edges": rg.Outline(
+        [[0, 0], [1, 0], [2, 0], [2 + 1e-6, 0], [4, 0], [4, 3], [2, 3 + 1e-7], [0, 3]]
+    ),
+    "pocket and hole": rg.Outline(
+        [[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]],
+        holes=[[[0.4, 0.4], [0.4, 0.8], [0.8, 0.4]]],
+    ),
+    "chords of an ellipse": rg.Outline(rg.Outline.ellipse(2, 1).polygon(0.01)),
+}
+
+
+@pytest.mark.parametrize("name", DEGENERATE)
+@pytest.mark.parametrize("friction", [0.0, 1e-12, 0.3])
+def test_a_degenerate_outline_has_an_answer_or_a_refusal_with_a_proof(name: str, friction: float) -> None:
+    outline = DEGENERATE[name]
+    load = rg.LoadSet.hull([rg.Wrench([0.3, -1], 0.1), rg.Wrench([0, 0]), rg.Wrench([-0.2, -0.5])])
+    for objective in ("sum_normal", "peak"):
+        try:
+            chosen = rg.choose_grasp(
+                outline, 3, load, friction=friction, objective=objective, from_corners=0.0, most_boxes=1000
+            )
+        except rg.Infeasible as refused:
+            proven = refused.certificate
+        else:
+            proven = chosen
+            assert chosen.bound <= chosen.value
+        assert rg.verify(proven).ok
+
+
+def test_fingers_that_do_nothing_in_the_worst_load_are_on_the_outline_too() -> None:
+    """Four fingers on chords: each stands on a side that the proof is about, whatever loads it answers."""
+    chords = DEGENERATE["chords of an ellipse"]
+    rng = np.random.default_rng(0)
+    for _ in range(12):
+        loads = rg.LoadSet.hull(rg.Wrench(rng.normal(size=2), float(rng.normal())) for _ in range(2))
+        chosen = rg.choose_grasp(chords, 4, loads, friction=0.4, most_boxes=1000)
+        assert rg.verify(chosen).ok

@@ -81,7 +81,7 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
     """The bound of a box and the load behind it, from load ``first`` on; until one reaches ``level``.
 
     seen: (k, 8) of each finger: least and largest centre of pressure; the sides and u of the extreme forces;
-    side and u of the largest force under the worst load.
+    side and u of the largest force under the worst load, or under another where it has none there.
     """
     k = len(arcs)
     worst, critical = -1.0, first
@@ -90,6 +90,7 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
     for i in range(k):
         seen[i, 0], seen[i, 1] = np.inf, -np.inf
         seen[i, 2], seen[i, 4] = np.inf, -np.inf
+        seen[i, 6] = -1.0
     for number in range(len(loads)):
         load = number if number > first else (number - 1 if number > 0 else first)
         value = gauge(sides, arcs, ends, mu, size, norm, loads[load], level, precision, best, work)
@@ -101,6 +102,7 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
             break
         for i in range(k):
             total, moment, most = 0.0, 0.0, 0.0
+            wanted = worse or seen[i, 6] < 0.0
             for j in range(3):
                 weight = x[j] * forces[j, i, 0]
                 total += max(weight, 0.0)
@@ -114,7 +116,7 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
                     seen[i, 2], seen[i, 3] = u, side
                 if u > seen[i, 4]:
                     seen[i, 4], seen[i, 5] = u, side
-                if worse and weight > most:
+                if wanted and weight > most:
                     most = weight
                     seen[i, 6], seen[i, 7] = side, u
             if total > 0.0:

@@ -32,6 +32,7 @@ FAR = 1e6
 _ARTIFICIAL = 1e9  # 1 / size of the rows to begin with, which no forces make
 _CLOSE = 1e-11
 _MOST = 80
+_ROUNDING = 1e-13  # of the terms of a sum
 _PIVOT = 1e-13
 
 
@@ -139,6 +140,16 @@ def workspace(k):  # type: ignore[no-untyped-def]
 
 
 @njit(**INNER)
+def _proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
+    """The bound b . y / H(y), less what rounding of both may have added; infinite beyond ``most``."""
+    h += _ROUNDING * k * (1.0 + mu) * (abs(y[0]) + abs(y[1]) + abs(y[2]))
+    done -= _ROUNDING * (abs(b[0] * y[0]) + abs(b[1] * y[1]) + abs(b[2] * y[2]))
+    if not (done > 0.0 and h >= 0.0):  # rounding, or no number
+        return 0.0
+    return done / h if h * most > done else np.inf
+
+
+@njit(**INNER)
 def bound_by(sides, arcs, ends, mu, size, norm, b, y, work):  # type: ignore[no-untyped-def]
     """What the twist y proves: b . y / H(y), infinite beyond ``FAR`` |b|_1."""
     _, _, forces, _, _, new, _, out = work
@@ -147,7 +158,7 @@ def bound_by(sides, arcs, ends, mu, size, norm, b, y, work):  # type: ignore[no-
     if not done > 0.0:
         return 0.0
     h = _support_of_box(sides, arcs, ends, mu, size, norm, y, new, forces[3], out)
-    return done / h if h * most > done else np.inf
+    return _proven(b, y, done, h, mu, len(arcs), most)
 
 
 @njit(**INNER)
@@ -178,7 +189,7 @@ def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work): 
             break
         upper = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
         h = _support_of_box(sides, arcs, ends, mu, size, norm, y, new, forces[3], out)
-        value = upper / h if h * most > upper else np.inf
+        value = _proven(b, y, upper, h, mu, len(arcs), most)
         if value > lower:
             lower = value
             best[0], best[1], best[2] = y[0], y[1], y[2]

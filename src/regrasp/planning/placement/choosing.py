@@ -131,6 +131,9 @@ def _level(
     if disturbance is None:
         if friction == 0:
             raise InvalidInput(f"objective {goal!r} needs friction above 0")
+        loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
+        if loads is not None and not loads.any():
+            raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")
         return FrictionLevel(limit, friction, angle=goal == "angle")
     if not isinstance(load, Wrench):
         raise InvalidInput(

@@ -128,6 +128,7 @@ def run_level(
             raise
         search.closed = False
     if best is None:
+        search.closed = search.closed and search.excludes(search.left, fixed)
         return best, aim
     return best, _settled(search, level, aim, fixed)
 

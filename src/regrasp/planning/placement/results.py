@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from math import atan, inf
+from math import atan, inf, isnan
 from typing import TypeVar
 
 import numpy as np
@@ -90,7 +90,7 @@ def chosen_at_level(
         if isinstance(level, FrictionLevel):
             loads = map(Wrench.from_vector, asked.loads)
             states = [choose_state(grasp, load, asked.objective, max_force=limit) for load in loads]
-            values = [state.value for state in states]
+            values = [state.value for state in states if not isnan(state.value)]  # none where no force is
             return states, (min(values) if level.angle else max(values))
         assert isinstance(level, AnsweredLevel)
         for back in _BACK:
@@ -130,7 +130,8 @@ def _of_coefficient(level: FrictionLevel, beyond: float) -> float:
 
 
 def _worst(states: list[ChosenState], objective: str) -> ChosenState:
-    return (min if objective == "angle" else max)(states, key=lambda state: state.value)
+    carrying = [state for state in states if not isnan(state.value)]
+    return (min if objective == "angle" else max)(carrying, key=lambda state: state.value)
 
 
 def _first(
