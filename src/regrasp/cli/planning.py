@@ -185,7 +185,7 @@ def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", f
         from regrasp.plots.pages import overview
 
         first = planned.steps[0] if isinstance(planned, RegraspPlan) else planned
-        solid: dict[str, Any] = {"mesh": shape} if first.grasp.dimension == 3 else {}
+        solid: dict[str, Any] = {"mesh" if first.grasp.dimension == 3 else "outline": shape}
         if isinstance(planned, RegraspPlan):
             from regrasp.plots.regrasps.steps import plot_regrasp
 

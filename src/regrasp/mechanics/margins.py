@@ -5,11 +5,14 @@ from math import inf, nan, pi
 
 import numpy as np
 
+from regrasp.display import table
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.value import ArrayValue
 
 # A force below this fraction of the largest one is rounding: the contact carries no force.
 IDLE = 2.0**-40
+COLUMNS = ("angle margin [deg]", "force margin [N]", "friction use [-]")
+"""Of a table of margins."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +29,17 @@ class Margins(ArrayValue):
     friction_use: Array
     """|f_t| / (mu f_n) [-]; 0 along the normal, 1 on the boundary, smaller is safer. NaN for a frictionless
     contact pushed along its normal, infinite for any force a cone cannot make at all."""
+
+    def rows(self) -> list[list[float]]:
+        """For each contact of one state its numbers in the order of ``COLUMNS``."""
+        angles = np.degrees(self.angle)
+        return [list(row) for row in np.stack([angles, self.force, self.friction_use], axis=-1).tolist()]
+
+    def _repr_html_(self) -> str | None:
+        """Of one state a row for each contact, for notebooks; of many instants their text."""
+        if self.angle.ndim != 1:
+            return None
+        return table(["contact", *COLUMNS], ([i, *row] for i, row in enumerate(self.rows(), 1)))
 
     @property
     def least_angle(self) -> float:

@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from regrasp.display import table
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
 from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.margins import IDLE, Margins, margins
+from regrasp.mechanics.margins import COLUMNS, IDLE, Margins, margins
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -197,6 +198,20 @@ class GraspState(ArrayValue):
                 f"balance {shown(self.load)}"
             )
         return GraspState(grasp, self.load, grasp.cones.forces(forces))
+
+    def _repr_html_(self) -> str:
+        """The forces and margins of every contact as a table, for notebooks."""
+        axes = [f"f{axis} [N]" for axis in "xyz"[: self.grasp.dimension]]
+        if self.forces.shape[1] > self.grasp.dimension:
+            axes.append("torque about the normal [N m]")
+        head = ["finger", *axes, *COLUMNS]
+        rows = [
+            [name, *force, *margin]
+            for name, force, margin in zip(
+                self.grasp.names, self.forces.tolist(), self.margins.rows(), strict=True
+            )
+        ]
+        return table(head, rows, f"under {self.load!r}, residual {self.residual:.2g}")
 
     def __repr__(self) -> str:
         rows = "".join(

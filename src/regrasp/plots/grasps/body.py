@@ -5,12 +5,16 @@ from math import atan2, degrees, hypot
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Polygon, Wedge
+from matplotlib.patches import PathPatch, Polygon, Wedge
+from matplotlib.path import Path
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.outline.outline import Outline
 from regrasp.plots.look.style import GREY, INK, PALE, Colours, literal, note
+
+_DETAIL = 2e-4  # of the object's size: chords of a smooth outline stay this near
 
 
 def extent(grasp: Grasp, vertices: Array | None = None) -> float:
@@ -23,6 +27,22 @@ def extent(grasp: Grasp, vertices: Array | None = None) -> float:
     return float(np.ptp(points, axis=0).max()) or 1.0
 
 
+def breadth(grasp: Grasp, vertices: Array | None = None) -> float:
+    """How long an arrow may be to stay in proportion to the object [m].
+
+    Its second largest side along its principal axes where ``vertices`` (v, d) are known, of a slender part
+    its width. Else its extent.
+    """
+    size = extent(grasp, vertices)
+    if vertices is None:
+        return size
+    across = vertices - vertices.mean(axis=0)
+    axes = np.linalg.svd(across.T @ across)[0]
+    # Principal axes of a square section are any; those of the frame then are as good.
+    width = min(float(np.sort(np.ptp(points, axis=0))[-2]) for points in (across, across @ axes))
+    return min(size, width or size)
+
+
 def draw_body(
     ax: Axes,
     grasp: Grasp,
@@ -30,17 +50,23 @@ def draw_body(
     cone_length: float,
     absent: Collection[str] = (),
     named: bool = True,
+    outline: Outline | None = None,
 ) -> None:
     """Surface, normals and cones of length ``cone_length`` [m] at the contacts, and the centre of mass.
 
     absent: names of contacts of which only the surface and an open grey circle are drawn.
     named: write the names beside the contacts.
+    outline: drawn in the place of the tangents.
     """
-    size = extent(grasp)
+    size = extent(grasp, vertices_of(outline))
     surface = _surface(grasp, 0.09 * size)
-    if _convex(surface.reshape(-1, 2)):
+    if outline is not None:
+        _draw_outline(ax, outline, size)
+        surface = surface[:0]
+    elif _convex(surface.reshape(-1, 2)):
         ax.add_patch(Polygon(surface.reshape(-1, 2), facecolor=PALE, edgecolor="none", zorder=0, gid="body"))
-    ax.update_datalim(surface.reshape(-1, 2))
+    if surface.size:
+        ax.update_datalim(surface.reshape(-1, 2))
     for ends in surface:
         ax.plot(*ends.T, color=INK, linewidth=1.2, solid_capstyle="butt", zorder=2)
     for name, contact in zip(grasp.names, grasp, strict=True):
@@ -68,6 +94,21 @@ def label_contact(
     note(ax, label, at, towards, gap=gap, color=color)
     room = np.array([0.06 + 0.033 * max(map(len, label.split("\n"))), 0.12]) * size
     ax.update_datalim([at + room * towards / hypot(*towards)])
+
+
+def vertices_of(outline: Outline | None) -> Array | None:
+    """(v, 2) of an outline, relative to the centre of mass [m]; None without one."""
+    return None if outline is None else outline.polygon()
+
+
+def _draw_outline(ax: Axes, outline: Outline, size: float) -> None:
+    """The material with its holes."""
+    rings = (outline.polygon(_DETAIL * size), *(h[::-1] for h in outline.hole_polygons(_DETAIL * size)))
+    paths = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
+    material = PathPatch(Path.make_compound_path(*paths), zorder=0, gid="body")
+    material.set(facecolor=PALE, edgecolor=INK, linewidth=0.9)
+    ax.add_patch(material)
+    ax.update_datalim(rings[0])
 
 
 def _cone(ax: Axes, contact: Contact, length: float, colour: str, gid: str) -> None:

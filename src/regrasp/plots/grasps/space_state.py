@@ -30,14 +30,15 @@ def draw_state(
     ax: Any,
     *,
     size: float,
+    reach: float,
     scale: float,
     colours: Colours,
     absent: Collection[str],
     mesh: Triangles | None,
     units: Units,
 ) -> Any:
-    """``plot_state`` in space; size: extent of the object [m], scale: length of a unit force [m/N]."""
-    ax = _scene(ax, state, size, scale, colours, mesh, absent)
+    """``plot_state`` in space. size: the object's extent, reach: its width [m]. scale: of a force [m/N]."""
+    ax = _scene(ax, state, size, reach, scale, colours, mesh, absent)
     _forces(ax, state, scale, colours, "force")
     longest = max(*state.magnitudes, float(np.linalg.norm(state.load.force)))
     return _finish(ax, longest, units)
@@ -48,6 +49,7 @@ def draw_transition(
     ax: Any,
     *,
     size: float,
+    reach: float,
     scale: float,
     colours: Colours,
     mesh: Triangles | None,
@@ -55,7 +57,7 @@ def draw_transition(
 ) -> Any:
     """``plot_transition`` in space without its legend."""
     ends = (transition.start, transition.end)
-    ax = _scene(ax, transition.start, size, scale, colours, mesh)
+    ax = _scene(ax, transition.start, size, reach, scale, colours, mesh)
     _forces(ax, transition.start, scale, colours, "start force")
     _forces(ax, transition.end, scale, colours, "end force", **END_LOOK)
     pushes = transition.wrenches(np.linspace(0, transition.duration, _SAMPLES))[..., :3]
@@ -90,6 +92,7 @@ def _scene(
     ax: Any,
     state: GraspState,
     size: float,
+    reach: float,
     scale: float,
     colours: Colours,
     mesh: Triangles | None,
@@ -99,8 +102,10 @@ def _scene(
     new, ax = ax is None, space_axes(ax)
     if new:
         ax.view_init(*facing_view(state.grasp.positions, state.grasp.normals))
-    draw_body_in_space(ax, state.grasp, colours, CONE * size, size, mesh=mesh, absent=absent)
-    draw_load_in_space(ax, state.load, scale, TURN * size)
+    draw_body_in_space(
+        ax, state.grasp, colours, min(CONE * size, 0.8 * reach), size, mesh=mesh, absent=absent
+    )
+    draw_load_in_space(ax, state.load, scale, min(TURN * size, 0.4 * reach))
     return ax
 
 

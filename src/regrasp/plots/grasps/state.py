@@ -10,11 +10,12 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import instance
+from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
+from regrasp.outline.outline import Outline
 from regrasp.plans.transition import Transition
-from regrasp.plots.grasps.body import draw_body, extent
+from regrasp.plots.grasps.body import breadth, draw_body, extent, vertices_of
 from regrasp.plots.grasps.load import draw_load
 from regrasp.plots.grasps.space_state import draw_state, draw_transition
 from regrasp.plots.look.arrows import arrow
@@ -44,14 +45,15 @@ def plot_state(
     colours: Colours | None = None,
     absent: Collection[str] = (),
     mesh: Any = None,
+    outline: Outline | None = None,
     units: Units = SI,
 ) -> Axes:
     """The object with the finger forces and the load of one state (Fig. 1).
 
     Forces are those of the fingers on the object, drawn with their tails at the contacts, so that a force
     in equilibrium stands inside its friction cone; the load starts at the centre of mass, and a load torque
-    is a turning arrow around it. The grey body only suggests the object: its surface is known at the
-    contacts, where its tangents are drawn, and nowhere else.
+    is a turning arrow around it. Without an ``outline`` the grey body only suggests the object: its surface
+    is known at the contacts, where its tangents are drawn, and nowhere else.
 
     In space the axes are 3-D, at one scale along x, y and z, and the object is its ``mesh``, translucent, for
     the arrows lie inside it.
@@ -59,12 +61,13 @@ def plot_state(
     Args:
         state: the state to draw.
         ax: the axes to draw on; new ones if not given.
-        force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the grasp's
-            extent.
+        force_scale: length of a unit force [m/N]; by default the longest force spans 0.45 of the object's
+            extent, and no more than its width where the object is known.
         colours: of the contacts by name; by their place in the grasp if not given.
         absent: names of contacts whose finger is not there in this state: an open circle marks the place.
         mesh: of a grasp in space, anything with ``surface()``, or (vertices (v, 3), faces (f, 3)), in the
             object frame with the centre of mass at the origin.
+        outline: of a planar grasp, the object its contacts are on.
         units: what one unit of length, force and time is called; nothing is converted.
 
     Raises:
@@ -73,12 +76,14 @@ def plot_state(
     instance(state, "state", GraspState)
     triangles = surface_of(mesh, state.grasp)
     colours = contact_colours(state.grasp) if colours is None else colours
-    scale = force_scale_of(state, mesh=triangles) if force_scale is None else force_scale
+    shape = _vertices(state.grasp, triangles, outline)
+    scale = force_scale_of(state, vertices=shape) if force_scale is None else force_scale
     if state.grasp.dimension == 3:
         drawn: Axes = draw_state(
             state,
             ax,
-            size=_size(state.grasp, triangles),
+            size=extent(state.grasp, shape),
+            reach=breadth(state.grasp, shape),
             scale=scale,
             colours=colours,
             absent=absent,
@@ -87,7 +92,7 @@ def plot_state(
         )
         return drawn
     ax = axes_or_new(ax, height=3.4)
-    _scene(ax, state, scale, colours, units, absent)
+    _scene(ax, state, scale, colours, units, absent, outline)
     _forces(ax, state, scale, colours, "force")
     return ax
 
@@ -98,6 +103,7 @@ def plot_transition(
     *,
     force_scale: float | None = None,
     mesh: Any = None,
+    outline: Outline | None = None,
     units: Units = SI,
 ) -> Axes:
     """The forces at both states of a transition and the path of each force head between them (Fig. 10).
@@ -109,23 +115,25 @@ def plot_transition(
         ax: the axes to draw on; new ones if not given.
         force_scale: length of a unit force [m/N]; chosen if not given.
         mesh: the object of a grasp in space, as for ``plot_state``.
+        outline: that of a planar grasp.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(transition, "transition", Transition)
     triangles = surface_of(mesh, transition.grasp)
+    shape = _vertices(transition.grasp, triangles, outline)
     colours = contact_colours(transition.grasp)
     scale = force_scale
     if scale is None:
-        scale = force_scale_of(transition.start, transition.end, mesh=triangles)
+        scale = force_scale_of(transition.start, transition.end, vertices=shape)
     if transition.grasp.dimension == 3:
-        size = _size(transition.grasp, triangles)
+        size, reach = extent(transition.grasp, shape), breadth(transition.grasp, shape)
         drawn: Axes = draw_transition(
-            transition, ax, size=size, scale=scale, colours=colours, mesh=triangles, units=units
+            transition, ax, size=size, reach=reach, scale=scale, colours=colours, mesh=triangles, units=units
         )
         legend(drawn, _key(), loc="upper left", bbox_to_anchor=(0, 1.08))
         return drawn
     ax = axes_or_new(ax, height=3.4)
-    _scene(ax, transition.start, scale, colours, units)
+    _scene(ax, transition.start, scale, colours, units, outline=outline)
     _forces(ax, transition.start, scale, colours, "start force")
     _forces(
         ax,
@@ -150,14 +158,28 @@ def plot_transition(
     return ax
 
 
-def force_scale_of(*states: GraspState, mesh: Triangles | None = None) -> float:
-    """Length of a unit force [m/N] at which the longest force of the states spans 0.45 of the extent."""
+def force_scale_of(*states: GraspState, vertices: Array | None = None) -> float:
+    """Length of a unit force [m/N] at which the longest force of the states is in proportion to the object.
+
+    It spans 0.45 of the extent, but no more than the width of an object whose ``vertices`` (v, d) are known.
+    """
     longest = max(max(s.magnitudes.max(), float(np.linalg.norm(s.load.force))) for s in states)
-    return _LONGEST * _size(states[0].grasp, mesh) / (longest or 1.0)
+    grasp = states[0].grasp
+    return min(_LONGEST * extent(grasp, vertices), breadth(grasp, vertices)) / (longest or 1.0)
 
 
-def _size(grasp: Grasp, mesh: Triangles | None) -> float:
-    return extent(grasp, None if mesh is None else mesh[0])
+def shape_of(grasp: Grasp, mesh: Any, outline: Outline | None) -> Array | None:
+    """(v, d) vertices of the object given with a grasp; raises ``InvalidInput`` for one of the other kind."""
+    return _vertices(grasp, surface_of(mesh, grasp), outline)
+
+
+def _vertices(grasp: Grasp, triangles: Triangles | None, outline: Outline | None) -> Array | None:
+    if outline is None:
+        return None if triangles is None else triangles[0]
+    instance(outline, "outline", Outline)
+    if grasp.dimension != 2:
+        raise InvalidInput("an outline is of an object in the plane, but this grasp is in space; give mesh")
+    return vertices_of(outline)
 
 
 def surface_of(mesh: Any, grasp: Grasp) -> Triangles | None:
@@ -176,11 +198,18 @@ def _key() -> list[Line2D]:
 
 
 def _scene(
-    ax: Axes, state: GraspState, scale: float, colours: Colours, units: Units, absent: Collection[str] = ()
+    ax: Axes,
+    state: GraspState,
+    scale: float,
+    colours: Colours,
+    units: Units,
+    absent: Collection[str] = (),
+    outline: Outline | None = None,
 ) -> None:
     """Everything but the finger forces."""
-    size = extent(state.grasp)
-    draw_body(ax, state.grasp, colours, _CONE * size, absent)
+    shape = vertices_of(outline)
+    size, reach = extent(state.grasp, shape), breadth(state.grasp, shape)
+    draw_body(ax, state.grasp, colours, min(_CONE * size, 0.8 * reach), absent, outline=outline)
     draw_load(ax, state.load, scale, 0.1 * size)
     _scale_key(ax, scale, size, units)
     ax.set_aspect("equal", adjustable="datalim")

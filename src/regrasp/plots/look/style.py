@@ -88,6 +88,16 @@ def label_axis(axis: Any, name: str, unit: str, largest: float) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value / 10.0**power)))
 
 
+def steady(ax: Axes, *lines: ArrayLike) -> None:
+    """Let an axis of values that hardly change show that: its range is a good part of the values."""
+    values = np.concatenate([np.ravel(np.asarray(line, dtype=float)) for line in lines])
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    largest = max(abs(low), abs(high))
+    if high - low < 0.02 * largest or largest == 0:
+        room = 0.3 * largest or 1.0
+        ax.set_ylim(low - room, high + room)
+
+
 def short(value: float) -> str:
     """A number in a few characters, with a true minus sign."""
     return f"{value + 0.0:.4g}".replace("-", "\N{MINUS SIGN}")
@@ -109,15 +119,16 @@ def literal(name: str) -> str:
 def note(ax: Axes, text: str, at: ArrayLike, towards: ArrayLike, *, gap: float = 4.0, **look: Any) -> None:
     """A short text beside a point, ``gap`` points away from it in a direction, with a white rim."""
     x, y = np.asarray(towards, dtype=float) / (np.hypot(*np.asarray(towards)) or 1.0)
+    side = "left" if x > 0.4 else "right" if x < -0.4 else "center"
+    own: dict[str, Any] = {"fontsize": SMALL, "zorder": 6, "ha": side}
     ax.annotate(
         text,
         tuple(np.asarray(at, dtype=float)),
         (gap * x, gap * y),
         textcoords="offset points",
-        ha="left" if x > 0.4 else "right" if x < -0.4 else "center",
         va="bottom" if y > 0.4 else "top" if y < -0.4 else "center",
         path_effects=[withStroke(linewidth=1.5, foreground="white")],
-        **({"fontsize": SMALL, "zorder": 6} | look),
+        **(own | look),
     )
 
 

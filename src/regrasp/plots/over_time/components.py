@@ -8,7 +8,16 @@ from matplotlib.lines import Line2D
 
 from regrasp.mechanics.checks import Array, instance
 from regrasp.plans.transition import Transition
-from regrasp.plots.look.style import INK, PALETTE, axes_or_new, contact_colours, label_axis, legend, literal
+from regrasp.plots.look.style import (
+    INK,
+    PALETTE,
+    axes_or_new,
+    contact_colours,
+    label_axis,
+    legend,
+    literal,
+    steady,
+)
 from regrasp.plots.look.units import SI, Units
 
 _SAMPLES = 201
@@ -46,6 +55,7 @@ def plot_force_components(transition: Transition, ax: Axes | None = None, *, uni
     legend(ax, keys)
     ax.add_artist(inside)
     ax.margins(y=0.14)
+    steady(ax, forces)
     return ax
 
 
@@ -89,6 +99,7 @@ def draw_torques(ax: Axes, t: Array, torques: Array, units: Units, **look: Any) 
         shown = label if k + 1 < len(torques.T) else f"{label} (right)"
         base = {"color": colour, "linestyle": "--", "linewidth": 1.4, "label": shown}
         lines += right.plot(t, column, **(base | look))
+    steady(right, torques)
     right.spines["right"].set_visible(True)
     right.spines["top"].set_visible(False)
     label_axis(right.yaxis, "torque", units.torque, float(np.abs(torques).max()))
@@ -104,3 +115,4 @@ def _finish(ax: Axes, transition: Transition, forces: Array, units: Units) -> No
     ax.set_xlim(0, transition.duration)
     label_axis(ax.xaxis, "$t$", units.time, transition.duration)
     label_axis(ax.yaxis, "force", units.force, float(np.abs(forces).max()))
+    steady(ax, forces)

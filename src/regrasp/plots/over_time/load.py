@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import instance
 from regrasp.plans.transition import Transition
-from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend
+from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend, steady
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.over_time.components import draw_torques
 
@@ -43,5 +43,6 @@ def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = 
     ax.set_xlim(0, transition.duration)
     label_axis(ax.xaxis, "$t$", units.time, transition.duration)
     label_axis(ax.yaxis, "load", units.force, float(np.abs(load[:, :d]).max()))
+    steady(ax, load[:, :d])
     legend(ax, [*ax.get_lines(), *lines])
     return ax

@@ -1,5 +1,7 @@
 """Magnitudes, angles and margins of the finger forces over time (Fig. 9)."""
 
+from math import inf
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -9,10 +11,14 @@ from regrasp.plots.look.style import GREY, INK, axes_or_new, contact_colours, la
 from regrasp.plots.look.units import SI, Units
 
 _SAMPLES = 201
+_SHOWN = 2.5  # limits up to this many times the largest force are drawn
 
 
 def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """|f_i(t)| of every finger (Fig. 9a).
+    """|f_i(t)| of every finger (Fig. 9a), below its force limit.
+
+    Limits are dashed, those that contacts have and those that the plan's states were chosen under; one that
+    all share is grey. A limit far above every force is left out.
 
     Args:
         transition: the transition to draw.
@@ -24,8 +30,10 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
     t = _times(transition)
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
     _lines(ax, transition, t, magnitudes, units)
-    ax.set_ylim(bottom=-0.03 * float(magnitudes.max()))  # a line along zero stays visible
-    label_axis(ax.yaxis, r"$|f_i|$", units.force, float(magnitudes.max()))
+    largest = float(magnitudes.max())
+    _limits(ax, transition, force_limits(transition), _SHOWN * largest)
+    ax.set_ylim(bottom=min(ax.get_ylim()[0], -0.03 * largest))  # a line along zero stays visible
+    label_axis(ax.yaxis, r"$|f_i|$", units.force, _largest(ax))
     return ax
 
 
@@ -85,13 +93,16 @@ def plot_margins(
     else:
         values, least = margins.force, known.least_force
     _lines(ax, transition, t, values, units)
-    ax.axhline(least, color=INK, linewidth=0.9, linestyle="--", gid="least")
-    ax.set_ylim(bottom=min(0.0, 1.1 * float(least)))
+    ends = [0.0, transition.duration]
+    ax.plot(ends, [least, least], color=INK, linewidth=0.9, linestyle="--", gid="least", zorder=2.5)
+    ax.relim()
+    ax.autoscale(axis="y")
+    ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0] if _lowest(ax) < 0 else 0.0))
     label_axis(
         ax.yaxis,
         f"{objective} margin",
         "deg" if objective == "angle" else units.force,
-        float(np.nanmax(values)),
+        _largest(ax),
     )
     return ax
 
@@ -104,6 +115,43 @@ def _lines(ax: Axes, transition: Transition, t: Array, values: Array, units: Uni
     """A line per contact from (m, n) values, the axis of time and the legend."""
     for (name, colour), column in zip(contact_colours(transition.grasp).items(), values.T, strict=True):
         ax.plot(t, column, color=colour, linewidth=1.4, label=literal(name))
-    ax.set_xlim(0, transition.duration)
-    label_axis(ax.xaxis, "$t$", units.time, transition.duration)
-    legend(ax)
+    longest = max(float(np.max(line.get_xdata())) for line in ax.get_lines())  # of all plans on these axes
+    ax.set_xlim(0, longest)
+    label_axis(ax.xaxis, "$t$", units.time, longest)
+    labelled = {str(line.get_label()): line for line in reversed(ax.get_lines())}
+    legend(ax, [line for name, line in reversed(labelled.items()) if not name.startswith("_")])
+
+
+def force_limits(transition: Transition) -> dict[str, float]:
+    """The force limit of each finger [N]: its contact's, and that of the states chosen; infinite for none."""
+    limits = {str(c.name): inf if c.max_force is None else c.max_force for c in transition.grasp}
+    chosen: dict[str, float] = {}
+    for choice_ in transition.record.choices:
+        idle = transition.idle_at_start if choice_.end == "start" else transition.idle_at_end
+        used = [name for name in transition.grasp.names if name not in idle]
+        for name, limit in zip(used, choice_.force_limits, strict=False):
+            chosen[name] = max(limit, chosen.get(name, 0.0))  # the path keeps the looser one
+    return {name: min(limit, chosen.get(name, inf)) for name, limit in limits.items()}
+
+
+def _limits(ax: Axes, transition: Transition, limits: dict[str, float], most: float) -> None:
+    """A dashed line for each limit that is not above ``most``; one line where all are the same."""
+    one, colours = len(set(limits.values())) == 1, contact_colours(transition.grasp)
+    for name, limit in limits.items():
+        if limit <= most:
+            colour = GREY if one else colours[name]
+            ax.axhline(limit, color=colour, linewidth=0.9, linestyle="--", gid=f"limit {name}", zorder=1.9)
+        if one:
+            break
+
+
+def _values(ax: Axes) -> Array:
+    return np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.get_lines()])
+
+
+def _largest(ax: Axes) -> float:
+    return float(np.nanmax(_values(ax)))
+
+
+def _lowest(ax: Axes) -> float:
+    return float(np.nanmin(_values(ax)))

@@ -126,6 +126,7 @@ class _Scene:
     def show(self, ax: Any, moment: Moment) -> None:
         """Draw a moment on axes that were cleared."""
         self.stage.draw(ax, moment)
+        self.stage.scale_key(ax, self.units)
         ax.tick_params(labelsize=SMALL)
         label_axis(ax.xaxis, "$x$ in the world", self.units.length, self.stage.size)
         label_axis(ax.yaxis, "$y$", self.units.length, self.stage.size)

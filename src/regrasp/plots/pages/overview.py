@@ -5,11 +5,11 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from regrasp.mechanics.checks import instance
+from regrasp.outline.outline import Outline
 from regrasp.planning.states.two_fingers import EquilibriumLocus
 from regrasp.plans.transition import Transition
-from regrasp.plots.grasps.state import force_scale_of, plot_state, plot_transition
+from regrasp.plots.grasps.state import force_scale_of, plot_state, plot_transition, shape_of
 from regrasp.plots.look.png import png
-from regrasp.plots.look.solids import triangles_of
 from regrasp.plots.look.space_axes import space_panel
 from regrasp.plots.look.style import (
     TEXT,
@@ -30,19 +30,22 @@ from regrasp.plots.wrench_space.locus import plot_locus
 from regrasp.plots.wrench_space.wrench_loop import plot_wrench_loop, plot_wrench_paths
 
 
-def transition_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
+def transition_figure(
+    transition: Transition, *, mesh: Any = None, outline: Outline | None = None, units: Units = SI
+) -> Figure:
     """The object with its force paths, magnitudes, angles and T(t), or the load if it varies, two by two.
 
     Args:
         transition: the transition to draw.
         mesh: the object of a grasp in space, as for ``plot_state``.
+        outline: that of a planar grasp.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(transition, "transition", Transition)
     figure = new_figure(2 * WIDTH, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.25, 1))
     ax = _panel(figure, grid[0, 0], (0.0, 0.46, 0.47, 0.49), transition)
-    plot_transition(transition, ax, mesh=mesh, units=units)
+    plot_transition(transition, ax, mesh=mesh, outline=outline, units=units)
     plot_magnitudes(transition, tidy(figure.add_subplot(grid[0, 1])), units=units)
     below = tidy(figure.add_subplot(grid[1, 0]))
     if transition.load_varies:
@@ -74,7 +77,9 @@ def transition_png(transition: Transition) -> bytes:
     return png(transition_figure(transition))
 
 
-def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> dict[str, Figure]:
+def figures(
+    transition: Transition, *, mesh: Any = None, outline: Outline | None = None, units: Units = SI
+) -> dict[str, Figure]:
     """Every figure of a transition by file stem.
 
     ``overview``, ``states``, ``object``, ``time_scaling``, ``magnitudes``, ``angles``, ``margins``; ``load``
@@ -84,13 +89,14 @@ def figures(transition: Transition, *, mesh: Any = None, units: Units = SI) -> d
     Args:
         transition: the transition to draw.
         mesh: the object of a grasp in space, as for ``plot_state``.
+        outline: that of a planar grasp.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(transition, "transition", Transition)
     drawn: dict[str, Any] = {
-        "overview": transition_figure(transition, mesh=mesh, units=units),
-        "states": states_figure(transition, mesh=mesh, units=units),
-        "object": plot_transition(transition, mesh=mesh, units=units).figure,
+        "overview": transition_figure(transition, mesh=mesh, outline=outline, units=units),
+        "states": states_figure(transition, mesh=mesh, outline=outline, units=units),
+        "object": plot_transition(transition, mesh=mesh, outline=outline, units=units).figure,
         "time_scaling": plot_scaling(transition.scaling, control=True, units=units).figure,
         "magnitudes": plot_magnitudes(transition, units=units).figure,
         "angles": plot_angles(transition, units=units).figure,
@@ -128,12 +134,15 @@ def _of_one_finger(transition: Transition, moves: str, units: Units) -> dict[str
     return drawn
 
 
-def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI) -> Figure:
+def states_figure(
+    transition: Transition, *, mesh: Any = None, outline: Outline | None = None, units: Units = SI
+) -> Figure:
     """Both states side by side at one scale of force (Fig. 1); an open circle where the finger is not.
 
     Args:
         transition: the transition to draw.
         mesh: the object of a grasp in space, as for ``plot_state``.
+        outline: that of a planar grasp.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(transition, "transition", Transition)
@@ -141,14 +150,15 @@ def states_figure(transition: Transition, *, mesh: Any = None, units: Units = SI
     grid = figure.add_gridspec(1, 2)
     if transition.grasp.dimension == 3:
         figure.set_layout_engine("none")  # it has nothing to lay out
-    scale = force_scale_of(transition.start, transition.end, mesh=triangles_of(mesh))
+    shape = shape_of(transition.grasp, mesh, outline)
+    scale = force_scale_of(transition.start, transition.end, vertices=shape)
     ends = (
         ("start", transition.start, transition.idle_at_start),
         ("end", transition.end, transition.idle_at_end),
     )
     for i, (title, state, absent) in enumerate(ends):
         ax = _panel(figure, grid[i], (0.5 * i, 0.04, 0.47, 0.88), transition)
-        plot_state(state, ax, force_scale=scale, absent=absent, mesh=mesh, units=units)
+        plot_state(state, ax, force_scale=scale, absent=absent, mesh=mesh, outline=outline, units=units)
         ax.set_title(title, fontsize=TEXT, loc="left")
     return figure
 

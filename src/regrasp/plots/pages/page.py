@@ -14,7 +14,7 @@ from regrasp.motions import Motions
 from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
-from regrasp.plots.grasps.body import extent
+from regrasp.plots.grasps.body import breadth, extent
 from regrasp.plots.grasps.space_state import CONE
 from regrasp.plots.grasps.state import force_scale_of, surface_of
 from regrasp.plots.look.style import INK, contact_colours
@@ -149,7 +149,8 @@ def _figure(value: GraspState | Transition, mesh: Any, units: Units) -> Trace:
     colours = contact_colours(grasp)
     size = extent(grasp, None if triangles is None else triangles[0])
     ends = (value,) if isinstance(value, GraspState) else (value.start, value.end)
-    scale = force_scale_of(*ends, mesh=triangles)
+    vertices = None if triangles is None else triangles[0]
+    scale = force_scale_of(*ends, vertices=vertices)
 
     def forces(per_finger: Any, load: Any) -> list[Trace]:
         moving: list[Trace] = []
@@ -157,7 +158,7 @@ def _figure(value: GraspState | Transition, mesh: Any, units: Units) -> Trace:
             moving += arrow_traces(name, r, f, scale, size, colours[name], units)
         return moving + arrow_traces("load", np.zeros(3), load[:3], scale, size, INK, units)
 
-    stays = body_traces(grasp, colours, triangles, CONE * size)
+    stays = body_traces(grasp, colours, triangles, min(CONE * size, 0.8 * breadth(grasp, vertices)))
     layout = layout_of(units, facing_view(grasp.positions, grasp.normals))
     if isinstance(value, GraspState):
         return {"data": stays + forces(value.wrenches[:, :3], value.load.vector), "layout": layout}

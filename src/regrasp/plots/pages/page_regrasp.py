@@ -7,7 +7,7 @@ import numpy as np
 
 from regrasp.mechanics.grasp import Grasp
 from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plots.grasps.body import extent
+from regrasp.plots.grasps.body import breadth, extent
 from regrasp.plots.grasps.space_state import CONE
 from regrasp.plots.grasps.state import surface_of
 from regrasp.plots.look.style import INK, PALETTE
@@ -33,8 +33,9 @@ def regrasp_figure(plan: RegraspPlan, mesh: object, units: Units) -> Trace:
         name: shade[i] for names in reversed(plan.fingers) for i, name in enumerate(names) if name is not None
     }
     triangles = surface_of(mesh, every)
-    size = extent(every, None if triangles is None else triangles[0])
-    scale = _LONGEST * size / (max(step.peak for step in plan.steps) or 1.0)
+    vertices = None if triangles is None else triangles[0]
+    size, reach = extent(every, vertices), breadth(every, vertices)
+    scale = min(_LONGEST * size, reach) / (max(step.peak for step in plan.steps) or 1.0)
 
     def moving(step: int, t: float) -> list[Trace]:
         now, traces = plan.steps[step], []
@@ -50,7 +51,7 @@ def regrasp_figure(plan: RegraspPlan, mesh: object, units: Units) -> Trace:
         line_traces(history.times, [values[key] for values in history.lines], shade, axis, unit)
         for key, axis, unit in (("margins", "", "deg"), ("forces", "2", units.force))
     ]
-    stays = [*body_traces(every, colours, triangles, CONE * size), *lines[0], *lines[1]]
+    stays = [*body_traces(every, colours, triangles, min(CONE * size, 0.8 * reach)), *lines[0], *lines[1]]
     per_step = max(4, _FRAMES // len(plan.steps))
     starts = np.cumsum([0.0, *(step.duration for step in plan.steps)]).tolist()
     instants = [

@@ -16,7 +16,8 @@ from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.arrows import arrow
-from regrasp.plots.look.style import INK, PALE, PALETTE, literal
+from regrasp.plots.look.style import INK, PALE, PALETTE, literal, note, quantity, round_below
+from regrasp.plots.look.units import Units
 
 # As fractions of the object's size.
 _FINGER, _CONE, _LONGEST = 0.035, 0.2, 0.4
@@ -146,6 +147,13 @@ class Stage:
                 zorder=6,
                 mutation_scale=self.heads,
             )
+
+    def scale_key(self, ax: Axes, units: Units) -> None:
+        """A bar below the object as long as a round force, and what it means."""
+        force = round_below(0.35 * self.reach / self.scale)
+        x, y = -0.93 * self.reach, -0.95 * self.reach
+        ax.plot([x, x + self.scale * force], [y, y], color=INK, linewidth=2.2, gid="scale", zorder=7)
+        note(ax, quantity(force, units.force), (x, y), (0.1, 1.0), gap=2.0, gid="scale name", ha="left")
 
     @property
     def hull(self) -> Array:

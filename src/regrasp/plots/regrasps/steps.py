@@ -84,6 +84,8 @@ def plot_regrasp(plan: RegraspPlan, outline: Outline | Any = None, *, units: Uni
         for axis in (ax.xaxis, ax.yaxis):
             axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         ax.set(xlim=(-side, side), ylim=(-side, side))
+        if k == 0:
+            stage.scale_key(ax, units)
     return figure
 
 
