@@ -140,12 +140,14 @@ def question_of(grasp: Grasp, load: Wrench, **asked: Any) -> Question:
 
 
 def _of_scenario(scenario: Any, title: str) -> Start:
-    from regrasp.files import RegraspScenario, Scenario
+    from regrasp.files import GraspScenario, RegraspScenario, Scenario
 
     if isinstance(scenario, RegraspScenario):
         grasp, load = scenario.start_grasp, Wrench(scenario.load.force)
         question = question_of(grasp, load, leaves=grasp.names[0])
         return Start(scenario.title or title, question, scenario.outline.value)
+    if isinstance(scenario, GraspScenario):
+        return of_outline(scenario.outline.value, scenario.title or title)
     if not isinstance(scenario, Scenario):
         raise InvalidInput(f"{title}: the explorer works in the plane, this scenario is in space")
     leaves = getattr(scenario.task, "contact", None)

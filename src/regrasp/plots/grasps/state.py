@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from regrasp.errors import InvalidInput
@@ -214,6 +215,7 @@ def _scene(
     _scale_key(ax, scale, size, units)
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
+    ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     label_axis(ax.xaxis, "$x$", units.length, size)
     label_axis(ax.yaxis, "$y$", units.length, size)
 
