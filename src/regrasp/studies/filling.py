@@ -17,6 +17,8 @@ from regrasp.studies.worker import Batch, Done
 
 BATCH_SECONDS = 0.5
 """What a batch is to take, so that what is between batches does not count [s]."""
+MOST_TASKS = 200
+"""Batches a second that a scheduler is given at most; dask says that it does a thousand or so."""
 MOST_IN_BATCH, MOST_IN_PART = 1000, 20_000
 CHEAP = 2e-4
 """A case that takes less than this costs less than handing it out [s]."""
@@ -74,7 +76,8 @@ class _Filling:
         progress = self._progress
         each = max(progress.seconds / max(progress.new, 1), 1e-6)
         share = (progress.total - progress.done) // (4 * self._engine.at_once) + 1
-        return max(1, min(int(BATCH_SECONDS / each), share, MOST_IN_BATCH))
+        seconds = max(BATCH_SECONDS, self._engine.at_once / MOST_TASKS)
+        return max(1, min(int(seconds / each), share, MOST_IN_BATCH))
 
     def _hand(self, batch: Batch) -> None:
         self._out += 1
