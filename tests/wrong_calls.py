@@ -583,7 +583,7 @@ def picture_rows() -> dict[str, Row]:
     """The first parameter of every picture: what it draws."""
     import regrasp.plots as plots
 
-    more = {"load_size": 1.0, "outline": ellipse(), "values": [1.0], "contact": "P1"}
+    more = {"load_size": 1.0, "outline": ellipse(), "values": [1.0], "contact": "P1", "shape": ellipse()}
     found = {}
     for name in plots.__all__:
         draw = getattr(plots, name)
