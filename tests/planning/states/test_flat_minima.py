@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.planning.states.degenerate import flat_minima
 
 pytestmark = pytest.mark.oracle
 
@@ -103,3 +104,27 @@ def test_forces_of_a_cost_of_ones_own() -> None:
     state = rg.choose_state(legs, rg.Wrench([0, -3], -1.5), rg.ForceCost("mine", weights=a))
     assert state.forces[:, 1] == pytest.approx(best, rel=1e-9)
     assert abs(state.forces[:, 0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_the_face_at_once_is_the_face_that_is_searched(
+    objective: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the constraints in sight are the right ones, loops that search for others end there, too."""
+    rng, answered = np.random.default_rng(11), 0
+    at_once, given = flat_minima.at_once.refined, []
+
+    def kept(*arguments: object) -> object:
+        given.append((at_once(*arguments), arguments))
+        return given[-1][0]
+
+    monkeypatch.setattr(flat_minima.at_once, "refined", kept)
+    for d in (2, 3) * 10:
+        rg.choose_state(*known(rng, d, objective)[:2], objective, reserve=0.0)
+    for answer, arguments in given:
+        if answer is not None:
+            answered += 1
+            searched, is_no_worse, _ = flat_minima.face_newton.refined(*arguments)
+            assert is_no_worse
+            assert abs(answer[0] - searched).max() < 1e-9 * abs(searched).max()
+    assert len(given) // 4 < answered < len(given)

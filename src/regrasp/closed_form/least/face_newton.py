@@ -35,9 +35,9 @@ _STEPS, _ROUNDS = 8, 8
 # Steps that move more than this lead somewhere else; after the last one no digit moves.
 _FAR, _LAST = 1e-2, 1e-10
 # Cones and limits are touched from so far inside that rounding stays within; forces may cost so much more.
-_INSIDE, _DONE = 1 - 2e-12, 1e-10
+INSIDE, _DONE = 1 - 2e-12, 1e-10
 # Equilibrium counts as reached at this residual, relative to the largest force or load.
-_BALANCED = 5e-14
+BALANCED = 5e-14
 # Less than this fraction of the largest force is nothing.
 _NOTHING = 1e-14
 
@@ -223,7 +223,7 @@ def refined(  # type: ignore[no-untyped-def]
     ``negligible`` are none. linear: (n, w). kind: one of the words above.
     """
     n, w = forces.shape
-    mu, bounds = _INSIDE * frictions, _INSIDE / unit * limits
+    mu, bounds = INSIDE * frictions, INSIDE / unit * limits
     for i in range(n):
         if not frictions[i] > negligible:
             mu[i] = 0.0
@@ -258,7 +258,7 @@ def _fits(forces, matrix, load, normals, frictions, limits):  # type: ignore[no-
         for i in range(n):
             for k in range(w):
                 off += matrix[s, w * i + k] * forces[i, k]
-        if not abs(off) <= _BALANCED * largest:
+        if not abs(off) <= BALANCED * largest:
             return False
     sizes = np.zeros((n, 3))
     measure(forces.ravel(), normals, sizes)

@@ -11,11 +11,11 @@ NONE, PEAK, PEAK_NORMAL, MARGIN = range(4)
 """What t is: nothing, the largest force, the largest normal force, the least distance to a cone (s = -1)."""
 
 # Constraints nearer than this fraction of the largest force may be touched; the root of a solver's tolerance.
-_NEAR = 3e-5
+NEAR = 3e-5
 # A force below this fraction of the largest is nothing, or the mark of a flat minimum.
-_TRACE = 1e-4
+TRACE = 1e-4
 # What multipliers and forces may miss their signs by.
-_SIGN, _OVER = 1e-9, 3e-11
+SIGN, OVER = 1e-9, 3e-11
 # Of the largest force: what a finger pushes with that is no longer idle.
 _SMALL = 1e-6
 
@@ -53,13 +53,13 @@ def shared(sizes, frictions, kind):  # type: ignore[no-untyped-def]
 def guess(t, sizes, frictions, limits, kind, touched):  # type: ignore[no-untyped-def]
     """What is touched, by how near it is."""
     for i in range(frictions.size):
-        touched[i, 0] = sizes[i, 2] < _TRACE and kind != MARGIN
+        touched[i, 0] = sizes[i, 2] < TRACE and kind != MARGIN
         if touched[i, 0]:
             continue
-        touched[i, 1] = frictions[i] > 0 and abs(beyond(t, sizes[i], frictions[i], kind)) < _NEAR
-        touched[i, 2] = abs(sizes[i, 2] - limits[i]) < _NEAR
-        touched[i, 3] = (kind == PEAK and t - sizes[i, 2] < _NEAR) or (
-            kind == PEAK_NORMAL and t - sizes[i, 0] < _NEAR
+        touched[i, 1] = frictions[i] > 0 and abs(beyond(t, sizes[i], frictions[i], kind)) < NEAR
+        touched[i, 2] = abs(sizes[i, 2] - limits[i]) < NEAR
+        touched[i, 3] = (kind == PEAK and t - sizes[i, 2] < NEAR) or (
+            kind == PEAK_NORMAL and t - sizes[i, 0] < NEAR
         )
 
 
@@ -83,7 +83,7 @@ def corrected(x, z, touched, sizes, matrix, normals, frictions, limits, squares,
     """Whether equations had to be dropped or added."""
     n, w = normals.shape
     r = matrix.shape[0]
-    largest = _SIGN * max(1.0, np.abs(z).max())
+    largest = SIGN * max(1.0, np.abs(z).max())
     t = x[-1]
     row, worst, at, what = r, -largest, -1, 0
     changed = False
@@ -120,7 +120,7 @@ def corrected(x, z, touched, sizes, matrix, normals, frictions, limits, squares,
             ]
         )
         for part in range(1, 4):
-            if not touched[i, part] and over[part] > _OVER:
+            if not touched[i, part] and over[part] > OVER:
                 touched[i, part] = True
                 changed = True
     if not changed and at >= 0:
