@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from regrasp.closed_form.least.face_newton import BALANCED, INSIDE
 from regrasp.closed_form.least.faces import MARGIN, NEAR, NONE, OVER, PEAK, SIGN, TRACE
+from regrasp.closed_form.least.in_plane import least_in_plane
 
 _Array = NDArray[np.float64]
 # As in ``face_newton``: the e of forces, that of multipliers, and what steps may move.
@@ -42,6 +43,14 @@ def refined(
     mu = np.where(frictions > negligible, INSIDE * frictions, 0.0)
     cost = max(abs(squares).max(), abs(linear).max())
     a, c = (squares / cost, linear / cost) if 0 < cost < np.inf else (squares, linear)
+    if x.shape[1] == 2 and kind != PEAK and (a.min() > 0 or not a.any()):
+        plain = least_in_plane(
+            x.tolist(), matrix.tolist(), (load / unit).tolist(), normals.tolist(), mu.tolist(),
+            bounds.tolist(), a.tolist(), c.tolist(), kind,
+        )  # fmt: skip
+        if plain is not None:
+            best = unit * np.array(plain)
+            return best, _fits(best, matrix, load, normals, frictions, limits)
     busy = (x * x).sum(axis=1) >= TRACE * TRACE
     every = bool(busy.all())
     columns = busy.repeat(x.shape[1])
