@@ -302,6 +302,7 @@ def rows() -> dict[str, Row]:
                 "shape": "value",
                 "fingers": "count",
                 "from_corners": "not negative",
+                "load_offset": "not negative",
                 "min_distance": "positive",
                 "disturbance": "value",
                 "arcs": "table",
@@ -550,17 +551,44 @@ def rows() -> dict[str, Row]:
     return {**result, **file_rows(), **picture_rows()}
 
 
+MOVING = """
+friction = 0.5
+[load]
+force = [0.0, -3.0]
+[outline]
+vertices = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+[start]
+positions = [[-1, 0], [1, 0.1], [0, 1]]
+[goal]
+positions = [[-1, 0.2], [1, 0.1], [0, 1]]
+[task]
+kind = "regrasp"
+candidates = 8
+orientations = 1
+[motions]
+tip_radius = 0.05
+clearance = 0.02
+"""
+
+
 def file_rows() -> dict[str, Row]:
     import regrasp.files as files
     from regrasp.files.scenarios.templates import template
 
     scenario = files.parse_scenario(template("removal"))
+    moving = files.parse_scenario(MOVING)
     return {
         "read_scenario": Row(files.read_scenario, {}, {"path": "path"}),
         "parse_scenario": Row(
             files.parse_scenario, {"text": template("removal")}, {"text": "text", "file": "path"}
         ),
         "plan_scenario": Row(files.plan_scenario, {"scenario": scenario}),
+        "plan_scenario_motions": Row(files.plan_scenario_motions, {"scenario": moving}),
+        "write_motions": Row(
+            files.write_motions,
+            {"motions": files.plan_scenario_motions(moving), "path": os.devnull},
+            {"motions": "value"},
+        ),
         "read_cut": Row(files.read_cut, {}, {"path": "path"}),
         "write_cut": Row(
             files.write_cut, {"cut": VALUES["RegraspCut"](), "path": os.devnull}, {"cut": "value"}

@@ -181,7 +181,7 @@ class Blank:
 def test_progress_is_shown_on_a_terminal(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("regrasp.plots.pages.overview.figures", lambda transition: {"overview": Blank()})
+    monkeypatch.setattr("regrasp.plots.pages.overview.figures", lambda plan, **_: {"overview": Blank()})
     monkeypatch.setenv("FORCE_COLOR", "1")  # makes rich take any stream for a terminal
     monkeypatch.setenv("TERM", "xterm")
     status, out, err = regrasp(capsys, "plan", EXAMPLES / "paper.toml", "-o", tmp_path)
@@ -199,7 +199,7 @@ def test_failing_figure_leaves_nothing(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("regrasp.plots.pages.overview.figures", lambda transition: {"overview": Blank(error)})
+    monkeypatch.setattr("regrasp.plots.pages.overview.figures", lambda plan, **_: {"overview": Blank(error)})
     if there:
         (tmp_path / "out").mkdir()
         (tmp_path / "out" / "plan.json").write_text("older")
@@ -322,6 +322,7 @@ def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
         {"load", "contacts", "task"},
         {"friction", "load", "outline", "start", "goal", "task"},
         {"friction", "load", "object", "start", "goal", "task"},
+        {"friction", "load", "outline", "task"},
     ]
 
 

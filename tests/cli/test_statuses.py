@@ -87,7 +87,7 @@ def test_infeasible_in_json(here: Path, capsys: pytest.CaptureFixture[str]) -> N
         ("verify",),
         ("replan",),
         ("new", "removal", "paper.toml"),
-        ("new", "grasp"),
+        ("new", "kind"),
         ("bench",),
         ("bench", "report", "missing"),
         ("bench", "--solver", "x", "report", "missing"),

@@ -110,14 +110,18 @@ def test_a_key_that_comes_twice(key, tmp_path: Path) -> None:
         read_plan(file)
 
 
-def test_durations_that_no_force_can_follow_do_not_verify(tmp_path: Path) -> None:
+def test_durations_that_no_force_can_follow_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "plan.json"
     write_plan(STRAIGHT, file)
     data = json.loads(file.read_text(encoding="utf-8"))
     for duration, good in (5e-324, False), (1e-308, False), (1e-300, True), (1e300, True):
         data["scaling"]["duration"] = duration
         file.write_text(json.dumps(data), encoding="utf-8")
-        assert rg.verify(read_plan(file)).ok == good
+        if good:
+            assert rg.verify(read_plan(file)).ok
+        else:
+            with pytest.raises(rg.InvalidInput, match="falls faster than any number"):
+                read_plan(file)
 
 
 # -- set-points -----------------------------------------------------------------------------------------

@@ -271,7 +271,7 @@ def test_a_step_with_more_contacts_than_fingers(tmp_path: Path) -> None:
 def test_what_is_no_plan_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(rg.InvalidInput) as raised:
         write_plan("plan", tmp_path / "plan.json")  # type: ignore[arg-type]
-    assert str(raised.value) == "write_plan writes a Transition or a RegraspPlan, got 'plan'"
+    assert str(raised.value) == "write_plan writes a Transition, a RegraspPlan or a ChosenGrasp, got 'plan'"
     with pytest.raises(rg.InvalidInput) as raised:
         write_plan(replace(REGRASP, margin=nan), tmp_path / "plan.json")
     assert str(raised.value) == f"{tmp_path / 'plan.json'}: margin: expected a finite number, got nan"
