@@ -35,6 +35,9 @@ start, goal = (
     for shares in ((0.05, 0.4, 0.75), (0.1, 0.45, 0.8))
 )
 rg.plan_regrasp(outline, start, goal, rg.Wrench([0, -2.0]), friction=0.7, candidates=15, max_force=30)
+square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+rg.choose_grasp(square, 3, rg.LoadSet.turned(rg.Wrench([0, -1.0])), friction=1, objective="effort")
+rg.choose_grasp(square, 4, rg.Wrench([0, -1.0]), friction=0.5, objective="angle", max_force=5, tolerance=0.1)
 print(Compiled.names)
 """
 
@@ -61,6 +64,12 @@ def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(
     assert compilation.kept("what is twice as much")(doubled)(4) == 8
     said = [record.getMessage() for record in caplog.records]
     assert any(text.startswith("compiled what is twice as much in ") for text in said)
+
+
+def test_the_search_for_places_says_what_it_is() -> None:
+    from regrasp.closed_form.compiled.placement_search import search
+
+    assert compilation._words[search.py_func] == "the search for places"
 
 
 def test_a_single_grasp_and_a_planar_regrasp_need_no_numba() -> None:

@@ -11,7 +11,7 @@ from regrasp.cli.speech import json_option, say
 @click.command("warm-up")
 @json_option
 def warm_up() -> dict[str, Any]:
-    """Compile all that is compiled when first used: batches, regrasps, wrench balls.
+    """Compile all that is compiled when first used: batches, regrasps, places, wrench balls.
 
     A minute, once after an installation. What is compiled is kept for later runs.
     """
@@ -81,6 +81,13 @@ def _regrasps_in_space() -> None:
     rg.plan_regrasp(box, start, goal, load, friction=0.6, candidates=12)
 
 
+def _places() -> None:
+    import regrasp as rg
+
+    square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    rg.choose_grasp(square, 2, rg.Wrench([0.1, -1.0]), friction=0.6)
+
+
 def _wrench_balls() -> None:
     import regrasp as rg
 
@@ -98,5 +105,6 @@ _WORKS = {
     "batches of pairs": _batches,
     "regrasps in the plane": _planar_regrasps,
     "regrasps in space": _regrasps_in_space,
+    "places of fingers": _places,
     "wrench balls": _wrench_balls,
 }

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled import wrench_gauge
-from regrasp.closed_form.compiled.compiling import INNER, digest
+from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.wrench_gauge import bound_by, gauge, workspace
 from regrasp.compilation import kept
 
@@ -23,20 +23,20 @@ CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 """Why a search returns: no box is left; a placement within a fixed level; after so many boxes; no memory."""
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _point(sides, j, u):  # type: ignore[no-untyped-def]
     along = u - sides[j, 8]
     return sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _apart(sides, j, u, k, v):  # type: ignore[no-untyped-def]
     px, py = _point(sides, j, u)
     qx, qy = _point(sides, k, v)
     return sqrt((px - qx) ** 2 + (py - qy) ** 2)
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
     at = count
     while at > 0 and bounds[heap[(at - 1) // 2]] > bounds[node]:
@@ -45,7 +45,7 @@ def _push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
     heap[at] = node
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
     """The node of the least bound of ``count``; the heap is one shorter."""
     top, node, at = heap[0], heap[count - 1], 0
@@ -61,7 +61,7 @@ def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
     return top
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _too_near(sides, arcs, ends, least):  # type: ignore[no-untyped-def]
     """Two fingers on one side each that are nearer than ``least`` wherever they are; else -1."""
     for i in range(len(arcs)):
@@ -76,7 +76,7 @@ def _too_near(sides, arcs, ends, least):  # type: ignore[no-untyped-def]
     return False
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, twist, work, seen):  # type: ignore[no-untyped-def]
     """The bound of a box and the load behind it, from load ``first`` on; until one reaches ``level``.
 
@@ -85,8 +85,7 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
     """
     k = len(arcs)
     worst, critical = -1.0, first
-    best = np.zeros(3)
-    _, x, forces, _, _, _, _, _ = work
+    _, x, forces, _, _, _, _, _, best = work
     for i in range(k):
         seen[i, 0], seen[i, 1] = np.inf, -np.inf
         seen[i, 2], seen[i, 4] = np.inf, -np.inf
@@ -124,7 +123,7 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
     return worst, critical
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
     """A side and u for each finger: the middle of its centres of pressure."""
     for i in range(len(arcs)):
@@ -141,7 +140,19 @@ def _to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
             places[i, 0], places[i, 1] = seen[i, 6], seen[i, 7]
 
 
-@njit(**INNER)
+@njit(**VIEWS)
+def _put(sides, places, least, arcs, ends):  # type: ignore[no-untyped-def]
+    """Writes places as a box of no width; whether two of them are nearer than ``least``."""
+    nearest = np.inf
+    for i in range(len(arcs)):
+        for c in range(2):
+            arcs[i, c], ends[i, c] = int(places[i, 0]), places[i, 1]
+        for j in range(i):
+            nearest = min(nearest, _apart(sides, arcs[i, 0], places[i, 1], arcs[j, 0], places[j, 1]))
+    return nearest < least
+
+
+@njit(**VIEWS)
 def _to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
     """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
     chosen, most = -1, -1.0
@@ -168,7 +179,7 @@ def _to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped
     return chosen
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _cut(sides, arcs, ends, seen, i):  # type: ignore[no-untyped-def]
     """The last side of the left part, and u where finger i is split."""
     first, last = arcs[i]
@@ -186,13 +197,13 @@ def _cut(sides, arcs, ends, seen, i):  # type: ignore[no-untyped-def]
     return first, min(max(middle, lo + 0.1 * (hi - lo)), hi - 0.1 * (hi - lo))
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _alike(arcs, ends, i, j):  # type: ignore[no-untyped-def]
     same = arcs[i, 0] == arcs[j, 0] and arcs[i, 1] == arcs[j, 1]
     return same and ends[i, 0] == ends[j, 0] and ends[i, 1] == ends[j, 1]
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _write_child(sides, arcs, ends, i, same, left, at, u, new_arcs, new_ends):  # type: ignore[no-untyped-def]
     """Of ``same`` fingers alike from i on, ``left`` on the left part of their arc, the others right."""
     for f in range(len(arcs)):
@@ -205,36 +216,30 @@ def _write_child(sides, arcs, ends, i, same, left, at, u, new_arcs, new_ends):  
             new_arcs[f, 0], new_ends[f, 0] = (at + 1, sides[at + 1, 6]) if whole else (at, u)
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-untyped-def]
     """Raises the bound of a box to what its loads prove, and notes where its forces press."""
     arcs, ends, bounds, twists, critical, _, _, seen, twist = boxes
     mu, _, size, norm, precision = law
     found, load = _judge(
-        sides,
-        arcs[node],
-        ends[node],
-        loads,
-        mu,
-        size,
-        norm,
-        precision,
-        level,
-        critical[node],
-        twist[0],
-        work,
-        seen[node],
-    )
+        sides, arcs[node], ends[node], loads, mu, size, norm, precision, level, critical[node], twist[0],
+        work, seen[node],
+    )  # fmt: skip
     if found >= bounds[node]:
         bounds[node], critical[node] = found, load
         for c in range(3):
             twists[node, c] = twist[0, c]
 
 
+def spare(k: int) -> tuple[Any, ...]:
+    """Memory that a search of k fingers works in."""
+    return workspace(k), np.zeros((k, 2)), np.zeros((k, 8)), np.zeros((k, 2), np.int64), np.zeros((k, 2))
+
+
 def _loop(digest: str) -> Any:
-    @kept(error_model="numpy")
+    @kept("the search for places", error_model="numpy", _nrt=False)
     def search(  # type: ignore[no-untyped-def]
-        sides, loads, law, fixed, tolerance, least, narrow, boxes, heap, state, found, tried, budget
+        sides, loads, law, fixed, tolerance, least, narrow, boxes, heap, state, found, tried, budget, spare
     ):
         """Goes on with a search; see the module. Returns why it ends.
 
@@ -250,12 +255,11 @@ def _loop(digest: str) -> Any:
         _ = digest
         arcs, ends, bounds, twists, critical, kinds, children, seen, twist = boxes
         k = arcs.shape[1]
-        work, places, nowhere = workspace(k), np.zeros((k, 2)), np.zeros((k, 8))
-        at_arcs, at_ends = np.zeros((k, 2), np.int64), np.zeros((k, 2))
+        work, places, nowhere, at_arcs, at_ends = spare
         mu, usable, size, norm, precision = law
         looked = 0
         if state[0] == 1 and kinds[0] == OPEN:
-            _assess(sides, loads, law, np.inf, boxes, 0, work)
+            _assess(sides, loads, law, np.inf, boxes, heap[0], work)
         while state[1] > 0:
             level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
             if bounds[heap[0]] >= level:
@@ -269,13 +273,7 @@ def _loop(digest: str) -> Any:
             state[1] -= 1
             # a placement from where its forces press
             _to_try(arcs[node], ends[node], seen[node], places)
-            near = False
-            for i in range(k):
-                for c in range(2):
-                    at_arcs[i, c], at_ends[i, c] = int(places[i, 0]), places[i, 1]
-                for j in range(i):
-                    apart = _apart(sides, at_arcs[i, 0], places[i, 1], at_arcs[j, 0], places[j, 1])
-                    near = near or apart < least
+            near = _put(sides, places, least, at_arcs, at_ends)
             if not near:
                 value, _ = _judge(
                     sides,

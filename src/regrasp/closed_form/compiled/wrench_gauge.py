@@ -17,11 +17,12 @@ of W that is farthest along y takes the place of one of them, until none is beyo
 """
 
 from math import sqrt
+from typing import Any
 
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled.compiling import INNER
+from regrasp.closed_form.compiled.compiling import VIEWS
 
 NORMAL, DISC = 0, 1
 """size(f): n . f, or |f|."""
@@ -36,7 +37,7 @@ _ROUNDING = 1e-13  # of the terms of a sum
 _PIVOT = 1e-13
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _support_of_arc(sides, first, last, lo, hi, mu, size, y, out):  # type: ignore[no-untyped-def]
     """Writes sigma, the side, u, f_x, f_y, the torque and n . f of the best force on an arc; 0 for none."""
     for c in range(7):
@@ -70,7 +71,7 @@ def _support_of_arc(sides, first, last, lo, hi, mu, size, y, out):  # type: igno
                 out[3], out[4], out[5], out[6] = fx, fy, px * fy - py * fx, normal
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _support_of_box(sides, arcs, ends, mu, size, norm, y, g, force, out):  # type: ignore[no-untyped-def]
     """H(y), and in ``g`` the point of W that reaches it; ``force`` (k, 3): normal force, side and u."""
     total = 0.0
@@ -101,7 +102,7 @@ def _support_of_box(sides, arcs, ends, mu, size, norm, y, g, force, out):  # typ
     return total
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _solve(g, b, y, x):  # type: ignore[no-untyped-def]
     """The y with g_j . y = 1 and x with sum x_j g_j = b; False for rows on a plane through the origin."""
     p0, p1, p2 = (
@@ -130,16 +131,15 @@ def _solve(g, b, y, x):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(**INNER)
-def workspace(k):  # type: ignore[no-untyped-def]
-    """Memory for boxes of k fingers: rows g, their weights x, their forces, and scratch."""
+def workspace(k: int) -> tuple[Any, ...]:
+    """Memory for boxes of k fingers: rows g, their weights x, their forces, scratch, and a twist."""
     return (
         np.zeros((3, 3)), np.zeros(3), np.zeros((4, k, 3)),
-        np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(7),
+        np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(7), np.zeros(3),
     )  # fmt: skip
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def _proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
     """The bound b . y / H(y), less what rounding of both may have added; infinite beyond ``most``."""
     h += _ROUNDING * k * (1.0 + mu) * (abs(y[0]) + abs(y[1]) + abs(y[2]))
@@ -149,10 +149,10 @@ def _proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
     return done / h if h * most > done else np.inf
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def bound_by(sides, arcs, ends, mu, size, norm, b, y, work):  # type: ignore[no-untyped-def]
     """What the twist y proves: b . y / H(y), infinite beyond ``FAR`` |b|_1."""
-    _, _, forces, _, _, new, _, out = work
+    _, _, forces, _, _, new, _, out, _ = work
     most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
     done = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
     if not done > 0.0:
@@ -161,7 +161,7 @@ def bound_by(sides, arcs, ends, mu, size, norm, b, y, work):  # type: ignore[no-
     return _proven(b, y, done, h, mu, len(arcs), most)
 
 
-@njit(**INNER)
+@njit(**VIEWS)
 def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work):  # type: ignore[no-untyped-def]
     """A lower bound of the gauge of b on a box, and in ``best`` its twist; ends early at ``enough``.
 
@@ -170,7 +170,7 @@ def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work): 
     What ``work`` holds at the end are forces that reach the bound, but for ``precision``: finger i has
     x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2.
     """
-    g, x, forces, y, d, new, spare, out = work
+    g, x, forces, y, d, new, spare, out, _ = work
     best[0] = best[1] = best[2] = 0.0
     most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
     for c in range(3):

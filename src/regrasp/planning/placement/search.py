@@ -73,12 +73,13 @@ class Search:
         fixed: a level of the norm [N], at which the search is interrupted when a placement reaches it; or
         infinite, to follow the least value times 1 - tolerance.
         """
-        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search
+        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search, spare
 
         law = (self.friction, kept_friction(self.friction, 2 * RESERVE), *self.law.codes(), _PRECISE)
         ended = search(
             self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
             self.narrow, self._boxes, self._heap, self._state, self._found, self._tried, _AT_A_TIME,
+            spare(self.fingers),
         )  # fmt: skip
         self.closed = ended == CLOSED
         return not self.closed and (ended != FULL or self._grow(most))
@@ -94,7 +95,7 @@ class Search:
 
     def excludes(self, boxes: np.ndarray, fixed: float) -> bool:
         """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
-        from regrasp.closed_form.compiled.placement_search import search
+        from regrasp.closed_form.compiled.placement_search import search, spare
 
         friction = self.friction
         law = (friction, friction, *self.law.codes(), _PRECISE)
@@ -104,6 +105,7 @@ class Search:
             search(
                 self._table, self._wanted, law, fixed / self.unit, 0.0, 0.0, 0.0, one, np.zeros(1, np.int64),
                 np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf), self._tried[:1], 0,
+                spare(self.fingers),
             )  # fmt: skip
             if one[5][0] == 0:
                 return False
@@ -124,7 +126,7 @@ class Search:
 
     def norm_at(self, places: np.ndarray, u: Array) -> float:
         """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
-        from regrasp.closed_form.compiled.placement_search import search
+        from regrasp.closed_form.compiled.placement_search import search, spare
 
         friction = kept_friction(self.friction, 2 * RESERVE)
         boxes = _memory(1 + self.fingers + 1, self.fingers)
@@ -133,7 +135,7 @@ class Search:
         search(
             self._table, self._wanted, (friction, friction, *self.law.codes(), _PRECISE), inf, 0.0, 0.0, 0.0,
             boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf),
-            np.zeros((1, 1 + 2 * self.fingers)), 0,
+            np.zeros((1, 1 + 2 * self.fingers)), 0, spare(self.fingers),
         )  # fmt: skip
         return float(boxes[2][0]) * self.unit
 
