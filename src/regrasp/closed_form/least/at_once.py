@@ -193,7 +193,10 @@ class _Face:
                 if step == 0 and not self.is_flat:  # those multipliers that leave least of the gradient
                     G = R @ R.T
                     G.flat[:: rows + 1] += _OF_MULTIPLIERS
-                    self.z = np.linalg.solve(G, -R @ (slope * X + self.g))
+                    try:
+                        self.z = np.linalg.solve(G, -R @ (slope * X + self.g))
+                    except np.linalg.LinAlgError:
+                        return False
                 K[:] = 0.0
                 K[N:, :N] = R
                 K[:N, N:] = R.T

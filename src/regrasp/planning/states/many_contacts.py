@@ -233,19 +233,17 @@ def _solved(
         limits = [min(limit, criteria.peak_ratio * peak) for limit in limits]
     objective = criteria.objective
     found = least  # from which a search for levels goes on
-    if least is None or isinstance(objective, ConvexObjective):
-        found = chooser.best(
-            objective if isinstance(objective, ConvexObjective) else FORCE, frictions, limits
-        )
+    if isinstance(objective, ConvexObjective):
+        from regrasp.planning.states.degenerate.flat_minima import POLISH
+
+        found = chooser.best(objective, frictions, limits, POLISH if facets is None else None)
+    elif least is None:
+        found = chooser.best(FORCE, frictions, limits)
     if found is None:
         raise infeasible(grasp, load, criteria)
     forces, gap = found
     if isinstance(objective, LevelObjective):
         forces, gap = highest(chooser, Narrowing(grasp, objective, frictions), forces, limits)
-    elif isinstance(objective, ConvexObjective) and facets is None:
-        from regrasp.planning.states.degenerate.flat_minima import polished
-
-        forces = polished(chooser, objective, forces, frictions, limits)
     return ChosenForces(grasp.cones.forces(forces), tuple(limits), backend, gap)
 
 

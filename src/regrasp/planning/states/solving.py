@@ -1,6 +1,6 @@
 """Forces by a back end: every answer is moved into exact equilibrium inside the cones, or refused."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import cos, inf, pi
 from typing import NamedTuple
 
@@ -46,6 +46,16 @@ class Found(NamedTuple):
 
     forces: Array
     gap: float
+
+
+class Polish(NamedTuple):
+    """The best forces (n, w) from forces nearly the best, of an objective under frictions and limits.
+
+    at_once: from an answer as it is; None where that is not sure. searched: from forces in equilibrium.
+    """
+
+    at_once: Callable[["Chooser", ConvexObjective, Array, list[float], list[float]], Array | None]
+    searched: Callable[["Chooser", ConvexObjective, Array, list[float], list[float]], Array]
 
 
 class Depth(NamedTuple):
@@ -172,8 +182,17 @@ class Chooser:
         ends = (limit for limit in limits if limit < inf) if self.loose == inf else ()
         return pressing(program, self.grasp, self.least, self.unit, max(ends, default=self.unit))
 
-    def best(self, objective: ConvexObjective, frictions: list[float], limits: list[float]) -> Found | None:
-        """The best forces for a convex objective; None where the back end says there are none."""
+    def best(
+        self,
+        objective: ConvexObjective,
+        frictions: list[float],
+        limits: list[float],
+        polish: "Polish | None" = None,
+    ) -> Found | None:
+        """The best forces for a convex objective; None where the back end says there are none.
+
+        polish: takes the answer's forces to the last digits, before they are moved into equilibrium or after.
+        """
         answer = self.solved(objective, frictions, limits)
         if answer.status is Status.INFEASIBLE:  # at the limit of what can be held the slack may be missed
             answer = self.solved(objective, frictions, limits, slack=0.0)
@@ -190,6 +209,10 @@ class Chooser:
         if objective.bound is Bound.MARGIN and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
         wanted = self.wanted(answer)
+        if polish is not None:
+            exact = polish.at_once(self, objective, wanted, frictions, limits)
+            if exact is not None:
+                return Found(exact, answer.absolute_gap * objective.scale(self.unit))
         forces = self.settled(wanted, frictions, limits)
         if forces is None:
             return None
@@ -200,6 +223,8 @@ class Chooser:
                 answer.program,
                 answer,
             )
+        if polish is not None:
+            forces = polish.searched(self, objective, forces, frictions, limits)
         return Found(forces, answer.absolute_gap * objective.scale(self.unit))
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:

@@ -14,7 +14,7 @@ from regrasp.closed_form.least import at_once, face_newton
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.planning.states.objectives import Bound, ConvexObjective
-from regrasp.planning.states.solving import Chooser
+from regrasp.planning.states.solving import Chooser, Polish
 
 _KINDS = {Bound.NONE: 0, Bound.FORCE: 1, Bound.NORMAL: 2, Bound.MARGIN: 3}
 """The words of ``faces``."""
@@ -24,37 +24,59 @@ _calls = count()
 
 
 def _refined() -> Any:
-    if next(_calls) < PATIENCE:
-        return face_newton.refined
     from regrasp.closed_form.compiled.least_forces import refined
 
     return refined
+
+
+def at_first_sight(
+    chooser: Chooser, objective: ConvexObjective, forces: Array, frictions: list[float], limits: list[float]
+) -> Array | None:
+    """The forces (n, w) at the minimum, in equilibrium inside cones and limits, of the face in sight.
+
+    None where that is not the right one, and where compiled loops are faster.
+    """
+    if next(_calls) >= PATIENCE:
+        return None
+    given = _given(chooser, objective, forces, frictions, limits)
+    if given is None:
+        return None
+    with np.errstate(all="ignore"):  # guesses that lead nowhere end in numbers that are none
+        found = at_once.refined(*given)
+    return found[0] if found is not None and found[1] else None
 
 
 def polished(
     chooser: Chooser, objective: ConvexObjective, forces: Array, frictions: list[float], limits: list[float]
 ) -> Array:
     """The forces (n, w) at the minimum, or as they are where it is not found."""
-    unit = float(abs(forces).max())
-    if not 0 < unit < np.inf:
+    given = _given(chooser, objective, forces, frictions, limits)
+    if given is None:
         return forces
-    grasp = chooser.grasp
-    squares, linear = objective.squares(grasp), objective.linear(grasp, unit)
-    if squares is None:
-        squares = np.zeros(len(grasp))
-    if linear is None:
-        linear = np.zeros(forces.shape)
-    with np.errstate(all="ignore"):  # guesses that lead nowhere end in numbers that are none
-        cones, mu, most = grasp.cones.normals, np.array(frictions), np.array(limits)
-        given = (
-            forces, unit, chooser.matrix, chooser.vector, cones, mu, NEGLIGIBLE, most, squares, linear,
-            _KINDS[objective.bound],
-        )  # fmt: skip
-        refined = _refined()
-        at_first = at_once.refined(*given) if refined is face_newton.refined else None
-        best, is_no_worse, fits = refined(*given) if at_first is None else (at_first[0], True, at_first[1])
+    refined = face_newton.refined if next(_calls) < PATIENCE else _refined()
+    with np.errstate(all="ignore"):
+        best, is_no_worse, fits = refined(*given)
     if is_no_worse and fits:
         found: Array = best
         return found
     settled = chooser.settled(best, frictions, limits) if is_no_worse else None
     return forces if settled is None else settled
+
+
+POLISH = Polish(at_first_sight, polished)
+"""For ``Chooser.best``."""
+
+
+def _given(
+    chooser: Chooser, objective: ConvexObjective, forces: Array, frictions: list[float], limits: list[float]
+) -> tuple[Any, ...] | None:
+    """The arguments of ``face_newton.refined``; None where forces have no size."""
+    unit, grasp = float(abs(forces).max()), chooser.grasp
+    if not 0 < unit < np.inf:
+        return None
+    squares, linear = objective.squares(grasp), objective.linear(grasp, unit)
+    return (
+        forces, unit, chooser.matrix, chooser.vector, grasp.cones.normals, np.array(frictions), NEGLIGIBLE,
+        np.array(limits), np.zeros(len(grasp)) if squares is None else squares,
+        np.zeros(forces.shape) if linear is None else linear, _KINDS[objective.bound],
+    )  # fmt: skip
