@@ -102,6 +102,20 @@ def test_the_margin_is_judged_on_both_sides_of_its_limit():
     assert not rg.verify(replace(proof, least_margin=limit * (1 - 1e-12))).ok
 
 
+def test_a_finger_that_holds_alone_needs_no_cone_beside_it():
+    """With ``one_finger`` an idle one may have no cone left: such holds cross, and the planner finds them."""
+    low = ELLIPSE.contact_at(0.75 * ELLIPSE.length, friction=0.5)
+    contacts = [low, *grasp(0.95, 0.45, 0.05, 0.55, friction=0.1)]
+    start, goal = rg.Grasp(contacts[:3]), rg.Grasp([contacts[0], *contacts[3:]])
+    options = {"friction": 0.1, "candidates": 10, "least_margin": 0.3}
+    plan = rg.plan_regrasp(ELLIPSE, start, goal, WEIGHT, one_finger=True, **options)
+    assert rg.verify(plan).ok
+    assert plan.margin >= 0.3
+    cut = rg.RegraspCut(tuple(contacts), (0, 1, 2), (0, 3, 4), (0, 1, 2), 0.3)
+    assert any("may hold" in v for v in rg.verify(cut).violations)
+    assert rg.verify(replace(cut, least_margin=0.47)).ok  # beyond the cone of the one that holds
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_free_turning_is_possible_or_a_cut_proves_that_it_is_not(seed):
     """Without limits two fingers of any grasp that holds can hold at some orientation (docs/facts.md, 7)."""

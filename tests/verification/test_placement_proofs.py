@@ -156,6 +156,49 @@ def test_claims_that_the_proof_does_not_cover_are_seen() -> None:
         assert any(words in v for v in rg.verify(wrong).violations), words
 
 
+def test_the_value_is_that_of_the_loads_of_the_proof() -> None:
+    """An easier load, or one vertex of a hull alone, shows no value of them all."""
+    one = rg.choose_grasp(BRACKET, 2, rg.Wrench([0, -1.0]), friction=0.5, from_corners=0.05)
+    (state,) = one.states
+    easy = rg.GraspState(state.grasp, rg.Wrench([0, -0.1]), state.forces / 10)
+    tenth = replace(one, states=(easy,), value=one.value / 10, bound=one.value / 10)
+    assert any("has no state" in v for v in rg.verify(tenth).violations)
+    assert any("below what the proof says" in v for v in rg.verify(tenth).violations)
+    for state in chosen().states:
+        value = float((state.forces * state.grasp.normals).sum())
+        alone = replace(chosen(), states=(state,), value=value, bound=min(value, chosen().bound))
+        assert not rg.verify(alone).ok
+
+
+def test_limits_and_distances_that_are_no_numbers_prove_nothing() -> None:
+    level = rg.choose_grasp(
+        BRACKET, 3, rg.Wrench([0, -1.0]), friction=0.5, objective="angle", max_force=2.0, tolerance=0.05
+    )
+    assert rg.verify(level).ok
+    for limit in (None, np.nan, np.inf, 0.0):
+        assert not rg.verify(replace(level, max_force=limit)).ok
+    for distance in (-100.0, np.nan, np.inf):
+        assert not rg.verify(replace(level.certificate, min_distance=distance)).ok
+
+
+@pytest.mark.parametrize("scale", [1e-310, 1e-250, 1e-150, 1e-60, 1e60])
+def test_twists_of_every_size_are_judged_alike(scale: float) -> None:
+    """Doubles of 1e-310 have lost their digits: these boxes are judged in rationals."""
+    proof = chosen().certificate
+    scaled = np.array(proof.twists) * scale
+    assert not rg.verify(replace(proof, twists=scaled, bound=proof.bound * 1.01)).ok
+    if scale > 1e-300:
+        assert rg.verify(replace(proof, twists=scaled)).ok
+
+
+def test_short_sides_far_from_the_origin_are_judged_alike() -> None:
+    """The filter in doubles takes the directions of sides from the vertices as they are given."""
+    vertices = np.array([[1e6, 1e6], [1e6 + 1e-3, 1e6], [1e6 + 1e-3, 1e6 + 2e-3], [1e6, 1e6 + 1e-3]])
+    shape = rg.Outline(vertices)
+    found = rg.choose_grasp(shape, 2, rg.Wrench([0, -1.0]), friction=0.5)
+    assert rg.verify(found.certificate).ok
+
+
 def test_a_proof_at_its_limit() -> None:
     """The bound of a proof may rise to what its weakest box proves and no further."""
     proof = chosen().certificate

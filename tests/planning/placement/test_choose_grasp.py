@@ -1,5 +1,6 @@
 """Chosen grasps against all pairs and triples of sampled points, and against other coordinates."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -144,7 +145,9 @@ def test_every_orientation_is_held_by_what_is_chosen() -> None:
     worst = value_of(chosen.grasp, loads, "sum_normal")
     assert chosen.value * (1 - 2e-3) <= worst <= chosen.value
     assert chosen.bound <= worst * 1.001  # the worst orientation is between two of these
-    assert len(chosen.states) == 1
+    assert len(chosen.states) >= 8
+    assert rg.verify(chosen).ok
+    assert any("has no state" in v for v in rg.verify(replace(chosen, states=chosen.states[1:])).violations)
 
 
 def test_the_states_hold_the_loads_of_a_hull_and_no_force_holds_no_load() -> None:

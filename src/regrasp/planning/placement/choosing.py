@@ -96,8 +96,7 @@ def choose_grasp(
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
     distance = DISTINCT * sides.size if apart is None else apart
     search = Search(sides, fingers, mu, inner, law, distance, _NARROW * tolerance)
-    each = goal == "answered" or isinstance(load, Wrench) or load.vertices is not None
-    asked = Asked(shape, goal, law, mu, outer, each)
+    asked = Asked(shape, goal, law, mu, outer)
     if level is not None:
         return chosen_at_level(
             search, asked, level, *run_level(search, level, tolerance, most_boxes, progress)

@@ -41,7 +41,7 @@ class ChosenGrasp(ArrayValue):
         shape: the outline.
         objective: its word.
         grasp: the contacts, F1, F2, ... along the boundary, relative to the centre of mass.
-        states: the best forces for every load asked: each vertex of a hull, of a round set the worst found.
+        states: the best forces for every load asked: of a round set for a polygon around it.
         value: of the worst load, in the unit of the objective.
         bound: no placement reaches less; of a margin or a factor, which are largest at best, more.
         places: (k,) arc lengths of the fingers [m].

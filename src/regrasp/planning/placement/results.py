@@ -35,7 +35,7 @@ _BACK = (1e-8, 1e-6, 1e-4)  # of a factor answered, so that forces exist for sol
 class Asked:
     """What a grasp was asked for.
 
-    loads: (L, 3) that it must hold. each: whether the state of every one of them is wanted, or of the worst.
+    loads: (L, 3) that it must hold.
     """
 
     shape: Outline
@@ -43,7 +43,6 @@ class Asked:
     law: Law
     friction: float
     loads: Array
-    each: bool
 
 
 def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
@@ -60,7 +59,7 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
         raise _none_holds(search, asked)
     grasp, places, u, (states, worst) = found
     bound = min(search.bound, worst.value ** (1 / power))
-    shown = tuple(map(_plain, states if asked.each else [worst]))
+    shown = tuple(map(_plain, states))
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, shown, worst.value, min(bound**power, worst.value),
         _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda norm: norm**power),
@@ -114,9 +113,8 @@ def chosen_at_level(
         bound = beyond
     bound = max(bound, value) if asked.objective != "friction_use" else min(bound, value)
     trivial = not search.closed or bound == 0.0
-    shown = states if asked.each else [_worst(states, asked.objective)]
     return ChosenGrasp(
-        asked.shape, asked.objective, grasp, tuple(map(_plain, shown)), value, bound,
+        asked.shape, asked.objective, grasp, tuple(map(_plain, states)), value, bound,
         _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda negative: abs(negative)),
         _proof(search, asked, 0.0 if trivial else limit), max_force=limit,
     )  # fmt: skip
@@ -127,11 +125,6 @@ def _of_coefficient(level: FrictionLevel, beyond: float) -> float:
     if level.angle:
         return min(beyond, atan(level.friction))
     return max(-beyond, 0.0)
-
-
-def _worst(states: list[ChosenState], objective: str) -> ChosenState:
-    carrying = [state for state in states if not isnan(state.value)]
-    return (min if objective == "angle" else max)(carrying, key=lambda state: state.value)
 
 
 def _first(

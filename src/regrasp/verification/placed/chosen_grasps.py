@@ -1,7 +1,7 @@
 """The verdict on a grasp chosen from a shape: its states, where it touches, and the proof of its bound."""
 
 from fractions import Fraction
-from math import atan, inf
+from math import atan, inf, isfinite
 from typing import Protocol
 
 import numpy as np
@@ -133,11 +133,15 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     largest = chosen.objective in ("angle", "answered")
     if not (bound >= value if largest else bound <= value):
         return [f"bound {bound:.12g} is {'below' if largest else 'above'} the value {value:.12g}"]
+    if not isfinite(value) or not isfinite(bound):
+        return ["value and bound must be finite numbers"]
     if chosen.objective not in _LEVELS:
+        if proof.bound**power > value * (1 + _CLOSE):
+            return [f"value {value:.12g} is below what the proof says, {proof.bound**power:.12g}"]
         if not Fraction(bound) <= Fraction(proof.bound) ** power * (1 + RESOLUTION):
             return [f"bound {bound:.12g} is above what the proof says, {proof.bound**power:.12g}"]
         return []
-    if chosen.max_force is None:
+    if chosen.max_force is None or not 0 < chosen.max_force < inf:
         return ["a level needs the limit of its forces"]
     if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
         return _check_trivial(chosen, proof)
@@ -212,8 +216,23 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
         for j in range(i):
             if np.hypot(*(positions[i] - positions[j])) < proof.min_distance - slack:
                 broken.append("two contacts are nearer than the least distance")
-    asked = {tuple(load) for load in np.asarray(proof.loads).tolist()}
-    shown = {tuple(state.load.vector.tolist()) for state in chosen.states}
-    if chosen.objective != "answered" and len(chosen.states) > 1 and not asked <= shown:
+    if chosen.objective != "answered" and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
     return broken
+
+
+def _all_shown(chosen: Chosen, loads: Array) -> bool:
+    """Whether states hold all loads: each is that of a state, or lies between those of two."""
+    shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, 3)
+    size = np.abs(loads).max(axis=0)
+    scale = np.where(size > 0, size, size.max() or 1.0)  # forces and torques have units of their own
+    shown, loads = shown / scale, loads / scale
+    sides = shown[None] - shown[:, None]
+    squares = np.maximum((sides**2).sum(axis=2), np.finfo(float).tiny)
+    for load in loads:
+        away = load - shown
+        share = np.clip((away[:, None] * sides).sum(axis=2) / squares, 0.0, 1.0)
+        off = np.abs(away[:, None] - share[..., None] * sides).max(axis=2)
+        if not off.min(initial=inf) <= _CLOSE:
+            return False
+    return True

@@ -15,7 +15,7 @@ rounded up.
 """
 
 from fractions import Fraction
-from math import isqrt
+from math import inf, isqrt
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,6 +24,7 @@ from regrasp.mechanics.checks import Array
 
 _BITS = 96  # of roots
 _ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
+_SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them
 
 
 class Proof(Protocol):
@@ -120,6 +121,8 @@ def _shapes(proof: Proof) -> list[str]:
         broken.append("proof: its numbers must be finite")
     if not (n and k and m and len(proof.loads) and proof.friction >= 0):
         broken.append("proof: boxes, fingers, sides, loads and friction are needed")
+    if not 0 <= proof.min_distance < inf:
+        broken.append("proof: min_distance must be 0 or more")
     if proof.size not in ("normal", "force") or proof.norm not in ("sum", "squares", "largest"):
         broken.append("proof: size or norm has no meaning")
     return broken
@@ -132,7 +135,8 @@ class _Doubles:
         points = np.asarray(proof.vertices - proof.centre_of_mass)
         self.edges = proof.sides[:, 0].astype(int)
         self.start = points[self.edges]
-        self.along = (np.roll(points, -1, axis=0) - points)[self.edges]
+        # of the vertices: less the centre of mass they are rounded, which short sides would not stand
+        self.along = (np.roll(proof.vertices, -1, axis=0) - proof.vertices)[self.edges]
         self.unit = self.along / np.hypot(*self.along.T)[:, None]
         self.reach = float(np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass))
 
@@ -217,7 +221,7 @@ class _Checked:
         wrong = [f"proof: box {box} is not covered by the boxes it is split into"]
         split = [f for f, arc in enumerate(arcs) if any(part[f] != arc for part in parts)]
         count = len(inside) - 1
-        if len(split) != count or split != list(range(split[0], split[0] + count)):
+        if not split or len(split) != count or split != list(range(split[0], split[0] + count)):
             return wrong
         at = split[0]
         if any(arcs[f] != arcs[at] for f in split):
@@ -276,6 +280,8 @@ class _Checked:
             [],
             _ROUNDING * (abs(y[0]) + abs(y[1]) + abs(y[2]) * filtered.reach) * (1 + proof.friction),
         )
+        if not min(room, _ROUNDING * np.abs(terms).sum()) > _SMALL:
+            return False
         for (first, last), (lo, hi) in zip(proof.arcs[box].tolist(), proof.ends[box].tolist(), strict=True):
             least, largest = proof.sides[first : last + 1, 1].copy(), proof.sides[first : last + 1, 2].copy()
             least[0], largest[-1] = lo, hi

@@ -71,7 +71,11 @@ def _check_corners(regions: Regions) -> list[str]:
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     slack = float(RESOLUTION) * float(starts[-1])
     ends, normals = [], []
+    if len(regions.arcs) != len(regions.grasp):
+        return ["an arc for each finger is needed"]
     for i, (lo, hi) in enumerate(regions.arcs.tolist(), 1):
+        if not lo <= hi:
+            return [f"arc {i} must not end before it begins"]
         middle = 0.5 * (lo + hi) % starts[-1]
         edge = min(int(np.searchsorted(starts, middle, side="right")) - 1, len(vertices) - 1)
         off = lo - 0.5 * (lo + hi) + middle  # the arc begins here, on this turn around the outline

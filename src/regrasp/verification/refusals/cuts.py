@@ -2,7 +2,8 @@
 
 A force through the origin is balanced by two contacts only if the torques of the edges of both cones have not
 all one strict sign: forces that all turn the object the same way balance no such load. A pair is excluded
-where they do, where it is nearer than a least distance, or where a cone less the least margin is empty.
+where they do, where it is nearer than a least distance, or where a cone less the least margin is empty and
+the other contact does not hold alone.
 Narrowed cones are bounded from outside: with t <= tan m, tan(atan mu - m) <= (mu - t) / (1 + mu t).
 """
 
@@ -83,7 +84,10 @@ class _Holds:
 
     def may(self, i: int, j: int) -> bool:
         one, other = self.sides[i], self.sides[j]
-        if one is None or other is None or (one == other and one != 0):
+        if one is None or other is None:
+            if one != 0 and other != 0:  # else one of them holds alone, and the other touches without force
+                return False
+        elif one == other and one != 0:
             return False
         off = [a - b for a, b in zip(self.points[i], self.points[j], strict=True)]
         return off[0] ** 2 + off[1] ** 2 >= self.apart

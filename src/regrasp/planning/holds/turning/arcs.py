@@ -44,6 +44,8 @@ class Arcs:
         side, alone = turning_sides(c.points, c.normals, c.mu)
         alpha = np.arctan(c.mu)
         widest = widest_narrowing(side[:, None], alone[:, None], alpha[:, None], side, alone, alpha)
+        if c.one_finger:  # the cone of an idle finger does not count
+            widest = np.maximum(widest, np.maximum(alone[:, None], alone))
         return np.where(widest >= 0, widest, -1.0)
 
     def widest(self, pairs: Pairs, bounds: Array) -> Widest:
@@ -52,6 +54,13 @@ class Arcs:
         (r1, n1, _), (r2, n2, _) = (c.of(places) for places in pairs)
         angles = c.direction - widest_load(r1, n1, r2, n2)
         margins = c.margins(pairs, angles)
+        if c.one_finger:
+            for r, n in ((r1, n1), (r2, n2)):  # that holds alone what goes through it
+                along = -np.sign((r * n).sum(axis=1))[:, None] * r
+                through = c.direction - np.arctan2(along[:, 1], along[:, 0])
+                alone = c.margins(pairs, through)
+                angles = np.where(alone > margins, through, angles)
+                margins = np.maximum(margins, alone)
         short = margins < bounds * (1 - TOLERANCE)
         if short.any():
             some = (pairs[0][short], pairs[1][short])
@@ -95,9 +104,20 @@ class Arcs:
             self.candidates.margins(some, inner) >= level - _SLACK if inside.size else np.empty(0, np.bool_)
         )
         ends[where] = np.where(room, inner, inside)
-        return [
+        runs = [
             _runs(angles[row], held[row], ends[row], bool(length[row] >= 2 * pi))
             for row in range(len(angles))
+        ]
+        if not self.candidates.one_finger:
+            return runs
+        # A finger holds alone at one angle, which may lie off the arc of both, and within rounding of it.
+        runs = [
+            run or ([(float(a), float(a))] if m >= level - _SLACK else [])
+            for run, a, m in zip(runs, widest.angles, widest.margins, strict=True)
+        ]
+        return [
+            [(lo, hi) if hi - lo > _PULLED else ((lo + hi) / 2, (lo + hi) / 2) for lo, hi in run]
+            for run in runs
         ]
 
     def _closed(self, pairs: Pairs, levels: Array) -> tuple[Array, Array]:
