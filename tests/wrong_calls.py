@@ -316,6 +316,18 @@ def rows() -> dict[str, Row]:
             {"shape": SQUARE_OUTLINE, "grasp": placed().grasp, "load": WEIGHT_IN_PLANE},
             {"shape": "value"},
         ),
+        "plan_motions": Row(
+            rg.plan_motions,
+            {"plan": problem().plans()[0], "shape": outline, "tip_radius": 0.01, "clearance": 0.01},
+            {
+                "shape": "value",
+                "tip_radius": "positive",
+                "clearance": "positive",
+                "speed": "positive",
+                "acceleration": "positive",
+                "capsules": "bars",
+            },
+        ),
         "ChosenGrasp.from_dict": Row(rg.ChosenGrasp.from_dict, {"data": placed().to_dict()}),
         "least_stiffness": Row(
             rg.least_stiffness,
@@ -669,6 +681,7 @@ KINDS |= {
     "reach": (*[v for v in NOT_A_NUMBER if not (isinstance(v, float) and v == inf)], -1.0),
     "squeezes": (*NOT_NUMBERS, 5, [], [1], [1, 2, 3, 4], np.zeros((2, 2))),
     "places": (*NOT_A_VALUE, (0, 1), (0, 1, 99), (0, 1, 1.5), (0, 1, HUGE)),
+    "bars": (*NOT_NUMBERS, 5, [], [1], [1, 2, 3, 4], np.zeros((4, 2)), np.zeros((2, 3))),
     "ring": (
         *NOT_NUMBERS, 5, [], [1, 2], [[0, 0], [1, 1]], [[0, 0], [1, 1], [2, 2]], np.zeros((4, 2)),
         np.zeros((4, 3)),

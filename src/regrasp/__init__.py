@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from regrasp.measures.wrench_balls import wrench_balls
     from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
+    from regrasp.motions.plan import plan_motions
     from regrasp.outline.outline import Outline
     from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
     from regrasp.planning.changes.hold import plan_hold
@@ -105,6 +106,7 @@ _LATER = {
     "Outline": "regrasp.outline.outline",
     "plan_addition": "regrasp.planning.changes.finger_change",
     "plan_exchange": "regrasp.planning.changes.finger_change",
+    "plan_motions": "regrasp.motions.plan",
     "plan_regrasp": "regrasp.planning.regrasps.verbs",
     "plan_regrasps": "regrasp.planning.regrasps.verbs",
     "plan_removal": "regrasp.planning.changes.finger_change",
@@ -209,6 +211,7 @@ __all__ = [
     "plan_addition",
     "plan_exchange",
     "plan_hold",
+    "plan_motions",
     "plan_regrasp",
     "plan_regrasps",
     "plan_removal",
@@ -225,11 +228,17 @@ __all__ = [
 ]
 
 
+# Rooms with names of their own: `rg.files.write_plan` and the like work without a second import.
+_ROOMS = ("bench", "execution", "explore", "files", "mesh", "motions", "outline", "plots", "programs")
+
+
 def __getattr__(name: str) -> Any:
     if name in _LATER:
         value = getattr(import_module(_LATER[name]), name)
         globals()[name] = value
         return value
+    if name in _ROOMS:
+        return import_module(f"regrasp.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
