@@ -128,6 +128,7 @@ FLOORS: dict[str, Set[str]] = {
         "outline",
         "mesh",
         "plans",
+        "motions",
         "planning",
         "measures",
         "verification",
