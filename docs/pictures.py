@@ -13,6 +13,7 @@ from regrasp.plots import (
     plot_escape,
     plot_motions,
     plot_outline,
+    plot_outline_map,
     plot_sensitivity,
     plot_tolerances,
     transition_figure,
@@ -48,6 +49,14 @@ if __name__ == "__main__":
     plan = rg.plan_regrasp(ellipse, first, last, rg.Wrench([0, -3.0]), friction=0.5)
     figure = plot_motions(plan_motions(plan, ellipse, tip_radius=0.003, clearance=0.002), ellipse).figure
     figure.savefig(IMAGES / "motions.png", dpi=120, metadata={"Software": None})
+    bowl = rg.Outline([[0, 0], [4, 0], [6, 4], [5, 4], [2, 1], [-1, 4], [-2, 4]])
+    ends = (
+        rg.Grasp(bowl.contact_at(s, friction=0.2) for s in places)
+        for places in ((3.39, 9.01, 12.0), (0.44, 18.46, 12.0))
+    )
+    found = rg.regrasps_on_outline(bowl, *ends, rg.Wrench([-1.0, -3.0]), friction=0.2)
+    figure = plot_outline_map(found).figure
+    figure.savefig(IMAGES / "outline-map.png", dpi=160, metadata={"Software": None})
     part = parts.bracket()
     figure = plot_outline(part, arc_lengths=part.sample(40)).figure
     figure.savefig(IMAGES / "outline.png", dpi=160, metadata={"Software": None})

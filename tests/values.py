@@ -100,6 +100,15 @@ def placed() -> rg.ChosenGrasp:
     return rg.choose_grasp(SQUARE_OUTLINE, 2, rg.LoadSet.tilted(WEIGHT_IN_PLANE, 1.0), friction=0.5)
 
 
+def on_outline(friction: float) -> Any:
+    """Fingers on two sides of a rectangle, which hold its weight where friction is enough."""
+    start, goal = (
+        rg.Grasp(SQUARE_OUTLINE.contact_at(s, friction=friction) for s in places)
+        for places in ((5.0, 5.5, 12.0), (5.2, 12.5, 13.0))
+    )
+    return rg.regrasps_on_outline(SQUARE_OUTLINE, start, goal, WEIGHT_IN_PLANE, friction=friction)
+
+
 VALUES: dict[str, Callable[[], Any]] = {
     "Contact": lambda: rg.Contact([1, 2], [3, 4], 0.5, max_force=2.0, name="thumb"),
     "soft Contact": lambda: rg.Contact([1, 2, 0], [3, 4, 0], 0.5, torsion=0.01),
@@ -128,6 +137,8 @@ VALUES: dict[str, Callable[[], Any]] = {
     "RegraspWeights": lambda: rg.RegraspWeights(turning=0.5),
     "Bottleneck": lambda: problem().bottleneck(),
     "HoldGraph": lambda: problem().graph,
+    "OutlineRegrasps": lambda: on_outline(0.5),
+    "OutlineCut": lambda: on_outline(0.01).certificate,
     "RegraspCut": lambda: rg.RegraspCut(
         tuple(three_on_ellipse(0.1, 0.3, 0.5, 0.8)), (0, 1, 2), (0, 1, 3), (2,), 0.2, 0.5
     ),

@@ -27,6 +27,7 @@ from values import (
     ellipse,
     four_on_box,
     mesh,
+    on_outline,
     placed,
     problem,
     regrasp,
@@ -310,6 +311,20 @@ def rows() -> dict[str, Row]:
                 "most_boxes": "count",
                 "progress": "function",
             },
+        ),
+        "regrasps_on_outline": Row(
+            rg.regrasps_on_outline,
+            {
+                "outline": SQUARE_OUTLINE,
+                "start": on_outline(0.5).start,
+                "goal": on_outline(0.5).goal,
+                "load": WEIGHT_IN_PLANE,
+                "friction": 0.5,
+            },
+            {"outline": "value"},
+        ),
+        "OutlineCut.from_dict": Row(
+            rg.OutlineCut.from_dict, {"data": on_outline(0.01).certificate.to_dict()}
         ),
         "contact_regions": Row(
             rg.contact_regions,

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
     from regrasp.motions.plan import plan_motions
     from regrasp.outline.outline import Outline
+    from regrasp.planning.anywhere.deciding import regrasps_on_outline
+    from regrasp.planning.anywhere.results import OutlineRegrasps
     from regrasp.planning.changes.finger_change import plan_addition, plan_exchange, plan_removal
     from regrasp.planning.changes.hold import plan_hold
     from regrasp.planning.changes.rotation import plan_rotation
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
     from regrasp.planning.surveys.squeeze_locus import SqueezeLocus
     from regrasp.plans.carried import carried_load
     from regrasp.plans.loads import LoadSeries
+    from regrasp.plans.outline_cut import OutlineCut
     from regrasp.plans.regrasp_cut import RegraspCut
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.sampled import SampledPath
@@ -104,6 +107,8 @@ _LATER = {
     "Measure": "regrasp.measures.measure",
     "Mesh": "regrasp.mesh.mesh",
     "Outline": "regrasp.outline.outline",
+    "OutlineCut": "regrasp.plans.outline_cut",
+    "OutlineRegrasps": "regrasp.planning.anywhere.results",
     "plan_addition": "regrasp.planning.changes.finger_change",
     "plan_exchange": "regrasp.planning.changes.finger_change",
     "plan_motions": "regrasp.motions.plan",
@@ -116,6 +121,7 @@ _LATER = {
     "Quality": "regrasp.measures.measure",
     "quality": "regrasp.measures.quality",
     "read_study": "regrasp.studies.study",
+    "regrasps_on_outline": "regrasp.planning.anywhere.deciding",
     "RegraspCut": "regrasp.plans.regrasp_cut",
     "RegraspObstacle": "regrasp.planning.regrasps.why_not",
     "RegraspPlan": "regrasp.plans.regrasp_plan",
@@ -169,6 +175,8 @@ __all__ = [
     "Measure",
     "Mesh",
     "Outline",
+    "OutlineCut",
+    "OutlineRegrasps",
     "PyramidLosses",
     "Quality",
     "RegraspError",
@@ -219,6 +227,7 @@ __all__ = [
     "pyramid_losses",
     "quality",
     "read_study",
+    "regrasps_on_outline",
     "sensitivity",
     "sweep",
     "tolerances",

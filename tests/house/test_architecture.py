@@ -146,6 +146,7 @@ ROOMS: dict[str, Set[str]] = {
     "planning.changes": _HOLDS,
     "planning.holds": _HOLDS,
     "planning.regrasps": _HOLDS | {"planning.surveys", "planning.changes", "planning.holds"},
+    "planning.anywhere": _HOLDS | {"planning.regrasps"},
     "planning.placement": _HOLDS | {"planning.surveys", "planning.changes", "planning.holds"},
     "plots.look": set(),
     "plots.grasps": {"plots.look"},

@@ -34,6 +34,7 @@ from regrasp.plots.pages.page import html
 from regrasp.plots.pages.run_film import animate_execution
 from regrasp.plots.placement.chosen import plot_chosen_grasp, plot_contact_regions
 from regrasp.plots.regrasps.hold_map import plot_hold_map
+from regrasp.plots.regrasps.outline_map import plot_outline_map
 from regrasp.plots.regrasps.steps import plot_regrasp
 from regrasp.plots.regrasps.trade_off import plot_trade_off
 from regrasp.plots.regrasps.ways import plot_motions
@@ -82,6 +83,7 @@ __all__ = [
     "plot_measured_forces",
     "plot_motions",
     "plot_outline",
+    "plot_outline_map",
     "plot_regrasp",
     "plot_scaling",
     "plot_sensitivity",

@@ -29,6 +29,7 @@ from regrasp.verification.placed.regions import Regions, verify_regions
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
 from regrasp.verification.refusals.cuts import Cut, verify_cut
+from regrasp.verification.refusals.outline_cuts import OutlineCut, verify_outline_cut
 from regrasp.verification.regrasps import Regrasp, check_joints
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
@@ -39,7 +40,7 @@ _NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "
 
 
 def verify(
-    plan: Plan | Regrasp | Chosen | Proof | Regions | Cut,
+    plan: Plan | Regrasp | Chosen | Proof | Regions | Cut | OutlineCut,
     load: Callable[[float], Wrench] | None = None,
     *,
     curvature: float | None = None,
@@ -57,7 +58,8 @@ def verify(
 
     Args:
         plan: a transition, a regrasp, a chosen grasp or contact regions, whoever made it; or the proof of a
-            bound alone, or of no regrasp, a ``RegraspCut``.
+            bound alone, or of no regrasp, a ``RegraspCut``
+            or an ``OutlineCut``.
         load: a function of time [s] that the plan was made for. The plan's load is linear between its
             instants and is what the forces balance exactly; the function may differ from it between them.
             That gap must be less than the margins can take: forces that balance the function must exist
@@ -86,6 +88,8 @@ def verify(
             raise InvalidInput(
                 "a chosen grasp or a cut says itself what it is about: verify takes nothing else beside it"
             )
+        if hasattr(plan, "reached") and hasattr(plan, "boxes"):
+            return verify_outline_cut(cast(OutlineCut, plan))
         if hasattr(plan, "reached"):
             return verify_cut(cast(Cut, plan))
         if hasattr(plan, "corners"):

@@ -22,7 +22,8 @@ class Verification(ArrayValue):
         load_gap: largest difference of the plan's load from the load function given [N], torque divided by
             the grasp's size; None where none was given.
         load_gap_is_proven: from a bound on the load's curvature, and not measured between the instants.
-        excluded: boxes of placements that a proof excludes, of a chosen grasp; None of others.
+        excluded: boxes of places that a proof excludes, of a chosen grasp or an ``OutlineCut``; None of
+            others.
         bound: no placement has a smaller value than this, of a chosen grasp; None of others.
         crossing: pairs of contacts that cross a cut, of which none holds; None of others.
     """
@@ -60,6 +61,12 @@ class Verification(ArrayValue):
             lines.append(
                 f"the plan's load is within {self.load_gap:.3g} of the load given ({how}), "
                 f"which the margins can take"
+            )
+        if self.excluded is not None and self.bound is None:
+            return (
+                f"no regrasp leads from the start to the goal on this outline, at this orientation: "
+                f"{self.excluded} boxes cover all pairs of places across the cut, each excluded by its "
+                f"twist, in exact arithmetic"
             )
         if self.excluded is not None:
             if not isfinite(self.least_cone_slack):  # the proof alone

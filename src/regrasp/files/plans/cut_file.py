@@ -8,29 +8,34 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.files.source import text_of
 from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import file_path
+from regrasp.plans.outline_cut import OutlineCut
 from regrasp.plans.regrasp_cut import RegraspCut
 
-FORMAT = "regrasp cut"
+FORMATS: dict[str, type[RegraspCut | OutlineCut]] = {
+    "regrasp cut": RegraspCut,
+    "regrasp outline cut": OutlineCut,
+}
 
 
-def write_cut(cut: RegraspCut, path: str | Path) -> None:
+def write_cut(cut: RegraspCut | OutlineCut, path: str | Path) -> None:
     """Write a cut with everything needed to read it back and verify it.
 
     Args:
-        cut: the ``cut`` of a ``RegraspObstacle``.
+        cut: the ``cut`` of a ``RegraspObstacle``, or the ``certificate`` of ``OutlineRegrasps``.
         path: the file, in JSON.
 
     Raises:
         InvalidInput: For what is no cut, and where the file cannot be written.
     """
-    if not isinstance(cut, RegraspCut):
-        raise InvalidInput(f"write_cut writes a RegraspCut, got {shown(cut)}")
+    form = next((form for form, kind in FORMATS.items() if isinstance(cut, kind)), None)
+    if form is None:
+        raise InvalidInput(f"write_cut writes a RegraspCut or an OutlineCut, got {shown(cut)}")
     with whole_file(file_path(path)) as file:
-        json.dump({"format": FORMAT, "version": 1} | cut.to_dict(), file, indent=1, allow_nan=False)
+        json.dump({"format": form, "version": 1} | cut.to_dict(), file, indent=1, allow_nan=False)
         file.write("\n")
 
 
-def read_cut(path: str | Path) -> RegraspCut:
+def read_cut(path: str | Path) -> RegraspCut | OutlineCut:
     """The cut of a file that ``write_cut`` wrote; judge it with ``regrasp.verify``.
 
     Args:
@@ -41,10 +46,12 @@ def read_cut(path: str | Path) -> RegraspCut:
     """
     path = file_path(path)
     data = _data(path)
-    if not isinstance(data, dict) or data.get("format") != FORMAT or data.get("version") != 1:
-        raise InvalidInput(f"{path}: not a cut of format {FORMAT!r}, version 1")
+    kind = _kind(data)
+    if kind is None or data.get("version") != 1:
+        known = " or ".join(map(repr, FORMATS))
+        raise InvalidInput(f"{path}: not a cut of format {known}, version 1")
     try:
-        return RegraspCut.from_dict({k: v for k, v in data.items() if k not in ("format", "version")})
+        return kind.from_dict({k: v for k, v in data.items() if k not in ("format", "version")})
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from None
 
@@ -55,7 +62,13 @@ def holds_a_cut(path: Path) -> bool:
         data = _data(path)
     except InvalidInput:
         return False
-    return isinstance(data, dict) and data.get("format") == FORMAT
+    return _kind(data) is not None
+
+
+def _kind(data: Any) -> type[RegraspCut | OutlineCut] | None:
+    """The class of a file's cut, by the format it states."""
+    form = data.get("format") if isinstance(data, dict) else None
+    return FORMATS.get(form) if isinstance(form, str) else None
 
 
 def _data(path: Path) -> Any:

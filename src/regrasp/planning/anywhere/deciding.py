@@ -1,0 +1,172 @@
+"""Whether any regrasp exists on an outline at one orientation, decided without sampling."""
+
+from itertools import combinations
+
+import numpy as np
+
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, instance, number, read_only
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.outline.polygon import PolygonBoundary
+from regrasp.planning.anywhere.cut import excluded_boxes, reached_arcs
+from regrasp.planning.anywhere.hold_map import TIE, HoldMap, Place, flooded
+from regrasp.planning.anywhere.results import OutlineRegrasps
+from regrasp.planning.anywhere.walk import Hold, walk_through
+from regrasp.planning.states.batch import locus_intervals
+from regrasp.plans.outline_cut import OutlineCut
+
+MOST_SIDES = 500
+_ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
+
+Places = tuple[Place, ...]
+
+
+def regrasps_on_outline(
+    outline: Outline, start: Grasp, goal: Grasp, load: Wrench, *, friction: float
+) -> OutlineRegrasps:
+    """Whether any regrasp of three fingers exists on a polygon while the object keeps its orientation.
+
+    Every place on the outline counts, none is sampled. Where two fingers on two sides hold the load is a
+    finite set of convex polygons in their arc lengths (docs/facts.md, 10), and regrasps lead from one to
+    another where their projections on a side overlap. That a regrasp exists is shown by a walk of holds,
+    each checked again; that none exists by a certificate, which ``verify`` decides in rationals. Force
+    limits, least normal forces and corners that fingers keep away from are not looked at: with them there may
+    be none where one exists here.
+
+    Args:
+        outline: a polygon of up to 500 sides; fingers touch its outer boundary.
+        start: three contacts on it, relative to the centre of mass [m].
+        goal: three contacts at the end.
+        load: a force through the centre of mass, seen from the object [N].
+        friction: Coulomb coefficient of all fingers, those of start and goal included [-].
+
+    Raises:
+        InvalidInput: For arguments that are not what they must be.
+    """
+    if not isinstance(outline, Outline) or not isinstance(outline.boundary, PolygonBoundary):
+        raise InvalidInput(f"outline must be an Outline that is a polygon, got {shown(outline)}")
+    vertices = outline.polygon()
+    if len(vertices) > MOST_SIDES:
+        raise InvalidInput(f"outline must have at most {MOST_SIDES} sides, got {len(vertices)}")
+    mu = number(friction, "friction", above=0)
+    instance(load, "load", Wrench)
+    if load.dimension != 2 or not load.force.any() or load.torque.any():
+        raise InvalidInput(
+            f"load must be a planar force through the centre of mass, not zero, got {shown(load)}"
+        )
+    ends = tuple(_places(vertices, grasp, mu, name) for grasp, name in ((start, "start"), (goal, "goal")))
+    holds = HoldMap.of(vertices, mu, load.force)
+    neighbours = holds.neighbours(TIE)
+    walk = _walk(holds, neighbours, *ends)
+    certificate = _certificate(holds, *ends) if walk is None else None
+    exists = True if walk is not None else None if certificate is None else False
+    lengths = np.hypot(*(np.roll(vertices, -1, axis=0) - vertices).T)
+    starts = np.concatenate([[0.0], np.cumsum(lengths)])
+
+    def along(side: int, fraction: float) -> float:
+        return float(starts[side] + fraction * lengths[side])
+
+    return OutlineRegrasps(
+        outline,
+        start,
+        goal,
+        load,
+        mu,
+        exists,
+        tuple(
+            read_only(np.array([[along(r.sides[0], f), along(r.sides[1], g)] for f, g in r.polygon]))
+            for r in holds.regions
+        ),
+        _components(neighbours),
+        read_only(np.array([[along(*p), along(*q)] for p, q in walk or []]).reshape(-1, 2)),
+        certificate,
+    )
+
+
+def _places(vertices: Array, grasp: Grasp, friction: float, name: str) -> Places:
+    """The sides of three contacts, by point and normal, and the fractions passed."""
+    if not isinstance(grasp, Grasp) or grasp.dimension != 2 or len(grasp) != 3:
+        raise InvalidInput(f"{name} must be a planar Grasp of three contacts, got {shown(grasp)}")
+    if (grasp.frictions != friction).any():
+        raise InvalidInput(
+            f"all contacts of the {name} must have the friction {friction:g} of the outline, "
+            f"got {shown(grasp.frictions.tolist())}"
+        )
+    along = np.roll(vertices, -1, axis=0) - vertices
+    lengths = np.hypot(*along.T)
+    unit, size = along / lengths[:, None], float(np.hypot(*vertices.T).max())
+    found = []
+    for contact in grasp:
+        away = contact.position - vertices
+        f = np.clip((away * unit).sum(axis=1) / lengths, 0.0, 1.0)
+        distance = np.hypot(*(away - f[:, None] * along).T) / size
+        turned = np.hypot(contact.normal[0] + unit[:, 1], contact.normal[1] - unit[:, 0])
+        side = int(np.argmin(distance + turned))
+        if distance[side] + turned[side] > _ON_SIDE:
+            raise InvalidInput(
+                f"contact {shown(contact.name)} of the {name} is on no side of the outline, "
+                f"with its inward normal"
+            )
+        found.append((side, float(f[side])))
+    return tuple(found)
+
+
+def _walk(holds: HoldMap, neighbours: list[set[int]], start: Places, goal: Places) -> list[Hold] | None:
+    """Holds from one of the start to one of the goal, through fewest regions; None where none is sure."""
+    if sorted(start) == sorted(goal):
+        return []
+    leave, arrive = (
+        {k: at for p, q in combinations(end, 2) for k, at in holds.at(p, q, TIE)} for end in (start, goal)
+    )
+    before = flooded(neighbours, set(leave))
+    last = next((k for k in before if k in arrive), None)
+    if last is None:
+        return None
+    path = [last]
+    while (previous := before[path[-1]]) is not None:
+        path.append(previous)
+    path.reverse()
+    walk = walk_through(holds, path, leave[path[0]], arrive[last])
+    return walk if walk is not None and _held(holds, walk) else None
+
+
+def _held(holds: HoldMap, walk: list[Hold]) -> bool:
+    """Whether the closed form of two contacts says so, too, hold by hold."""
+    vertices = holds.vertices
+    along = np.roll(vertices, -1, axis=0) - vertices
+    normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+    sides = np.array([[p[0], q[0]] for p, q in walk])
+    fractions = np.array([[p[1], q[1]] for p, q in walk])
+    points, n = vertices[sides] + fractions[..., None] * along[sides], normals[sides]
+    mu = holds.friction
+    lo, hi = locus_intervals(points[:, 0], n[:, 0], mu, points[:, 1], n[:, 1], mu, holds.force)
+    return bool((lo < hi).all())
+
+
+def _certificate(holds: HoldMap, start: Places, goal: Places) -> OutlineCut | None:
+    """The proof that none exists, where there is one, nearly touching regions taken to be joined."""
+    leave = {k for p, q in combinations(start, 2) for k, _ in holds.at(p, q, -TIE)}
+    arrive = {k for p, q in combinations(goal, 2) for k, _ in holds.at(p, q, -TIE)}
+    arcs, inside = reached_arcs(holds, leave)
+    if inside & arrive:
+        return None
+    if not arrive:  # the goal cannot be held by two: the start may reach everything
+        arcs = [(side, 0.0, 1.0) for side in range(len(holds.vertices))]
+    found = excluded_boxes(holds, arcs, start, goal)
+    if found is None:
+        return None
+    return OutlineCut(
+        holds.vertices, holds.friction, holds.force, *(np.array(v) for v in (start, goal, arcs, *found))
+    )
+
+
+def _components(neighbours: list[set[int]]) -> tuple[int, ...]:
+    """A number for every region."""
+    found: dict[int, int] = {}
+    for region in range(len(neighbours)):
+        if region not in found:
+            number_of = len(set(found.values()))
+            found |= dict.fromkeys(flooded(neighbours, {region}), number_of)
+    return tuple(found[k] for k in range(len(neighbours)))

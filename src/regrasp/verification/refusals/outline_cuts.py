@@ -1,0 +1,163 @@
+"""The verdict on a cut of an outline that no hold crosses, in rational arithmetic.
+
+A finger anywhere between two ends of a straight side makes only sums of the edges of its cone at both ends,
+so a box of two stretches is excluded by a twist that does no negative work with any of these eight wrenches
+while the load does positive work. Normals are not normalised: cones are the same for every length of them.
+"""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import combinations, pairwise
+from math import inf
+from typing import Protocol
+
+from regrasp.mechanics.checks import Array
+from regrasp.verification.exact import cross, dot, exact
+from regrasp.verification.verdict import Verification
+
+Span = tuple[Fraction, Fraction]
+Place = tuple[int, Fraction]
+
+
+class OutlineCut(Protocol):
+    """What ``verify`` needs to know of a cut of an outline, whoever made it."""
+
+    @property
+    def vertices(self) -> Array:
+        """(k, 2) counter-clockwise, relative to the centre of mass [m]."""
+
+    @property
+    def friction(self) -> float:
+        """Of all fingers."""
+
+    @property
+    def force(self) -> Array:
+        """(2,) on the object [N]."""
+
+    @property
+    def start(self) -> Array:
+        """(3, 2) sides and fractions."""
+
+    @property
+    def goal(self) -> Array:
+        """(3, 2) sides and fractions."""
+
+    @property
+    def reached(self) -> Array:
+        """(r, 3) sides and the fractions of the ends of arcs."""
+
+    @property
+    def boxes(self) -> Array:
+        """(m, 6) two sides, and ends on either."""
+
+    @property
+    def twists(self) -> Array:
+        """(m, 3)."""
+
+
+def verify_outline_cut(cut: OutlineCut) -> Verification:
+    """Whether no regrasp on this outline leads from the start to the goal at this orientation."""
+    judged = _Cut(cut)
+    broken = [] if judged.is_counter_clockwise() else ["the vertices do not run counter-clockwise"]
+    broken += [*judged.twists_at_work(), *judged.ends(), *judged.gaps()]
+    return Verification(tuple(broken), 0.0, inf, inf, excluded=len(cut.boxes))
+
+
+class _Cut:
+    """A cut in rationals."""
+
+    def __init__(self, cut: OutlineCut) -> None:
+        self.points = [exact(p) for p in cut.vertices.tolist()]
+        self.friction, self.force = Fraction(cut.friction), [*exact(cut.force.tolist()), Fraction(0)]
+        self.start, self.goal = (
+            [(int(i), Fraction(f)) for i, f in end.tolist()] for end in (cut.start, cut.goal)
+        )
+        self.arcs: dict[int, list[Span]] = {}
+        for side, lo, hi in cut.reached.tolist():
+            self.arcs.setdefault(int(side), []).append((Fraction(lo), Fraction(hi)))
+        self.twists = [exact(y) for y in cut.twists.tolist()]
+        self.sides = [(int(i), int(j)) for i, j in cut.boxes[:, :2].tolist()]
+        self.boxes = [exact(box) for box in cut.boxes[:, 2:].tolist()]
+        # Boxes by their sides, both ways round.
+        self.tiles: dict[tuple[int, int], list[tuple[Span, Span]]] = {}
+        for (i, j), (a, b, c, d) in zip(self.sides, self.boxes, strict=True):
+            self.tiles.setdefault((i, j), []).append(((a, b), (c, d)))
+            self.tiles.setdefault((j, i), []).append(((c, d), (a, b)))
+
+    def is_counter_clockwise(self) -> bool:
+        after = [*self.points[1:], self.points[0]]
+        return sum((cross(p, q)[0] for p, q in zip(self.points, after, strict=True)), Fraction(0)) > 0
+
+    def twists_at_work(self) -> Iterator[str]:
+        """Boxes that their twists do not exclude."""
+        for k, ((i, j), (a, b, c, d), y) in enumerate(
+            zip(self.sides, self.boxes, self.twists, strict=True), 1
+        ):
+            places = ((i, a), (i, b), (j, c), (j, d))
+            if dot(y, self.force) <= 0:
+                yield f"box {k}: the load does no work along its twist"
+            elif any(dot(y, w) < 0 for place in places for w in self.edges(place)):
+                yield f"box {k}: some force of a finger in it opposes its twist"
+
+    def edges(self, place: Place) -> Iterator[list[Fraction]]:
+        """The wrenches of both edges of the cone at a place."""
+        side, f = place
+        p, q = self.points[side], self.points[(side + 1) % len(self.points)]
+        tx, ty = q[0] - p[0], q[1] - p[1]
+        at = [p[0] + f * tx, p[1] + f * ty]
+        for s in (1, -1):
+            edge = [-ty + s * self.friction * tx, tx + s * self.friction * ty]
+            yield [*edge, *cross(at, edge)]
+
+    def ends(self) -> Iterator[str]:
+        """Pairs of the start or the goal that may hold on the wrong side."""
+        if sorted(self.start) == sorted(self.goal):
+            yield "the start and the goal are the same places"
+        for p, q in combinations(self.start, 2):
+            if not (self.reaches(p) and self.reaches(q)) and not self.excludes(p, q):
+                yield f"places of the start on sides {p[0]} and {q[0]} may hold and are not both on its side"
+        for p, q in combinations(self.goal, 2):
+            if (self.reaches(p) or self.reaches(q)) and not self.excludes(p, q):
+                yield f"places of the goal on sides {p[0]} and {q[0]} may hold and are on the start's side"
+
+    def reaches(self, place: Place) -> bool:
+        return any(lo <= place[1] <= hi for lo, hi in self.arcs.get(place[0], []))
+
+    def excludes(self, p: Place, q: Place) -> bool:
+        tiles = self.tiles.get((p[0], q[0]), [])
+        return any(a <= p[1] <= b and c <= q[1] <= d for (a, b), (c, d) in tiles)
+
+    def gaps(self) -> Iterator[str]:
+        """Pairs of places across the cut that no box covers, strip by strip of the first place."""
+        rest = {j: self.rest(j) for j in range(len(self.points))}
+        for i, arcs in self.arcs.items():
+            for j, (lo, hi) in ((j, span) for j, spans in rest.items() for span in spans):
+                tiles = self.tiles.get((i, j), [])
+                if not all(_covered(arc, (lo, hi), tiles) for arc in arcs):
+                    yield f"boxes do not cover all pairs across the cut on sides {i} and {j}"
+
+    def rest(self, side: int) -> list[Span]:
+        """What the reached arcs leave of a side, ends included."""
+        rest, at = [], Fraction(0)
+        for lo, hi in sorted(self.arcs.get(side, [])):
+            if lo > at:
+                rest.append((at, lo))
+            at = max(at, hi)
+        if at < 1:
+            rest.append((at, Fraction(1)))
+        return rest
+
+
+def _covered(one: Span, other: Span, tiles: list[tuple[Span, Span]]) -> bool:
+    """Whether boxes cover the rectangle of two spans: every strip between their ends in a chain."""
+    near = [(x, y) for x, y in tiles if x[0] <= one[1] and x[1] >= one[0]]
+    cuts = sorted({*one, *(end for x, _ in near for end in x if one[0] < end < one[1])})
+    strips = list(pairwise(cuts)) if len(cuts) > 1 else [(one[0], one[1])]
+    for lo, hi in strips:
+        at = other[0]
+        for low, high in sorted(y for x, y in near if x[0] <= lo and x[1] >= hi):
+            if low <= at:
+                at = max(at, high)
+        if at < other[1] or not any(x[0] <= lo and x[1] >= hi for x, _ in near):
+            return False
+    return True
