@@ -4,6 +4,7 @@ import json
 from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -175,6 +176,27 @@ def test_every_part_of_a_proof_is_needed():
         replace(cut, vertices=cut.vertices[::-1]),
     ):
         assert not rg.verify(spoiled).ok
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"friction": float("nan")},
+        {"twists": np.full((12, 3), np.nan)},
+        {"start": np.array([[0, 2.0], [1, 0.5], [2, 0.5]])},
+        {"start": np.array([[0, 0.5], [1, 0.5]])},
+        {"reached": np.array([[9, 0.0, 1.0]])},
+        {"boxes": np.zeros((0, 6))},
+    ],
+)
+def test_cuts_of_others_that_are_none_are_not_taken(more):
+    """As ``verify`` may see them, past the checks of ``OutlineCut``."""
+    cut = parted().certificate
+    fields = ("vertices", "friction", "force", "start", "goal", "reached", "boxes", "twists")
+    foreign = SimpleNamespace(**{name: getattr(cut, name) for name in fields} | more)
+    words = str(rg.verify(foreign))
+    assert "a cut has three places" in words
+    assert rg.verify(SimpleNamespace(**{name: getattr(cut, name) for name in fields})).ok
 
 
 def test_a_proof_is_read_back_and_judged_from_a_file(tmp_path, capsys):

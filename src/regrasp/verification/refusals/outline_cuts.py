@@ -11,6 +11,8 @@ from itertools import combinations, pairwise
 from math import inf
 from typing import Protocol
 
+import numpy as np
+
 from regrasp.mechanics.checks import Array
 from regrasp.verification.exact import cross, dot, exact
 from regrasp.verification.verdict import Verification
@@ -57,10 +59,29 @@ class OutlineCut(Protocol):
 
 def verify_outline_cut(cut: OutlineCut) -> Verification:
     """Whether no regrasp on this outline leads from the start to the goal at this orientation."""
+    if not _is_formed(cut):
+        words = "a cut has three places at either end and a twist for every box, all on sides of its outline"
+        return Verification((words,), inf, 0.0, -inf)
     judged = _Cut(cut)
     broken = [] if judged.is_counter_clockwise() else ["the vertices do not run counter-clockwise"]
     broken += [*judged.twists_at_work(), *judged.ends(), *judged.gaps()]
     return Verification(tuple(broken), 0.0, inf, inf, excluded=len(cut.boxes))
+
+
+def _is_formed(cut: OutlineCut) -> bool:
+    """Whether sides, fractions and counts are such that the rest can be judged."""
+    count = len(cut.vertices)
+    tables = (cut.vertices, cut.force, cut.twists, cut.start, cut.goal, cut.reached, cut.boxes)
+    sides = [cut.start[:, :1], cut.goal[:, :1], cut.reached[:, :1], cut.boxes[:, :2]]
+    fractions = [cut.start[:, 1:], cut.goal[:, 1:], cut.reached[:, 1:], cut.boxes[:, 2:]]
+    return (
+        all(np.isfinite(table).all() for table in tables)
+        and cut.friction > 0
+        and len(cut.start) == len(cut.goal) == 3
+        and len(cut.boxes) == len(cut.twists)
+        and all(((s >= 0) & (s < count) & (s == np.floor(s))).all() for s in sides)
+        and all(((f >= 0) & (f <= 1)).all() for f in fractions)
+    )
 
 
 class _Cut:
