@@ -241,3 +241,18 @@ def test_moves_and_margins_are_those_of_all_rows():
             seen += 1
             assert mine[0].sequence.margin == pytest.approx(best[fewest], rel=3e-6)
     assert seen >= 4
+
+
+def test_holds_at_their_widest_half_a_turn_from_the_goal() -> None:
+    """Parallel sides hold best where the load is across them: holds half a turn apart are turned between."""
+    brick = rg.Outline([[0, 0], [4, 0], [4, 2], [0, 2]])
+    start, goal = (
+        rg.Grasp(brick.contact_at(p * brick.length, friction=0.4) for p in places)
+        for places in ((0.593, 0.26, 0.84), (0.5095, 0.511, 0.753))
+    )
+    problem = rg.RegraspProblem(brick, start, goal, rg.Wrench([0, -3.0]), friction=0.4, candidates=12)
+    (found,) = problem.turning_sequences()
+    assert found.sequence.margin == pytest.approx(np.arctan(0.4), abs=1e-5)
+    assert abs(np.diff([0.0, *found.angles])).max() <= REACH + 1e-9
+    with pytest.raises(rg.Infeasible, match="the fingers of the goal cannot hold the load"):
+        problem.plans()

@@ -20,6 +20,7 @@ from regrasp.planning.holds.turning.least_turning import Interval, Node, least_t
 from regrasp.planning.holds.turning.margins import Candidates, Pairs
 
 _ALIKE = 1e-6  # margins nearer than this [rad] are one
+_LESS = (2e-6, 1e-5, 1e-3)  # [rad]
 _AT_ONCE = 512  # pairs whose margins are found together
 
 
@@ -63,9 +64,11 @@ class ExactSearch:
         while count <= limit:
             best = self._best(start, goal, count)
             if best is not None and best.margin > top + (_ALIKE if found else 0.0):
-                limit = min(limit, count + extra) if not found else limit
-                found.append(self._walked(best, goal_angle))
-                top = best.margin
+                walked = self._walked(best, goal_angle)
+                if walked is not None:
+                    limit = min(limit, count + extra) if not found else limit
+                    found.append(walked)
+                    top = best.margin
             if count >= limit or self._exhausted(start, goal, count, top):
                 break
             count += 1
@@ -114,9 +117,26 @@ class ExactSearch:
         for a, b in ((first, second), (second, first)):
             self.widest[a, b], self.angles[a, b], self.known[a, b] = margins, found.angles, True
 
-    def _walked(self, best: "_Best", goal_angle: float) -> TurningSequence:
-        """The sequence of fewest steps, then least turning, of those as wide as the best."""
-        level = best.margin * (1 - TOLERANCE)
+    def _walked(self, best: "_Best", goal_angle: float) -> TurningSequence | None:
+        """The sequence of fewest steps, then least turning, of those as wide as the best.
+
+        Holds at their widest may be half a turn apart, which is more than fingers turn between two: then of
+        those a little less wide; None where these are as far apart.
+        """
+        way = self._way(best, goal_angle, best.margin * (1 - TOLERANCE))
+        for less in _LESS:
+            if way is None:
+                way = self._way(best, goal_angle, max(best.margin - less, self.least))
+        if way is None:
+            return None
+        holds = tuple((*_pair(node), k) for k, (node, _) in enumerate(way))
+        angles = tuple(angle for _, angle in way)
+        pairs: Pairs = (np.array([h[0] for h in holds]), np.array([h[1] for h in holds]))
+        margin = float(self.arcs.candidates.margins(pairs, np.array(angles)).min())
+        return TurningSequence(Sequence(holds, margin, best.moves), angles)
+
+    def _way(self, best: "_Best", goal_angle: float, level: float) -> list[tuple[Node, float]] | None:
+        """Holds of a margin of ``level`` or more with their angles [rad]."""
         layers = best.layers
         toward = [best.last]  # and backwards, so that no row leads astray
         for _ in range(len(best.ways) - 1):
@@ -152,15 +172,9 @@ class ExactSearch:
             return ready(nodes)
 
         begin = ready([(int(s), int(u), int(v)) for s, u, v in np.argwhere(useful[0])])
-        way = least_turning(
+        return least_turning(
             begin, following, len(best.ways), lambda node: arcs[_pair(node)], goal_angle, self.max_turn
         )
-        assert way is not None
-        holds = tuple((*_pair(node), k) for k, (node, _) in enumerate(way))
-        angles = tuple(angle for _, angle in way)
-        pairs: Pairs = (np.array([h[0] for h in holds]), np.array([h[1] for h in holds]))
-        margin = float(self.arcs.candidates.margins(pairs, np.array(angles)).min())
-        return TurningSequence(Sequence(holds, margin, best.moves), angles)
 
 
 @dataclass(frozen=True, eq=False)
