@@ -7,6 +7,7 @@ Every ratio compares two things measured in turn in this one process. Answers ar
 """
 
 from collections.abc import Callable, Iterator
+from time import process_time
 
 import clarabel
 import cvxpy
@@ -23,6 +24,7 @@ from pairs import Pairs, quadratics
 from regrasp.closed_form.choice import EFFORT, best_squeeze
 from regrasp.planning.changes.path_program import PathTask, path_program
 from regrasp.planning.states.criteria import PEAK_RATIO
+from regrasp.planning.states.degenerate import flat_minima
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Cone, Program, available_backends, solve
 from report import Measure, Row
@@ -32,19 +34,26 @@ PATH_SIZES = (10, 100, 1_000, 10_000)
 OVERHEAD = (
     "Clarabel itself takes a quarter more here than in a loop of its own, where all its memory stays in the "
     "cache and its tolerances are a hundred times as wide; besides, some 100 us of Python that do not grow "
-    "with the program: about 20 for its right side, 10 to read the answer, 30 to audit it, 20 for exact "
-    "equilibrium inside the cones, and 20 for checks of arguments and the state; and least forces are made "
-    "exact to the last digits, interpreted in 200 us to 1 ms, from the five thousandth choice on compiled"
+    "with the program: about 20 for its right side, 10 to read the answer, 45 to audit it, and 20 for checks "
+    "of arguments and the state; least forces in the plane are made exact in 30 us, and largest forces in "
+    "150 to 200, interpreted, after 20 for exact equilibrium; from the five thousandth choice on, compiled, "
+    "in 30"
 )
 
 
 def overhead(effort: Effort) -> Iterator[Row]:
     """``choose_state`` through Clarabel, audit included, against bare Clarabel with prebuilt matrices."""
-    for fingers in (2, 3, 6):
-        grasp, load = ring(fingers)
-        for objective in ("effort", "peak", "peak_normal"):
-            yield overhead_row(effort, grasp, load, objective, f"{fingers} contacts")
-    yield first_row(effort, *ring(3), "3 contacts")
+    patience, flat_minima.PATIENCE = flat_minima.PATIENCE, 10**9  # nothing is compiled halfway
+    try:
+        for fingers in (2, 3, 6):
+            grasp, load = ring(fingers)
+            for objective in ("effort", "peak", "peak_normal"):
+                yield overhead_row(effort, grasp, load, objective, f"{fingers} contacts")
+        yield first_row(effort, *ring(3), "3 contacts")
+        flat_minima.PATIENCE = 0
+        yield overhead_row(effort, *ring(3), "peak", "3 contacts", ", compiled")
+    finally:
+        flat_minima.PATIENCE = patience
 
 
 def first_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, what: str) -> Row:
@@ -67,7 +76,9 @@ def first_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, what: str) -> Ro
     )  # fmt: skip
 
 
-def overhead_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, objective: str, what: str) -> Row:
+def overhead_row(
+    effort: Effort, grasp: rg.Grasp, load: rg.Wrench, objective: str, what: str, how: str = ""
+) -> Row:
     """One choice, whose value must be that of bare Clarabel."""
     unit = float(abs(load.vector).max())
     program = state_program(grasp, load, objective, grasp.frictions.tolist(), [np.inf] * len(grasp), unit)
@@ -76,12 +87,12 @@ def overhead_row(effort: Effort, grasp: rg.Grasp, load: rg.Wrench, objective: st
     theirs = bare(None).obj_val * (unit**2 if objective == "effort" else unit)
     close(np.array(ours), np.array(theirs), 1e-6, f"bare Clarabel for {objective}")
     return Row.of(
-        f"clarabel_{objective}_{len(grasp)}",
-        f'`choose_state(method="clarabel")`, `{objective}`, {what}',
+        f"clarabel_{objective}_{len(grasp)}{'_compiled' if how else ''}",
+        f'`choose_state(method="clarabel")`, `{objective}`, {what}{how}',
         "bare Clarabel: construct and solve, matrices prebuilt",
         effort.of(
-            Side(lambda _: rg.choose_state(grasp, load, objective, method="clarabel")),
-            Side(bare),
+            Side(lambda _: rg.choose_state(grasp, load, objective, method="clarabel"), clock=process_time),
+            Side(bare, clock=process_time),
         ),
         Measure.TIMES,
         2.0,

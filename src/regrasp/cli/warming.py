@@ -36,7 +36,7 @@ def _least_forces() -> None:
             grasp = rg.Grasp(
                 rg.Contact(side[:d], normal=[-round(x) for x in side[:d]], friction=0.8) for side in sides
             )
-            rg.choose_state(grasp, rg.Wrench([0.1, -1.0, 0.0][:d]), "effort")
+            rg.choose_state(grasp, rg.Wrench([0.1, -1.0, 0.0][:d]), "peak")
     finally:
         flat_minima.PATIENCE = patience
 

@@ -19,7 +19,7 @@ from regrasp.planning.states.solving import Chooser, Polish
 _KINDS = {Bound.NONE: 0, Bound.FORCE: 1, Bound.NORMAL: 2, Bound.MARGIN: 3}
 """The words of ``faces``."""
 PATIENCE = 5_000
-"""Calls of interpreted loops, at a millisecond each at most: then loading or compiling them pays."""
+"""Calls of arrays or interpreted loops, at a millisecond each at most: then compiled ones pay."""
 _calls = count()
 
 
@@ -34,9 +34,10 @@ def at_first_sight(
 ) -> Array | None:
     """The forces (n, w) at the minimum, in equilibrium inside cones and limits, of the face in sight.
 
-    None where that is not the right one, and where compiled loops are faster.
+    None where that is not the right one, and where compiled loops are faster: in space, and for peaks.
     """
-    if next(_calls) >= PATIENCE:
+    is_plain = chooser.grasp.dimension == 2 and objective.bound in (Bound.NONE, Bound.NORMAL)
+    if not is_plain and next(_calls) >= PATIENCE:
         return None
     given = _given(chooser, objective, forces, frictions, limits)
     if given is None:
