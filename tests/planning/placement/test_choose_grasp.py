@@ -295,7 +295,10 @@ def test_a_level_that_no_placement_reaches_is_refused_with_a_proof() -> None:
 def test_limits_and_disturbances_go_with_their_objectives() -> None:
     for more, words in (
         ({"objective": "angle"}, "max_force"),
-        ({"objective": "peak", "max_force": 3.0}, "max_force"),
+        ({"objective": "angle", "max_force": 3.0, "min_normal": 0.1}, "min_normal"),
+        ({"removable": True}, "three fingers"),
+        ({"keep": lambda p, q: True}, "keep"),
+        ({"keep": lambda p, q, angle: [True, True]}, "keep must return"),
         ({"objective": "answered", "max_force": 3.0}, "disturbance"),
         ({"objective": "peak", "disturbance": DEVIATIONS}, "disturbance"),
         ({"objective": "answered", "max_force": 3.0, "disturbance": DEVIATIONS}, "one load"),

@@ -271,25 +271,15 @@ def _loop(digest: str) -> Any:
             looked += 1
             node = _pop(heap, state[1], bounds)
             state[1] -= 1
+            most = found[0] if fixed == np.inf else fixed * (1.0 + 1e-6)
             # a placement from where its forces press
             _to_try(arcs[node], ends[node], seen[node], places)
             near = _put(sides, places, least, at_arcs, at_ends)
             if not near:
                 value, _ = _judge(
-                    sides,
-                    at_arcs,
-                    at_ends,
-                    loads,
-                    usable,
-                    size,
-                    norm,
-                    precision,
-                    found[0],
-                    critical[node],
-                    twist[0],
-                    work,
-                    nowhere,
-                )
+                    sides, at_arcs, at_ends, loads, usable, size, norm, precision, most,
+                    critical[node], twist[0], work, nowhere,
+                )  # fmt: skip
                 row = state[2] % len(tried)
                 state[2] += 1
                 tried[row, 0] = value

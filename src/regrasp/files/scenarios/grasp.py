@@ -56,7 +56,7 @@ class GraspTask(Strict):
         Field("sum_normal", description="what the grasp is chosen for")
     )
     max_force: Positive | None = Field(
-        None, description="limit on every force, for friction_use, angle and answered [N]"
+        None, description="limit on every force; friction_use, angle and answered need it [N]"
     )
     tolerance: Annotated[float, Field(gt=0, lt=1)] = Field(1e-3, description="gap at which the search ends")
     min_distance: Positive | None = Field(None, description="[m], between two fingers")

@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, number, whole
+from regrasp.mechanics.checks import Array, array, function, number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
+from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.chosen import ChosenGrasp
+from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.laws import LEVELS, law_of
 from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level, run_level
 from regrasp.planning.placement.loads import check_planar, inner_and_outer, offset_by
@@ -33,13 +35,16 @@ def choose_grasp(
     objective: str | Objective = "sum_normal",
     max_force: float | None = None,
     disturbance: LoadSet | None = None,
+    min_normal: float = 0.0,
+    keep: Filter | None = None,
+    removable: bool = False,
     arcs: Sequence[Sequence[float]] | None = None,
     tip_radius: float = 0.0,
     load_offset: float = 0.0,
     tolerance: float = 1e-3,
     min_distance: float | None = None,
     from_corners: float | None = None,
-    most_boxes: int = MOST_BOXES,
+    most_boxes: int | None = None,
     progress: Progress | None = None,
 ) -> ChosenGrasp:
     """The best places for fingers on a shape, with a proof that none are better.
@@ -57,7 +62,13 @@ def choose_grasp(
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
             ``friction_use`` and ``angle``, as of ``choose_state``; or ``answered``, the largest factor by
             which a ``disturbance`` may be scaled and forces still exist.
-        max_force: limit on every force, for the last three [N].
+        max_force: limit on every force; the last three need it [N].
+        min_normal: with which every finger pushes at the least, under every load [N].
+        keep: which two fingers may hold together, as of ``plan_regrasp``: a function of points (k, 2) of the
+            one and (k, 2) of the other, relative to the centre of mass [m], and the object's angle, here 0,
+            that returns (k,) booleans; it is asked for every two fingers of a grasp.
+        removable: whether one finger at least must be free to leave: the others hold all the loads, too, with
+            forces of at most ``max_force``.
         disturbance: a hull of deviations, added to the load, for ``answered``.
         arcs: the only stretches where fingers may be: pairs of arc lengths, counter-clockwise from the first
             to the second [m]; the whole outline if not given.
@@ -71,7 +82,8 @@ def choose_grasp(
             for two fingers at one point are one.
         from_corners: least distance of a finger from a corner, along the boundary [m]; a thousandth of the
             length if not given, and 0 lets a finger be on a corner with the normal of either side.
-        most_boxes: boxes after which the search ends with the gap it has; they bound its memory.
+        most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
+            200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help.
         progress: called with the bound and the least value so far as the search goes on: the norm of forces
             behind the objective [N].
 
@@ -87,7 +99,12 @@ def choose_grasp(
         raise InvalidInput(f"tolerance is a fraction below 1, got {shown(tolerance)}")
     apart = None if min_distance is None else number(min_distance, "min_distance", above=0)
     away = None if from_corners is None else number(from_corners, "from_corners", least=0)
-    whole(most_boxes, "most_boxes", least=64, most=10_000_000)
+    limit = None if max_force is None else number(max_force, "max_force", above=0)
+    constraints = Constraints(limit, number(min_normal, "min_normal", least=0), keep, removable)
+    _check_constraints(constraints, goal, fingers)
+    most = CONSTRAINED_BOXES if constraints.any else MOST_BOXES
+    if most_boxes is not None:
+        most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
     level = _level(goal, mu, load, max_force, disturbance)
     stretches = None if arcs is None else _pairs(arcs)
@@ -96,13 +113,15 @@ def choose_grasp(
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
     distance = DISTINCT * sides.size if apart is None else apart
     search = Search(sides, fingers, mu, inner, law, distance, _NARROW * tolerance)
-    asked = Asked(shape, goal, law, mu, outer)
+    asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.any)
     if level is not None:
-        return chosen_at_level(
-            search, asked, level, *run_level(search, level, tolerance, most_boxes, progress)
-        )
+        return chosen_at_level(search, asked, level, *run_level(search, level, tolerance, most, progress))
     # half of the tolerance is for loads around a round set and for friction kept back
-    search.run(0.5 * tolerance / law.power, most_boxes, progress)
+    half = 0.5 * tolerance / law.power
+    if constraints.any:
+        run_constrained(search, asked, constraints, half, most, progress)
+    else:
+        search.run(half, most, progress)
     return chosen_by_norm(search, asked)
 
 
@@ -119,13 +138,12 @@ def _level(
     """The level that is sought, None for a norm. ``InvalidInput`` for limits that it does not go with."""
     if (disturbance is not None) != (goal == "answered"):
         raise InvalidInput("disturbance and objective 'answered' go together: give both, or neither")
-    if (max_force is not None) != (goal in LEVELS):
-        raise InvalidInput(
-            f"max_force goes with objectives {', '.join(LEVELS)}, and they need it: without a limit they are "
-            f"best at infinite force; got objective {goal!r} and max_force {shown(max_force)}"
-        )
-    if max_force is None:
+    if goal not in LEVELS:
         return None
+    if max_force is None:
+        raise InvalidInput(
+            f"objective {goal!r} needs max_force: without a limit it is best at infinite force; got None"
+        )
     limit = number(max_force, "max_force", above=0)
     if disturbance is None:
         if friction == 0:
@@ -139,6 +157,20 @@ def _level(
             "objective 'answered' takes one load, a Wrench, on top of which the disturbance comes"
         )
     return AnsweredLevel(limit, load.vector, _deviations(disturbance))
+
+
+def _check_constraints(constraints: Constraints, goal: str, fingers: int) -> None:
+    if constraints.keep is not None:
+        function(constraints.keep, "keep", "a function of first points, second points and an angle", 3)
+    if not isinstance(constraints.removable, bool):
+        raise InvalidInput(f"removable must be True or False, got {shown(constraints.removable)}")
+    more = [n for n in ("min_normal", "keep", "removable") if getattr(constraints, n)]
+    if goal in LEVELS and more:
+        raise InvalidInput(
+            f"{', '.join(more)}: for objectives sum_normal, peak_normal, peak and effort; got {goal!r}"
+        )
+    if constraints.removable and fingers < 3:
+        raise InvalidInput("removable asks for three fingers or more: one finger alone is no grasp")
 
 
 def _deviations(disturbance: LoadSet) -> Array:

@@ -48,6 +48,7 @@ class ChosenGrasp(ArrayValue):
         others: the best of the grasps tried that differ in a finger by a twentieth of the length or more.
         certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
         max_force: limit on every force that was given [N]; None where none was.
+        min_normal: with which every finger pushes at the least [N].
     """
 
     shape: Outline
@@ -60,6 +61,7 @@ class ChosenGrasp(ArrayValue):
     others: tuple[OtherGrasp, ...]
     certificate: PlacementProof
     max_force: float | None = None
+    min_normal: float = 0.0
 
     @property
     def gap(self) -> float:
@@ -86,6 +88,7 @@ class ChosenGrasp(ArrayValue):
             ],
             "certificate": self.certificate.to_dict(),
             "max_force": self.max_force,
+            "min_normal": self.min_normal,
         }
 
     @classmethod
@@ -99,7 +102,7 @@ class ChosenGrasp(ArrayValue):
             InvalidInput: For other keys and for entries that are not what they must be.
         """
         keys = ("shape", "objective", "grasp", "states", "value", "bound", "places", "others", "certificate")
-        given = entries(data, "a chosen grasp", keys, ("max_force",))
+        given = entries(data, "a chosen grasp", keys, ("max_force", "min_normal"))
         limit = given.get("max_force")
         grasp = Grasp.from_dict(given["grasp"])
         others = [
@@ -125,6 +128,7 @@ class ChosenGrasp(ArrayValue):
             ),
             PlacementProof.from_dict(given["certificate"]),
             None if limit is None else number(limit, "max_force", above=0),
+            number(given.get("min_normal", 0.0), "min_normal", least=0),
         )
 
     def __str__(self) -> str:

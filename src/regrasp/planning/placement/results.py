@@ -35,7 +35,7 @@ _BACK = (1e-8, 1e-6, 1e-4)  # of a factor answered, so that forces exist for sol
 class Asked:
     """What a grasp was asked for.
 
-    loads: (L, 3) that it must hold.
+    loads: (L, 3) that it must hold. max_force, min_normal: of every finger [N].
     """
 
     shape: Outline
@@ -43,6 +43,9 @@ class Asked:
     law: Law
     friction: float
     loads: Array
+    max_force: float | None = None
+    min_normal: float = 0.0
+    constrained: bool = False
 
 
 def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
@@ -50,7 +53,11 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     power = asked.law.power
 
     def judged(grasp: Grasp, norm: float) -> tuple[list[ChosenState], ChosenState] | None:
-        states = [choose_state(grasp, Wrench.from_vector(w), asked.objective) for w in asked.loads]
+        limits = {"max_force": asked.max_force, "min_normal": asked.min_normal or None}
+        states = [
+            choose_state(grasp, Wrench.from_vector(w), asked.objective, **limits)  # type: ignore[arg-type]
+            for w in asked.loads
+        ]
         worst = max(states, key=lambda state: state.value)
         return (states, worst) if worst.value <= _AS_FOUND * norm**power else None
 
@@ -63,7 +70,7 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, shown, worst.value, min(bound**power, worst.value),
         _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda norm: norm**power),
-        _proof(search, asked, min(bound, search.largest)),
+        proof_of(search, asked, min(bound, search.largest)), asked.max_force, asked.min_normal,
     )  # fmt: skip
 
 
@@ -73,7 +80,7 @@ def chosen_at_level(
     """The best grasp of a search for a level. ``Infeasible`` where there is none."""
     limit = level.max_force
     if best is None:
-        proof = _proof(search, asked, limit if search.closed else 0.0)
+        proof = proof_of(search, asked, limit if search.closed else 0.0)
         what = (
             "hold the loads"
             if search.closed
@@ -116,7 +123,7 @@ def chosen_at_level(
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, tuple(map(_plain, states)), value, bound,
         _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda negative: abs(negative)),
-        _proof(search, asked, 0.0 if trivial else limit), max_force=limit,
+        proof_of(search, asked, 0.0 if trivial else limit), max_force=limit,
     )  # fmt: skip
 
 
@@ -150,17 +157,24 @@ def _plain(state: ChosenState) -> GraspState:
     return GraspState(state.grasp, state.load, state.forces)
 
 
-def _proof(search: Search, asked: Asked, bound: float) -> PlacementProof:
+def proof_of(search: Search, asked: Asked, bound: float) -> PlacementProof:
+    """The proof of a search, on the outline asked for."""
     vertices: Array = asked.shape.boundary.vertices  # type: ignore[attr-defined]
     return search.proof(bound, vertices, asked.shape.centre_of_mass)
 
 
 def _none_holds(search: Search, asked: Asked) -> Infeasible:
-    proof = _proof(search, asked, min(search.bound, search.largest))
+    proof = proof_of(search, asked, min(search.bound, search.largest))
     if search.best < inf:
         return Infeasible(
             "placements that hold the loads are so few that rounding decides, and none of those tried has "
             f"forces inside the cones; no placement needs less than {proof.bound:.6g} N",
+            proof,
+        )
+    if asked.constrained:
+        return Infeasible(
+            f"no placement was found that holds the loads and keeps the constraints; without them none needs "
+            f"less than {proof.bound:.6g} N, and that there is none with them is not proven",
             proof,
         )
     if search.bound == inf:

@@ -45,6 +45,7 @@ class Search:
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
         self.closed = False
         self.narrow = narrow
+        self._only = False
         self._kept: list[tuple[float, np.ndarray, Array]] = []
 
     def under(self, loads: Array) -> None:
@@ -67,18 +68,21 @@ class Search:
             if self.best == inf:
                 raise
 
-    def goes_on(self, fixed: float, tolerance: float, most: int) -> bool:
+    def goes_on(self, fixed: float, tolerance: float, most: int, *, only: bool = False) -> bool:
         """Some more boxes. False where none is left, or no room for more of them.
 
         fixed: a level of the norm [N], at which the search is interrupted when a placement reaches it; or
-        infinite, to follow the least value times 1 - tolerance.
+        infinite, to follow the least value times 1 - tolerance. only: to note placements tried
+        (``tried_since``), and take none for found.
         """
         from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search, spare
 
         law = (self.friction, kept_friction(self.friction, 2 * RESERVE), *self.law.codes(), _PRECISE)
+        self._only = only
+        found = np.zeros_like(self._found) if only else self._found
         ended = search(
             self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
-            self.narrow, self._boxes, self._heap, self._state, self._found, self._tried, _AT_A_TIME,
+            self.narrow, self._boxes, self._heap, self._state, found, self._tried, _AT_A_TIME,
             spare(self.fingers),
         )  # fmt: skip
         self.closed = ended == CLOSED
@@ -113,8 +117,7 @@ class Search:
 
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""
-        edges = self.sides.edges[places]
-        points = self.sides.vertices[edges] + (u - edges)[:, None] * self.sides.vectors[edges]
+        points = self.sides.points(places, u)
         away = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
         return bool((away + np.diag(np.full(len(u), inf)) >= self.apart).all())
 
@@ -124,18 +127,24 @@ class Search:
         self._found[:] = inf
         self.closed = False
 
-    def norm_at(self, places: np.ndarray, u: Array) -> float:
+    def accept(self, norm: float, places: np.ndarray, u: Array) -> None:
+        """Take a placement for found, of this norm [N]."""
+        self._kept.append((norm, places, u))
+        self._found[0], self._found[1::2], self._found[2::2] = norm / self.unit, places, u
+
+    def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None) -> float:
         """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
+        k = len(u)
         from regrasp.closed_form.compiled.placement_search import search, spare
 
         friction = kept_friction(self.friction, 2 * RESERVE)
-        boxes = _memory(1 + self.fingers + 1, self.fingers)
+        boxes = _memory(1 + k + 1, k)
         boxes[0][0] = places[:, None]
         boxes[1][0] = u[:, None]
         search(
-            self._table, self._wanted, (friction, friction, *self.law.codes(), _PRECISE), inf, 0.0, 0.0, 0.0,
-            boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf),
-            np.zeros((1, 1 + 2 * self.fingers)), 0, spare(self.fingers),
+            self._table, self._wanted, (friction, friction, *(law or self.law).codes(), _PRECISE), inf, 0.0,
+            0.0, 0.0, boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * k, inf),
+            np.zeros((1, 1 + 2 * k)), 0, spare(k),
         )  # fmt: skip
         return float(boxes[2][0]) * self.unit
 
@@ -181,15 +190,27 @@ class Search:
         """Sides and u of the best placement."""
         return self._found[1::2].astype(int), self._found[2::2].copy()
 
+    @property
+    def tries(self) -> int:
+        """Placements tried."""
+        return int(self._state[2])
+
+    def tried_since(self, before: int) -> list[tuple[float, np.ndarray, Array]]:
+        """Those tried after so many others, as ``placements``; at most some thousands."""
+        rows = self._tried[np.arange(max(before, self.tries - _TRIED), self.tries) % _TRIED]
+        return self._read(rows)
+
     def placements(self) -> list[tuple[float, np.ndarray, Array]]:
         """Placements tried, the best first: their norm [N], the sides and the u of their fingers.
 
         Where a level was sought, those that raised it, with its negative in the place of the norm.
         """
-        if self._kept:
+        if self._kept or self._only:
             return sorted(self._kept, key=lambda kept: kept[0])
         rows = self._tried[: min(int(self._state[2]), _TRIED)]
-        rows = np.vstack([self._found, rows])
+        return self._read(np.vstack([self._found, rows]))
+
+    def _read(self, rows: Array) -> list[tuple[float, np.ndarray, Array]]:
         rows = rows[np.isfinite(rows[:, 0])]
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         return [(row[0] * self.unit, row[1::2].astype(int), row[2::2]) for row in rows]

@@ -66,6 +66,12 @@ class Sides(ArrayValue):
         edge = int(self.edges[side])
         return float(self.starts[edge] + (u - edge) * self.lengths[edge])
 
+    def points(self, places: np.ndarray, u: Array) -> Array:
+        """(k, 2) of places on sides [m]."""
+        edges = self.edges[places]
+        result: Array = self.vertices[edges] + (u - edges)[:, None] * self.vectors[edges]
+        return result
+
     def contact(self, side: int, u: float, friction: float, name: str) -> Contact:
         """A finger on a side; at a corner it has that side's normal."""
         edge = int(self.edges[side])

@@ -56,6 +56,10 @@ class Chosen(Protocol):
     def max_force(self) -> float | None:
         """Limit on every force [N]."""
 
+    @property
+    def min_normal(self) -> float:
+        """With which every finger pushes at the least [N]."""
+
 
 # objective: size of a force, norm of the sizes, power of the norm
 _MEANINGS = {
@@ -112,6 +116,11 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     """That a state shows the value."""
     size, norm, power = _MEANINGS[chosen.objective]
     found, value = _norm(state, size, norm), chosen.value
+    limit = inf if chosen.max_force is None else chosen.max_force
+    if np.hypot(*state.forces.T).max() > limit * (1 + _CLOSE):
+        return [f"state {i}: a force is above the limit {limit:.12g}"]
+    if ((state.forces * state.grasp.normals).sum(axis=1) < chosen.min_normal * (1 - _CLOSE)).any():
+        return [f"state {i}: a finger pushes with less than {chosen.min_normal:.12g}"]
     if chosen.objective not in _LEVELS:
         if found**power > value * (1 + _CLOSE):
             return [f"state {i}: {chosen.objective} is above the value {value:.12g}"]

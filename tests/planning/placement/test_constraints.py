@@ -1,0 +1,93 @@
+"""Constraints that bounds know nothing of: kept by what is chosen, and the bound stays one."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+
+pytestmark = pytest.mark.oracle
+
+BRACKET = rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])
+LOADS = [rg.Wrench([0, -1], 0.2), rg.Wrench([0, -1], -0.2), rg.Wrench([0.3, -1]), rg.Wrench([-0.3, -1])]
+TILTED = rg.LoadSet.hull(LOADS)
+
+
+def sampled_best(fingers: int, count: int, objective: str, allowed=lambda grasp: True, **limits) -> float:
+    best = np.inf
+    contacts = [BRACKET.contact_at(s, friction=0.4) for s in BRACKET.sample(count)]
+    for few in combinations(contacts, fingers):
+        grasp = rg.Grasp(few)
+        if not allowed(grasp):
+            continue
+        try:
+            values = [rg.choose_state(grasp, load, objective, **limits).value for load in LOADS]
+        except rg.Infeasible:
+            continue
+        best = min(best, max(values))
+    return best
+
+
+@pytest.mark.parametrize(
+    ("objective", "limits"),
+    [("sum_normal", {"max_force": 0.65}), ("effort", {"min_normal": 0.45}), ("peak", {"min_normal": 0.5})],
+)
+def test_no_sampled_placement_within_the_limits_is_better(objective: str, limits: dict[str, float]) -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective=objective, most_boxes=3000, **limits)
+    free = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective=objective)
+    sampled = sampled_best(2, 14, objective, **limits)
+    assert free.bound <= chosen.value * (1 + 1e-9)
+    assert chosen.bound <= chosen.value <= sampled * 1.01
+    for state in chosen.states:
+        assert np.hypot(*state.forces.T).max() <= limits.get("max_force", np.inf) * (1 + 1e-9)
+        assert (state.forces * state.grasp.normals).sum(axis=1).min() >= limits.get("min_normal", 0) - 1e-9
+    assert rg.verify(chosen).ok
+    assert rg.ChosenGrasp.from_dict(chosen.to_dict()) == chosen
+
+
+def test_a_touched_limit_is_seen() -> None:
+    data = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, min_normal=0.1, max_force=2.0).to_dict()
+    for name, value in (("max_force", 0.3), ("min_normal", 0.7)):
+        assert not rg.verify(rg.ChosenGrasp.from_dict({**data, name: value})).ok
+
+
+def near(first: np.ndarray, second: np.ndarray, angle: float) -> np.ndarray:
+    assert angle == 0.0
+    return np.hypot(*(first - second).T) < 2.5
+
+
+def test_a_gripper_of_little_reach_gets_what_it_reaches_and_an_honest_gap() -> None:
+    chosen = rg.choose_grasp(
+        BRACKET, 2, TILTED, friction=0.4, objective="peak", keep=near, most_boxes=3000, tolerance=1e-3
+    )
+    a, b = chosen.grasp.positions
+    assert np.hypot(*(a - b)) < 2.5
+    sampled = sampled_best(2, 20, "peak", lambda g: np.hypot(*(g.positions[0] - g.positions[1])) < 2.5)
+    assert chosen.bound <= chosen.value <= sampled * 1.01
+    assert chosen.gap > 1e-3  # the bound is that of all placements
+    assert rg.verify(chosen).ok
+
+
+def test_a_finger_can_leave_what_is_chosen_removable() -> None:
+    chosen = rg.choose_grasp(
+        BRACKET, 3, TILTED, friction=0.4, objective="effort", removable=True, max_force=1.0, most_boxes=3000
+    )
+
+    def holds(pair: list[rg.Contact]) -> bool:
+        try:
+            return all(rg.choose_state(rg.Grasp(pair), load, "peak").value <= 1.0 for load in LOADS)
+        except rg.Infeasible:
+            return False
+
+    assert any(holds(list(pair)) for pair in combinations(chosen.grasp, 2))
+    assert rg.verify(chosen).ok
+
+
+def test_a_limit_too_low_is_refused_with_a_proof_and_a_filter_without() -> None:
+    with pytest.raises(rg.Infeasible, match=r"at most 0\.3 N") as caught:
+        rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, max_force=0.3)
+    assert rg.verify(caught.value.certificate).ok
+    with pytest.raises(rg.Infeasible, match="not proven") as caught:
+        rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, keep=lambda p, q, a: [False], most_boxes=256)
+    assert rg.verify(caught.value.certificate).ok
