@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from regrasp.cli.scenarios import KINDS
-from regrasp.files import parse_scenario, plan_scenario
+from regrasp.files import parse_scenario, plan_scenario, read_plan
 from regrasp.files.scenarios.templates import NAMES, template
 from regrasp.verification import verify
 from scenarios import regrasp
@@ -21,6 +21,18 @@ def test_it_plans_as_it_is(name: str) -> None:
     scenario = parse_scenario(template(name), f"{name}.toml")
     assert scenario.task.kind == name.removeprefix("space-")
     assert verify(plan_scenario(scenario)).ok
+
+
+@pytest.mark.parametrize("space", [(), ("--space",)])
+def test_the_finger_that_arrives_works_and_nothing_is_doubted(
+    space: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "exchange.toml"
+    assert regrasp(capsys, "new", "exchange", path, *space)[0] == 0
+    status, _, err = regrasp(capsys, "plan", path, "-o", tmp_path, "--no-figures")
+    assert (status, err) == (0, "")
+    plan = read_plan(tmp_path / "plan.json")
+    assert abs(plan.end.forces[-1]).max() > 0.1 * abs(plan.end.forces).max()
 
 
 @pytest.mark.parametrize("name", NAMES)

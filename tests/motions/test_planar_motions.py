@@ -259,3 +259,12 @@ def test_what_is_not_planar_is_refused() -> None:
         plan_motions(plan, "disc", tip_radius=1, clearance=1)  # type: ignore[arg-type]
     with pytest.raises(rg.InvalidInput, match="clearance must be greater than 0, got 0"):
         plan_motions(plan, SHAPES["ellipse"], tip_radius=1, clearance=0)
+
+
+def test_the_object_is_that_of_the_plan():
+    plan, _ = planned("ellipse", 1)[0]
+    for other in (rg.Outline.ellipse(0.02, 0.02), rg.Outline.ellipse(40, 20)):  # another one, other units
+        with pytest.raises(
+            rg.InvalidInput, match=r"away from the outline, farther than the clearance 0\.002"
+        ):
+            plan_motions(plan, other, tip_radius=RADIUS, clearance=CLEARANCE)

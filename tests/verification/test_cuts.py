@@ -42,6 +42,12 @@ def test_refusals_at_any_orientation_are_proven(options):
     verdict = rg.verify(proof)
     assert verdict.ok
     assert str(verdict).startswith("no regrasp leads from the start to the goal on these contacts")
+    asked = (
+        f"with angle margins of {options['least_margin']:g} rad"
+        if "least_margin" in options
+        else "with fingers 5 apart"
+    )
+    assert str(verdict).count(asked) == 2  # another regrasp may well exist
     assert verdict.crossing == len(proof.reached) * (len(proof.contacts) - len(proof.reached))
 
 

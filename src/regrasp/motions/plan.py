@@ -6,6 +6,8 @@ import numpy as np
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number, numbers_in
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.value import numbers
 from regrasp.mesh.mesh import Mesh
 from regrasp.motions.air import Air
 from regrasp.motions.stands import stops
@@ -48,7 +50,8 @@ def plan_motions(
             spheres if absent.
 
     Raises:
-        InvalidInput: For a plan in the plane with a mesh, or one in space with an outline.
+        InvalidInput: For a plan in the plane with a mesh, or one in space with an outline; for a contact that
+            is farther from the shape than the clearance, as of another object or in other units.
         Infeasible: With the finger and the place where it is shut in, or where two fingers are in one
             another.
     """
@@ -61,6 +64,8 @@ def plan_motions(
         raise InvalidInput(f"ways of this plan are in the {wanted}, got {shown(shape)}")
     radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
     limits = number(speed, "speed", above=0), number(acceleration, "acceleration", above=0)
+    for contact in {c.name: c for step in steps for c in step.grasp}.values():
+        _refuse_off(contact, shape, keep)
     places = list(stops(plan, steps))
     air = Air(steps, shape, radius, keep, _capsules(capsules, len(places[0]), dimension))
     for k, stop in enumerate(places[1:-1]):
@@ -74,6 +79,22 @@ def plan_motions(
     tips = np.array([[air.stand(i, n).tip(on) for i, (n, on) in enumerate(p)] for p in places[1:]])
     touching = np.array([[on for _, on in p] for p in places[1:]])
     return Motions(plan, tuple(motions), tips, touching, radius, keep, air.capsules)
+
+
+def _refuse_off(contact: Contact, shape: Outline | Mesh, keep: float) -> None:
+    """Raise ``InvalidInput`` unless a contact is on its shape, to the clearance."""
+    point = contact.position + shape.centre_of_mass
+    if isinstance(shape, Mesh):
+        near = shape.nearest(point) - shape.centre_of_mass
+    else:
+        near = shape.points(shape.nearest(point))
+    off = float(np.linalg.norm(contact.position - near))
+    if off > keep:
+        what = "mesh" if isinstance(shape, Mesh) else "outline"
+        raise InvalidInput(
+            f"{contact.name} at {numbers(contact.position)} is {off:.3g} away from the {what}, farther than "
+            f"the clearance {keep:.3g}; give the {what} that the plan was made for, in the same units"
+        )
 
 
 def _capsules(given: ArrayLike | None, fingers: int, dimension: int) -> Array:

@@ -26,6 +26,7 @@ class Verification(ArrayValue):
             others.
         bound: no placement has a smaller value than this, of a chosen grasp; None of others.
         crossing: pairs of contacts that cross a cut, of which none holds; None of others.
+        asked: what every hold of the regrasps that a cut excludes had to keep, in words; empty for nothing.
     """
 
     violations: tuple[str, ...]
@@ -37,6 +38,7 @@ class Verification(ArrayValue):
     excluded: int | None = None
     bound: float | None = None
     crossing: int | None = None
+    asked: str = ""
 
     @property
     def ok(self) -> bool:
@@ -48,8 +50,9 @@ class Verification(ArrayValue):
             return "\n".join(["not verified:", *(f"  {violation}" for violation in self.violations)])
         if self.crossing is not None:
             return (
-                f"no regrasp leads from the start to the goal on these contacts, at any orientation: none of "
-                f"{self.crossing} pairs across the cut holds a load, in exact arithmetic"
+                f"no regrasp leads from the start to the goal on these contacts{self.asked}, at any "
+                f"orientation: none of {self.crossing} pairs across the cut holds a load{self.asked}, "
+                f"in exact arithmetic"
             )
         by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
         lines = [

@@ -87,3 +87,11 @@ def test_least_normals_too_large_are_refused():
     asked = rg.Criteria("angle", min_normal=0.3)
     plan = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, objective=asked)
     assert max(plan.steps[0].record.least_normals) == 0.3
+
+
+def test_fingers_side_by_side_press_by_no_squeeze():
+    """Normals across the line of two contacts: squeezing changes neither normal force, and warns of none."""
+    square = [rg.Contact([x, y], normal=[0, -y], friction=0.5) for y in (-1, 1) for x in (-1, 1)]
+    graph = HoldGraph(tuple(named(square, "c")), WEIGHT, evenly(4), min_normal=50.0)
+    for i, j in ((0, 1), (2, 3)):
+        assert all(graph.margin(i, j, o) < 0 for o in range(4))

@@ -22,7 +22,7 @@ from regrasp.compilation import kept
 _NONE = -1.0
 
 
-@kept(error_model="numpy")
+@kept("widest margins within a stance", error_model="numpy")
 def widen(stance, known, margins, rows, near, floor, result):  # type: ignore[no-untyped-def]
     """Widest least margins (n, O) of ways to the n holds of a stance, within it; -1 up to ``floor``."""
     count = known.shape[1]
@@ -56,7 +56,7 @@ def widen(stance, known, margins, rows, near, floor, result):  # type: ignore[no
             result[q, o] = value if value > floor else _NONE
 
 
-@kept(error_model="numpy")
+@kept("least costs within a stance", error_model="numpy")
 def cheapen(stance, known, move, worth, rows, near, turning, step, bound, result):  # type: ignore[no-untyped-def]
     """Least costs (n, O) of ways to the n holds of a stance that go on within it, after a ``move``.
 
@@ -108,7 +108,7 @@ def others_of(holds, hold, point):  # type: ignore[no-untyped-def]
     raise NotImplementedError("compiled code only: see stances")
 
 
-@kept(error_model="numpy")
+@kept("stances of holds", error_model="numpy")
 def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
     """Whether a stance is allowed, and no other fresh hold stands for it."""
     for other in rest:  # noqa: SIM110 - Numba unrolls a loop over a tuple, and no generator

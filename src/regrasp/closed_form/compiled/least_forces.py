@@ -11,7 +11,7 @@ _refined = compiled(_MODULES, inline=False)["refined"]
 
 
 def _loop(sources: str) -> Any:
-    @kept(error_model="numpy")
+    @kept("least forces", error_model="numpy")
     def refined(  # type: ignore[no-untyped-def]
         forces, unit, matrix, load, normals, frictions, negligible, limits, squares, linear, kind
     ):

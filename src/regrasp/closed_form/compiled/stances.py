@@ -6,7 +6,7 @@ from regrasp.closed_form.compiled.hold_paths import Moves, cheapest, others_of, 
 from regrasp.compilation import kept
 
 
-@kept(error_model="numpy")
+@kept("the holds of a stance", error_model="numpy")
 def pair_others(holds, hold, third):  # type: ignore[no-untyped-def]
     """The two other holds of the three points of a pair and a third.
 
@@ -22,7 +22,7 @@ def pair_others(holds, hold, third):  # type: ignore[no-untyped-def]
     return ids[0, third, u], ids[1, third, v]
 
 
-@kept(error_model="numpy")
+@kept("the holds of a stance in space", error_model="numpy")
 def triple_others(holds, hold, fourth):  # type: ignore[no-untyped-def]
     """The three other holds of the four points of a triple and a fourth.
 
@@ -57,7 +57,7 @@ def triple_others(holds, hold, fourth):  # type: ignore[no-untyped-def]
     return whole[0], whole[1], whole[2]
 
 
-@kept(error_model="numpy")
+@kept("the numbers of triples", error_model="numpy")
 def _place(n, i, j, k):  # type: ignore[no-untyped-def]
     """Of i < j < k among all triples of n points."""
     m, rest = n - i, n - j

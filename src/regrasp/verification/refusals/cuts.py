@@ -70,7 +70,17 @@ def verify_cut(cut: Cut) -> Verification:
             broken.append(f"contacts {i} and {j} of the goal may hold and are not both on the other side")
     crossing = [(i, j) for i in sorted(inside) for j in outside]
     broken += [f"contacts {i} and {j} may hold across the cut" for i, j in crossing if holds.may(i, j)]
-    return Verification(tuple(broken), 0.0, inf, inf, crossing=len(crossing))
+    return Verification(tuple(broken), 0.0, inf, inf, crossing=len(crossing), asked=_asked(cut))
+
+
+def _asked(cut: Cut) -> str:
+    """What every hold has to keep, in words; empty for nothing."""
+    asked = []
+    if cut.least_margin > 0:
+        asked.append(f"angle margins of {cut.least_margin:.4g} rad")
+    if cut.min_distance > 0:
+        asked.append(f"fingers {cut.min_distance:.4g} apart")
+    return f" with {' and '.join(asked)}" if asked else ""
 
 
 class _Holds:

@@ -132,4 +132,4 @@ def _pressing(
         lo = np.where(slope > 0, np.maximum(lo, bound), lo)
         hi = np.where(slope < 0, np.minimum(hi, bound), hi)
         lo = np.where((slope == 0) & (rest > 0), inf, lo)
-    return np.where(lo <= hi, np.minimum(np.maximum(x, lo), hi), np.nan)
+    return np.where((lo <= hi) & (lo < inf) & (hi > -inf), np.minimum(np.maximum(x, lo), hi), np.nan)
