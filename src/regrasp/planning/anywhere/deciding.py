@@ -12,6 +12,7 @@ from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.anywhere.cut import excluded_boxes, reached_arcs
 from regrasp.planning.anywhere.hold_map import TIE, HoldMap, Place, flooded
+from regrasp.planning.anywhere.polygons import width
 from regrasp.planning.anywhere.results import OutlineRegrasps
 from regrasp.planning.anywhere.walk import Hold, walk_through
 from regrasp.planning.states.batch import locus_intervals
@@ -19,6 +20,10 @@ from regrasp.plans.outline_cut import OutlineCut
 
 MOST_SIDES = 500
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
+
+# Regions that a walk prefers are wider than the first of these fractions, then than the next: narrow ones
+# take many holds.
+_WIDTHS = (1e-2, 1e-3, 0.0)
 
 Places = tuple[Place, ...]
 
@@ -114,22 +119,27 @@ def _places(vertices: Array, grasp: Grasp, friction: float, name: str) -> Places
 
 
 def _walk(holds: HoldMap, neighbours: list[set[int]], start: Places, goal: Places) -> list[Hold] | None:
-    """Holds from one of the start to one of the goal, through fewest regions; None where none is sure."""
+    """Holds from the start to the goal, through fewest wide regions; None where none is sure."""
     if sorted(start) == sorted(goal):
         return []
     leave, arrive = (
         {k: at for p, q in combinations(end, 2) for k, at in holds.at(p, q, TIE)} for end in (start, goal)
     )
-    before = flooded(neighbours, set(leave))
-    last = next((k for k in before if k in arrive), None)
-    if last is None:
-        return None
-    path = [last]
-    while (previous := before[path[-1]]) is not None:
-        path.append(previous)
-    path.reverse()
-    walk = walk_through(holds, path, leave[path[0]], arrive[last])
-    return walk if walk is not None and _held(holds, walk) else None
+    for least in _WIDTHS:
+        wide = {k for k, region in enumerate(holds.regions) if width(region.polygon) > least}
+        wide |= leave.keys() | arrive.keys()
+        before = flooded([near & wide for near in neighbours], set(leave))
+        last = next((k for k in before if k in arrive), None)
+        if last is None:
+            continue
+        path = [last]
+        while (previous := before[path[-1]]) is not None:
+            path.append(previous)
+        path.reverse()
+        walk = walk_through(holds, path, leave[path[0]], arrive[last])
+        if walk is not None and _held(holds, walk):
+            return walk
+    return None
 
 
 def _held(holds: HoldMap, walk: list[Hold]) -> bool:

@@ -39,7 +39,7 @@ def hold_polygons(one: Side, other: Side, least_width: Number) -> list[Polygon]:
     found = _right_of(one, other)
     if one is not other:  # of one side with itself the other half is the mirror image
         found += [[(g, f) for f, g in reversed(polygon)] for polygon in _right_of(other, one)]
-    return [polygon for polygon in found if 2 * area(polygon) > least_width * _around(polygon)]
+    return [polygon for polygon in found if width(polygon) > least_width]
 
 
 def sides_across(vertices: Array, friction: Number, force: Sequence[Number]) -> list[Side]:
@@ -118,10 +118,11 @@ def area(polygon: Polygon) -> Number:
     )
 
 
-def _around(polygon: Polygon) -> Number:
-    """Twice the sides of the box around a polygon."""
+def width(polygon: Polygon) -> Number:
+    """The area over both sides of the box around it, which is below the width of a strip; 0 of a point."""
     f, g = [p[0] for p in polygon], [p[1] for p in polygon]
-    return 2 * (max(f) - min(f) + max(g) - min(g))
+    around = max(f) - min(f) + max(g) - min(g)
+    return area(polygon) / around if around > 0 else around
 
 
 def _mix(*terms: tuple[Number, Affine]) -> Affine:
