@@ -170,6 +170,24 @@ def test_the_value_is_that_of_the_loads_of_the_proof() -> None:
         assert not rg.verify(alone).ok
 
 
+def test_a_factor_is_that_of_the_deviations() -> None:
+    answered = rg.choose_grasp(
+        BRACKET, 3, rg.Wrench([0, -1.0]), friction=0.5, objective="answered", max_force=5.0,
+        disturbance=rg.LoadSet.hull([rg.Wrench([1, 0]), rg.Wrench([-1, 0]), rg.Wrench([0, 0], 0.3)]),
+        tolerance=0.05,
+    )  # fmt: skip
+    assert rg.verify(answered).ok
+    assert rg.ChosenGrasp.from_dict(json.loads(json.dumps(answered.to_dict()))) == answered
+    assert answered.deviations is not None
+    for wrong in (
+        replace(answered, value=answered.value * 10, bound=answered.bound * 10),
+        replace(answered, deviations=answered.deviations / 10),
+        replace(answered, deviations=None),
+        replace(answered, bound=answered.value),
+    ):
+        assert not rg.verify(wrong).ok
+
+
 def test_limits_and_distances_that_are_no_numbers_prove_nothing() -> None:
     level = rg.choose_grasp(
         BRACKET, 3, rg.Wrench([0, -1.0]), friction=0.5, objective="angle", max_force=2.0, tolerance=0.05

@@ -49,6 +49,7 @@ class ChosenGrasp(ArrayValue):
         certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
         max_force: limit on every force that was given [N]; None where none was.
         min_normal: with which every finger pushes at the least [N].
+        deviations: (m, 3) of ``answered``, whose multiple by ``value`` is held on top of the load [N, N m].
     """
 
     shape: Outline
@@ -62,6 +63,7 @@ class ChosenGrasp(ArrayValue):
     certificate: PlacementProof
     max_force: float | None = None
     min_normal: float = 0.0
+    deviations: Array | None = None
 
     @property
     def gap(self) -> float:
@@ -89,6 +91,7 @@ class ChosenGrasp(ArrayValue):
             "certificate": self.certificate.to_dict(),
             "max_force": self.max_force,
             "min_normal": self.min_normal,
+            "deviations": None if self.deviations is None else self.deviations.tolist(),
         }
 
     @classmethod
@@ -102,8 +105,8 @@ class ChosenGrasp(ArrayValue):
             InvalidInput: For other keys and for entries that are not what they must be.
         """
         keys = ("shape", "objective", "grasp", "states", "value", "bound", "places", "others", "certificate")
-        given = entries(data, "a chosen grasp", keys, ("max_force", "min_normal"))
-        limit = given.get("max_force")
+        given = entries(data, "a chosen grasp", keys, ("max_force", "min_normal", "deviations"))
+        limit, deviations = given.get("max_force"), given.get("deviations")
         grasp = Grasp.from_dict(given["grasp"])
         others = [
             entries(o, "others", ("grasp", "places", "value")) for o in listed(given["others"], "others")
@@ -129,6 +132,7 @@ class ChosenGrasp(ArrayValue):
             PlacementProof.from_dict(given["certificate"]),
             None if limit is None else number(limit, "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
+            None if deviations is None else array(deviations, "deviations", (None, 3)),
         )
 
     def __str__(self) -> str:

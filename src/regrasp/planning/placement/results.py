@@ -124,6 +124,7 @@ def chosen_at_level(
         asked.shape, asked.objective, grasp, tuple(map(_plain, states)), value, bound,
         _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda negative: abs(negative)),
         proof_of(search, asked, 0.0 if trivial else limit), max_force=limit,
+        deviations=read_only(np.array(level.deviations)) if isinstance(level, AnsweredLevel) else None,
     )  # fmt: skip
 
 

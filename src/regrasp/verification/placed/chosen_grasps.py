@@ -60,6 +60,10 @@ class Chosen(Protocol):
     def min_normal(self) -> float:
         """With which every finger pushes at the least [N]."""
 
+    @property
+    def deviations(self) -> Array | None:
+        """(m, 3) of ``answered`` [N, N m]."""
+
 
 # objective: size of a force, norm of the sizes, power of the norm
 _MEANINGS = {
@@ -152,6 +156,10 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         return []
     if chosen.max_force is None or not 0 < chosen.max_force < inf:
         return ["a level needs the limit of its forces"]
+    if chosen.objective == "answered":
+        shown = np.array([state.load.vector for state in chosen.states])
+        if chosen.deviations is None or not _scaled(chosen, shown, value):
+            return ["the states do not hold the deviations times the value"]
     if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
         return _check_trivial(chosen, proof)
     mu = min(c.friction for c in chosen.grasp)
@@ -160,7 +168,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     elif chosen.objective == "angle":
         proven = bound >= (atan(mu) - atan(proof.friction)) * (1 - _CLOSE)
     else:
-        proven = _scaled(chosen, np.asarray(proof.loads))
+        proven = _scaled(chosen, np.asarray(proof.loads)[1:], bound)
     return [] if proven else [f"bound {bound:.12g} is better than what the proof says"]
 
 
@@ -174,20 +182,18 @@ def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
     else:  # k forces make no larger wrench than k times the limit, at the largest lever
         reach = float(np.hypot(*(np.asarray(proof.vertices) - proof.centre_of_mass).T).max())
         most = len(chosen.grasp) * float(chosen.max_force or 0.0) * np.array([1.0, 1.0, reach])
-        loads = np.asarray(proof.loads)
-        deviations = loads[1:] - loads[0]
-        proven = bool((np.abs(loads[0] + deviations * chosen.bound) >= most).any())
+        center, deviations = np.asarray(proof.loads)[0], np.asarray(chosen.deviations)
+        proven = bool((np.abs(center + deviations * chosen.bound) >= most).any())
     return [] if proven else ["the proof proves no bound"]
 
 
-def _scaled(chosen: Chosen, loads: Array) -> bool:
-    """Whether loads of a proof are those of the states, their deviations scaled from value to bound."""
-    center = loads[0]
-    shown = np.array([state.load.vector for state in chosen.states])
-    if len(shown) != len(loads) - 1 or not chosen.value > 0:
+def _scaled(chosen: Chosen, loads: Array, factor: float) -> bool:
+    """Whether loads are the first load of the proof with the deviations on top, by a factor."""
+    center, deviations = np.asarray(chosen.certificate.loads)[0], np.asarray(chosen.deviations)
+    if loads.shape != deviations.shape:
         return False
-    wanted = center + (shown - center) * (chosen.bound / chosen.value)
-    return bool((np.abs(loads[1:] - wanted) <= _CLOSE * np.abs(loads).max()).all())
+    wanted = center + deviations * factor
+    return bool((np.abs(loads - wanted) <= _CLOSE * np.abs(wanted).max()).all())
 
 
 def _norm(state: GraspState, size: str, norm: str) -> float:
