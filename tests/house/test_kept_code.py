@@ -152,13 +152,9 @@ def test_without_any_folder_to_write_to(tmp_path: Path) -> None:
     home.write_text("")
     code = (
         "import numpy as np, regrasp\n"
-        "from regrasp.programs import Rows, solve\n"
-        "rows = Rows(2)\n"
-        "rows.at_least_zero(np.eye(2), -1.0)\n"
-        "program = rows.program([1.0, 1.0])\n"
-        "for _ in range(201):  # audits compile where there are many\n"
-        "    solution = solve(program, 'clarabel')\n"
-        "print(solution.value.round(6).tolist(), regrasp.__file__)\n"
+        "place = np.zeros((2000, 2)) + [1, 0]\n"
+        "best = regrasp.best_squeezes(-place, place, 0.5, place, -place, 0.5, [0.0, -1.0], 0.0, objective='effort')\n"
+        "print(len(best), regrasp.__file__)\n"
     )
     environment = os.environ | {
         "PYTHONPATH": str(tmp_path),
@@ -169,7 +165,7 @@ def test_without_any_folder_to_write_to(tmp_path: Path) -> None:
     environment.pop("NUMBA_CACHE_DIR", None)
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
-    assert done.stdout == f"[1.0, 1.0] {package / '__init__.py'}\n"
+    assert done.stdout == f"2000 {package / '__init__.py'}\n"
     assert done.stderr == (
         "compiled code cannot be kept (no folder), so every run compiles anew; "
         "set NUMBA_CACHE_DIR to a folder that can be written to\n"
