@@ -153,7 +153,8 @@ def test_without_any_folder_to_write_to(tmp_path: Path) -> None:
     code = (
         "import numpy as np, regrasp\n"
         "place = np.zeros((2000, 2)) + [1, 0]\n"
-        "best = regrasp.best_squeezes(-place, place, 0.5, place, -place, 0.5, [0.0, -1.0], 0.0, objective='effort')\n"
+        "pairs = -place, place, 0.5, place, -place, 0.5\n"
+        "best = regrasp.best_squeezes(*pairs, [0.0, -1.0], 0.0, objective='effort')\n"
         "print(len(best), regrasp.__file__)\n"
     )
     environment = os.environ | {
