@@ -195,6 +195,10 @@ def test_limits_and_distances_that_are_no_numbers_prove_nothing() -> None:
     assert rg.verify(level).ok
     for limit in (None, np.nan, np.inf, 0.0):
         assert not rg.verify(replace(level, max_force=limit)).ok
+    mixed = rg.Grasp(c.changed(friction=0.5 + 0.1 * k) for k, c in enumerate(level.grasp))
+    states = [rg.GraspState(mixed, s.load, s.forces) for s in level.states]
+    assert not rg.verify(replace(level, grasp=mixed, states=tuple(states))).ok
+    assert not rg.verify(replace(chosen(), min_normal=np.nan)).ok
     for distance in (-100.0, np.nan, np.inf):
         assert not rg.verify(replace(level.certificate, min_distance=distance)).ok
 

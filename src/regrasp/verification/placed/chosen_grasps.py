@@ -123,7 +123,7 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     limit = inf if chosen.max_force is None else chosen.max_force
     if np.hypot(*state.forces.T).max() > limit * (1 + _CLOSE):
         return [f"state {i}: a force is above the limit {limit:.12g}"]
-    if ((state.forces * state.grasp.normals).sum(axis=1) < chosen.min_normal * (1 - _CLOSE)).any():
+    if not ((state.forces * state.grasp.normals).sum(axis=1) >= chosen.min_normal * (1 - _CLOSE)).all():
         return [f"state {i}: a finger pushes with less than {chosen.min_normal:.12g}"]
     if chosen.objective not in _LEVELS:
         if found**power > value * (1 + _CLOSE):
@@ -163,6 +163,8 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
         return _check_trivial(chosen, proof)
     mu = min(c.friction for c in chosen.grasp)
+    if chosen.objective != "answered" and mu != max(c.friction for c in chosen.grasp):
+        return ["a level of friction is that of one coefficient, the contacts have several"]
     if chosen.objective == "friction_use":
         proven = Fraction(bound) * Fraction(mu) <= Fraction(proof.friction) * (1 + RESOLUTION)
     elif chosen.objective == "angle":
