@@ -128,3 +128,10 @@ def test_degrees_by_name_and_a_warning_beyond_a_whole_turn() -> None:
             rg.plan_rotation(GRASP, load=LOAD, **wrong)
     with pytest.raises(rg.InvalidInput, match="there is nothing to turn"):
         rg.plan_rotation(GRASP, degrees=0, load=LOAD)
+
+
+def test_criteria_show_what_was_given():
+    assert repr(rg.Criteria()) == "Criteria('angle')"
+    assert repr(rg.Criteria("effort", max_force=3.0, stiffness=[1, 2])) == (
+        "Criteria('effort', max_force=3.0, stiffness=(1.0, 2.0))"
+    )

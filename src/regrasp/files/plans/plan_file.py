@@ -177,7 +177,9 @@ def plan_document(plan: Transition | RegraspPlan | ChosenGrasp, name: str | Path
 def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan | ChosenGrasp:
     """The plan of what a plan file holds. Raises ``InvalidInput``, which begins with ``name``."""
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise InvalidInput(f'{name}: expected a plan with "format": "{FORMAT}", found other JSON')
+        found = data.get("format") if isinstance(data, dict) else None
+        other = f'"format": {shown(found)}' if isinstance(found, str) else "other JSON"
+        raise InvalidInput(f'{name}: expected a plan with "format": "{FORMAT}", found {other}')
     if data.get("version") != VERSION or type(data["version"]) is not int:  # True == 1
         raise InvalidInput(
             f"{name}: version: expected {VERSION}, got {shown(data.get('version'))}; "

@@ -109,6 +109,11 @@ class Criteria:
     def _hash(self) -> int:
         return hash(tuple(vars(self)[f.name] for f in fields(self)))
 
+    def __repr__(self) -> str:
+        given = [(f.name, getattr(self, f.name), f.default) for f in fields(self)]
+        other = [f"{name}={value!r}" for name, value, default in given[1:] if value != default]
+        return f"Criteria({', '.join([repr(str(self.objective)), *other])})"
+
     def __hash__(self) -> int:
         return self._hash
 
