@@ -202,3 +202,6 @@ def test_what_is_asked_is_checked() -> None:
         rg.verify(plan, position=[0, 0, 0], surface=[1.0, 2.0])
     with pytest.raises(rg.InvalidInput, match="have a row for each of 3 contacts, got 2"):
         rg.verify(plan, disturbance=SMALL, stiffness=[1.0, 2.0])
+    for alone in {"stiffness": 100.0}, {"surface": 0.5}:
+        with pytest.raises(rg.InvalidInput, match="give disturbance, position, friction or early_loss, too"):
+            rg.verify(plan, **alone)

@@ -91,6 +91,11 @@ class Asked:
             raise InvalidInput(f"surface must be one curvature or {n}, got shape {curved.shape}")
         springs = checked_stiffness(stiffness)
         if disturbance is None and friction is None and position is None and not early_loss:
+            if stiffness is not None or surface is not None:
+                raise InvalidInput(
+                    "stiffness and surface say how a grasp answers to what is asked of it: give disturbance, "
+                    "position, friction or early_loss, too"
+                )
             return None
         return cls(disturbance, springs, factor, offsets, np.broadcast_to(curved, n), early_loss)
 
