@@ -250,7 +250,7 @@ def transitions(draw: st.DrawFn) -> rg.Transition:
     rows = st.lists(st.lists(finite, min_size=d, max_size=d), min_size=n, max_size=n)
     start, end = (rg.GraspState(grasp, load, draw(rows)) for _ in range(2))
     fall = sorted(draw(st.lists(st.floats(0, 1), max_size=5)), reverse=True)
-    scaling = rg.TimeScaling.spline(draw(st.floats(1e-200, 1e200)), (1, *fall, 0))
+    scaling = rg.TimeScaling.spline(draw(st.floats(1e-100, 1e100)), (1, *fall, 0))
     limits = tuple(draw(st.lists(positive | st.just(inf), min_size=n, max_size=n)))
     record = Record(
         draw(st.floats(0, 0.99)), (Choice("end", "angle", "closed-form", limits),), draw(frictions)
