@@ -26,7 +26,8 @@ class Verification(ArrayValue):
             others.
         bound: no placement has a smaller value than this, of a chosen grasp; None of others.
         crossing: pairs of contacts that cross a cut, of which none holds; None of others.
-        asked: what every hold of the regrasps that a cut excludes had to keep, in words; empty for nothing.
+        asked: what every hold of the regrasps that a cut excludes had to keep, or which part of its outline a
+            proof about places is of, in words; empty for nothing.
     """
 
     violations: tuple[str, ...]
@@ -75,7 +76,7 @@ class Verification(ArrayValue):
             if not isfinite(self.least_cone_slack):  # the proof alone
                 lines = []
             lines.append(
-                f"no placement has a value below {self.bound:.6g}: {self.excluded} boxes cover all of them, "
-                f"each excluded by its twist"
+                f"no placement{self.asked} has a value below {self.bound:.6g}: {self.excluded} boxes cover "
+                f"all of them, each excluded by its twist"
             )
         return "\n".join(lines)

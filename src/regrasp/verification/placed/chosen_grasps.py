@@ -106,14 +106,30 @@ def verify_chosen(chosen: Chosen) -> Verification:
     broken += check_proof(proof) or _check_places(chosen, proof)
     boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
     return Verification(
-        tuple(broken), max(residuals), min(angles), min(slacks), excluded=boxes, bound=chosen.bound
+        tuple(broken),
+        max(residuals),
+        min(angles),
+        min(slacks),
+        excluded=boxes,
+        bound=chosen.bound,
+        asked="" if broken else _part(proof),
     )
 
 
 def verify_proof(proof: Proof) -> Verification:
     """The verdict on a proof alone."""
     boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
-    return Verification(tuple(check_proof(proof)), 0.0, inf, inf, excluded=boxes, bound=proof.bound)
+    broken = check_proof(proof)
+    part = "" if broken else _part(proof)
+    return Verification(tuple(broken), 0.0, inf, inf, excluded=boxes, bound=proof.bound, asked=part)
+
+
+def _part(proof: Proof) -> str:
+    """Which part of the outline the places are on that a proof is about; empty for all of it."""
+    along = np.hypot(*(np.roll(proof.vertices, -1, axis=0) - proof.vertices).T)
+    edges, least, most = proof.sides.T
+    share = float(along[edges.astype(int)] @ (most - least) / along.sum())
+    return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the outline that was asked about"
 
 
 def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
