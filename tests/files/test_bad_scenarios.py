@@ -577,7 +577,7 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     "choose_state: unknown objective": (
         lambda: rg.choose_state(TWO, LOAD, "safest"),
         rg.InvalidInput,
-        "objective must be one of angle, force, effort, peak, peak_normal, friction_use, sum_normal; "
+        "objective must be one of angle, force, effort, peak, peak_normal, friction_use, sum_normal, wrench; "
         "got 'safest'",
     ),
     "choose_state: unknown method": (
