@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, function, number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
@@ -98,6 +100,11 @@ def choose_grasp(
     if number(tolerance, "tolerance", above=0) >= 1:
         raise InvalidInput(f"tolerance is a fraction below 1, got {shown(tolerance)}")
     apart = None if min_distance is None else number(min_distance, "min_distance", above=0)
+    widest = 0.0 if apart is None else _width(shape.polygon())
+    if apart is not None and apart > widest:
+        raise InvalidInput(
+            f"min_distance is {apart:g}, and no two points of the outline are further apart than {widest:g}"
+        )
     away = None if from_corners is None else number(from_corners, "from_corners", least=0)
     limit = None if max_force is None else number(max_force, "max_force", above=0)
     constraints = Constraints(limit, number(min_normal, "min_normal", least=0), keep, removable)
@@ -123,6 +130,11 @@ def choose_grasp(
     else:
         search.run(half, most, progress)
     return chosen_by_norm(search, asked)
+
+
+def _width(vertices: Array) -> float:
+    """The largest distance between two points of a polygon, one vertex after the other for little memory."""
+    return max(float(np.hypot(*(vertices - vertex).T).max()) for vertex in vertices)
 
 
 def _pairs(arcs: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
