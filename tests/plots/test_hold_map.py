@@ -85,8 +85,8 @@ def test_a_plan_walks_along_the_axes_from_hold_to_hold(turn):
     graph, _ = graph_on(outline)
     ax = plots.plot_hold_map(graph, outline, plan=plan)
     path = np.array(mesh(ax, "path").get_data()).T
-    assert len(path) == len(plan.steps) - 1
-    for step, here in zip(plan.steps[:-1], path, strict=True):
+    held = [step for step in plan.steps[:-1] if len(step.grasp) - len(step.idle_at_end) == 2]
+    for step, here in zip(held, path, strict=True):  # not where all three hold between two steps
         expected = {
             tuple(np.round(step.grasp[name].position, 6))
             for name in step.grasp.names

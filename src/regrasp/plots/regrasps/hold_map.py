@@ -41,8 +41,8 @@ def plot_hold_map(
         o: the place of one orientation in ``graph.angles``; by default the best margin over all of them is
             shown. Grey: no hold; white: not sampled, as near corners.
         ax: the axes to draw on; new ones if not given.
-        plan: its holds, drawn as a path from the square to the disc. An exchange is a line along one axis:
-            the other finger stays. It moves through the air, so what the line crosses means nothing.
+        plan: its holds of two fingers, drawn as a path from the square to the disc. An exchange is a line
+            along one axis: the other finger stays. It moves through the air, so what the line crosses means nothing.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(graph, "graph", HoldGraph)
@@ -68,7 +68,7 @@ def plot_hold_map(
     bar.outline.set_linewidth(0.6)
     bar.set_label("least angle margin [deg]", fontsize=TEXT)
     if plan is not None:
-        _draw_path(ax, np.array(_path(plan, outline)))
+        _draw_path(ax, np.array(_path(plan, outline)).reshape(-1, 2))
     ax.set(xlim=(0, outline.length), ylim=(0, outline.length))
     ax.set_aspect("equal", adjustable="box")
     label_axis(ax.xaxis, "one finger at arc length", units.length, outline.length)
@@ -122,6 +122,8 @@ def _path(plan: RegraspPlan, outline: Outline) -> list[tuple[float, float]]:
     path: list[tuple[float, float]] = []
     for step in plan.steps[:-1]:
         names = [name for name in step.grasp.names if name not in step.idle_at_end]
+        if len(names) != 2:  # all three hold between two steps
+            continue
         at = [_place(outline, step.grasp[name]) for name in names]
         if path:
             before = path[-1]
@@ -136,7 +138,7 @@ def _draw_path(ax: Axes, path: Array) -> None:
     ax.plot(*path.T, color="white", linewidth=2.8, zorder=3, solid_joinstyle="round")
     ax.plot(*path.T, color=PATH, linewidth=1.4, zorder=4, gid="path", solid_joinstyle="round")
     ax.plot(*path[1:-1].T, "o", color=PATH, markersize=3, zorder=5)
-    for at, marker in ((path[0], "s"), (path[-1], "o")):
+    for at, marker in (*((at, "s") for at in path[:1]), *((at, "o") for at in path[-1:])):
         ax.plot(*at, marker, color=PATH, markeredgecolor="white", markersize=7, zorder=5)
     seen: dict[tuple[float, float], list[str]] = {}
     for k, (x, y) in enumerate(path.tolist(), 1):
