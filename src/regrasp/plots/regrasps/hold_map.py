@@ -42,7 +42,8 @@ def plot_hold_map(
             shown. Grey: no hold; white: not sampled, as near corners.
         ax: the axes to draw on; new ones if not given.
         plan: its holds of two fingers, drawn as a path from the square to the disc. An exchange is a line
-            along one axis: the other finger stays. It moves through the air, so what the line crosses means nothing.
+            along one axis: the other finger stays. It moves through the air, so what the line crosses means
+            nothing.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(graph, "graph", HoldGraph)
