@@ -122,13 +122,14 @@ def test_an_interrupt_keeps_what_was_done_and_leaves_nobody_behind(started: Any,
 class Killer(Thread):
     """Kills one of some processes at random moments, until there were enough or nobody is to be killed."""
 
-    def __init__(self, victims: Callable[[], list[int]], most: int, seed: int) -> None:
+    def __init__(self, victims: Callable[[], list[int]], most: int, seed: int, rest: float = 1.0) -> None:
         super().__init__(daemon=True)
+        self.rest = rest
         self.victims, self.most, self.moment, self.killed, self.over = victims, most, Random(seed), 0, False
 
     def run(self) -> None:
         while self.killed < self.most and not self.over:
-            time.sleep(self.moment.uniform(0.1, 1.0))
+            time.sleep(self.moment.uniform(0.1, 1.0) * self.rest)
             victims = [pid for pid in self.victims() if is_running(pid)]
             if victims and not self.over:
                 os.kill(self.moment.choice(victims), signal.SIGKILL)
@@ -183,16 +184,15 @@ def pids(cluster: Any) -> list[int]:
 
 @pytest.mark.filterwarnings("ignore")  # of dask's own sockets and loops
 def test_the_scheduler_is_killed(undisturbed: Any, started: Any, tmp_path: Path) -> None:
-    out = tmp_path / "study"
     for killed in range(SCHEDULERS):
+        out = tmp_path / str(killed)  # with all cases before it, so that it is killed in the midst of them
         scheduler, address = cluster_of(started, tmp_path / f"scheduler-{killed}.json")
-        before = intact(out)
         with (
-            Killer(lambda: [scheduler.pid] if intact(out) > before else [], 1, seed=killed),  # noqa: B023
+            Killer(lambda: [scheduler.pid] if intact(out) else [], 1, seed=killed, rest=0.2),  # noqa: B023
             pytest.raises(rg.RegraspError, match=r"the dask scheduler went away; \d+ of 300 rows are in"),
         ):
             swept(out, client=address)
-        assert before < intact(out) < CASES
+        assert 0 < intact(out) < CASES
         assert study_in(out).left == CASES - intact(out)
     _, address = cluster_of(started, tmp_path / "last.json")
     swept(out, client=address)
