@@ -27,6 +27,7 @@ pytestmark = pytest.mark.contract
 CASES = 300
 GRID = {"a": list(range(CASES)), "spin": [0.004]}
 RUNS, WORKERS, CLUSTER_WORKERS, SCHEDULERS = 8, 6, 3, 3
+ATTEMPTS = 40  # runs that may end before anybody is killed
 PATIENCE = 60.0
 CODE = f"""
 import regrasp as rg
@@ -150,12 +151,13 @@ def our_children() -> list[int]:
 
 
 def test_workers_are_killed(undisturbed: Any, tmp_path: Path) -> None:
-    killed = 0
+    killed, attempt = 0, 0
     while killed < WORKERS:
-        out = tmp_path / str(killed)
-        with Killer(our_children, WORKERS - killed, seed=killed) as killer:
+        out = tmp_path / str(attempt)
+        with Killer(our_children, WORKERS - killed, seed=attempt, rest=0.3) as killer:
             swept(out, workers=2)
-        killed += killer.killed
+        killed, attempt = killed + killer.killed, attempt + 1
+        assert attempt < ATTEMPTS
         assert intact(out) == CASES
         pd.testing.assert_frame_equal(rows(out), undisturbed, check_exact=True)
 
@@ -164,16 +166,17 @@ def test_workers_are_killed(undisturbed: Any, tmp_path: Path) -> None:
 def test_workers_of_a_cluster_are_killed(undisturbed: Any, tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 
-    killed = 0
+    killed, attempt = 0, 0
     with (
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
         Client(cluster) as client,
     ):
         while killed < CLUSTER_WORKERS:
-            out = tmp_path / str(killed)
-            with Killer(lambda: pids(cluster), CLUSTER_WORKERS - killed, seed=killed) as killer:
+            out = tmp_path / str(attempt)
+            with Killer(lambda: pids(cluster), CLUSTER_WORKERS - killed, seed=attempt, rest=0.5) as killer:
                 swept(out, client=client)
-            killed += killer.killed
+            killed, attempt = killed + killer.killed, attempt + 1
+            assert attempt < ATTEMPTS
             assert intact(out) == CASES
             pd.testing.assert_frame_equal(rows(out), undisturbed, check_exact=True)
 
