@@ -5,6 +5,7 @@ import subprocess
 import sys
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -81,7 +82,7 @@ def test_the_benchmark_of_programs_measures_every_row(tmp_path: Path) -> None:
     others = {"clarabel_first_3", "growth_10_1000", "growth_100_1000", "road_cvxpy_warm", "road_cvxpy_cold"}
     assert keys >= solved | others
     for row in report["rows"]:
-        assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "value")), row
+        assert is_measured(row), row
 
 
 def test_the_benchmark_of_regrasps_measures_every_row(tmp_path: Path) -> None:
@@ -94,6 +95,15 @@ def test_the_benchmark_of_regrasps_measures_every_row(tmp_path: Path) -> None:
     ]  # fmt: skip
     for row in report["rows"]:
         assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "goal")), row
+
+
+def is_measured(row: dict[str, Any], least: float = 1e-300) -> bool:
+    """Whether a row has its numbers.
+
+    A slope of a few single times may be anything, where another process takes the machine between them.
+    """
+    names = ("ours", "theirs") if row["measure"] == "SLOPE" else ("ours", "theirs", "value")
+    return isfinite(row["value"]) and all(isfinite(row[name]) and row[name] >= least for name in names)
 
 
 def test_the_benchmark_of_space_measures_every_row(tmp_path: Path) -> None:
@@ -118,4 +128,4 @@ def test_the_benchmark_of_space_measures_every_row(tmp_path: Path) -> None:
     }
     for row in report["rows"]:
         least = 0 if row["measure"] == "PERCENT" else 1e-300
-        assert all(isfinite(row[name]) and row[name] >= least for name in ("ours", "theirs", "value")), row
+        assert is_measured(row, least), row
