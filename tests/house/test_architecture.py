@@ -50,6 +50,7 @@ FLOORS: dict[str, Set[str]] = {
         "planning",
         "measures",
     },
+    "process_limits": set(),  # of processes that solve, for the benchmark and for studies
     "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
@@ -66,7 +67,17 @@ FLOORS: dict[str, Set[str]] = {
         "verification",
         "files",
     },
-    "studies": {"errors", "mechanics", "plans", "planning", "programs", "verification", "files", "studies"},
+    "studies": {
+        "errors",
+        "process_limits",
+        "mechanics",
+        "plans",
+        "planning",
+        "programs",
+        "verification",
+        "files",
+        "studies",
+    },
     "plots": {
         "errors",
         "mechanics",
@@ -94,6 +105,7 @@ FLOORS: dict[str, Set[str]] = {
     },
     "bench": {
         "errors",
+        "process_limits",
         "mechanics",
         "closed_form",
         "plans",

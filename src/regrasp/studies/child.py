@@ -18,6 +18,7 @@ from time import sleep
 from typing import Any
 
 from regrasp.errors import InvalidInput
+from regrasp.process_limits import limit_memory
 from regrasp.studies.task import NotKept, Task, machine, versions
 
 _SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
@@ -30,7 +31,7 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
     memory_limit: of addresses [bytes], 0 for none.
     """
     _die_with(parent)
-    _limit(memory_limit)
+    limit_memory(memory_limit)
     connection: Connection[Any, Any] = Connection(channel)
     with suppress(EOFError, BrokenPipeError):
         try:
@@ -51,19 +52,6 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
                     connection.send(("cannot", str(error)))
                     return
                 connection.send((number, outcome))
-
-
-def _limit(memory: int) -> None:
-    """Take no more addresses than ``memory`` [bytes], and leave no image of a crash."""
-    try:
-        import resource
-    except ImportError:  # not a POSIX system
-        return
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if memory:
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        soft = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def _die_with(parent: int) -> None:

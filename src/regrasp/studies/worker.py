@@ -12,22 +12,12 @@ from time import monotonic
 from typing import Any, NamedTuple
 
 from regrasp.errors import InvalidInput
+from regrasp.process_limits import PINNED
 from regrasp.programs.child import end_group
 from regrasp.studies.cases import Case
 from regrasp.studies.task import LATE, LOST, Outcome
 
 Batch = Sequence[tuple[int, Case]]
-_PINNED = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "BLIS_NUM_THREADS",
-    "NUMEXPR_NUM_THREADS",
-    "RAYON_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-    "NUMBA_NUM_THREADS",
-)
-"""Libraries that would use every core in every process are held to one."""
 _CODE = """
 import json, sys
 path, channel, parent, memory = json.loads(sys.argv[1])
@@ -148,7 +138,7 @@ class Worker:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            env=os.environ | dict.fromkeys(_PINNED, "1"),
+            env=os.environ | dict.fromkeys((*PINNED, "NUMBA_NUM_THREADS"), "1"),
             start_new_session=True,  # an interrupt from the keyboard is the run's to handle
         )
         theirs.close()

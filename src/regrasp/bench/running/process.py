@@ -11,18 +11,9 @@ from typing import Any
 
 from regrasp.bench.running.result import CRASHED, TIMEOUT
 from regrasp.errors import InvalidInput
+from regrasp.process_limits import PINNED
 from regrasp.programs.child import awaited, end_group, ended_after
 
-# Libraries that would use every core are held to one.
-_PINNED = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "BLIS_NUM_THREADS",
-    "NUMEXPR_NUM_THREADS",
-    "RAYON_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-)
 _CODE = """
 import json, sys
 path, channel, parent, memory = json.loads(sys.argv[1])
@@ -102,7 +93,7 @@ class Worker:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            env=os.environ | dict.fromkeys(_PINNED, "1"),
+            env=os.environ | dict.fromkeys(PINNED, "1"),
             start_new_session=True,  # an interrupt from the keyboard is the runner's to handle
         )
         theirs.close()

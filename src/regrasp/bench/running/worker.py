@@ -28,6 +28,7 @@ from typing import Any
 from regrasp.bench.problems.answer import Answer, printable, understood
 from regrasp.bench.running.machine import can_limit_memory
 from regrasp.bench.running.solvers import Solver
+from regrasp.process_limits import limit_memory
 from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
@@ -44,7 +45,7 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
     """
     _die_with(parent)
     if can_limit_memory():
-        _limit(memory_limit)
+        limit_memory(memory_limit)
     _serve(Connection(channel))
 
 
@@ -150,17 +151,6 @@ def _status(name: str) -> int | None:
             if line.startswith(name + ":"):
                 return int(line.split()[1]) * 1024
     return None
-
-
-def _limit(memory: int) -> None:
-    """Take no more addresses than ``memory`` [bytes], 0 for any number, and leave no image of a crash."""
-    import resource
-
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if memory:
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        soft = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def _die_with(parent: int) -> None:
