@@ -112,6 +112,8 @@ def on_outline(friction: float) -> Any:
 VALUES: dict[str, Callable[[], Any]] = {
     "Contact": lambda: rg.Contact([1, 2], [3, 4], 0.5, max_force=2.0, name="thumb"),
     "soft Contact": lambda: rg.Contact([1, 2, 0], [3, 4, 0], 0.5, torsion=0.01),
+    "limited Contact": lambda: rg.Contact([1, 2], [3, 4], 0.5, limits=([[1, 0], [-1, 2]], [3, 4])),
+    "ForceLimits": lambda: rg.torque_limits([[1.0, 0.0], [0.5, 2.0]], [1.0, 3.0]),
     "Wrench": lambda: LOAD,
     "Grasp": lambda: GRASP,
     "GraspState": lambda: STATE,

@@ -136,7 +136,7 @@ NAMES: dict[str, str] = {
     "disturbance": "value", "stiffness": "stiffnesses", "tip_radius": "not negative", "early_loss": "flag",
     "start_objective": "word", "also": "numbers",
     "angle": "number", "magnitude": "positive", "degree": "count", "segments": "count", "divisions": "count",
-    "crease": "positive", "contact": "contact of", "squeeze": "numbers", "direction": "vector",
+    "crease": "positive", "contact": "contact of", "limits": "contact limits", "squeeze": "numbers", "direction": "vector",
 }  # fmt: skip
 """Of parameters that are of one kind wherever they appear."""
 
@@ -186,6 +186,22 @@ def rows() -> dict[str, Row]:
     result = {
         "Contact": Row(rg.Contact, contact, planar),
         "Contact.named": Row(rg.Contact([0, 0], [1, 0], 1).named, {"name": "a"}),
+        "ForceLimits": Row(
+            rg.ForceLimits,
+            {"rows": [[1, 0], [0, 1]], "bounds": [1, 2]},
+            {"rows": "table", "bounds": "bounds"},
+        ),
+        "ForceLimits.scaled": Row(
+            rg.ForceLimits([[1, 0]], [1]).scaled, {"factor": 2.0}, {"factor": "positive"}
+        ),
+        "ForceLimits.from_dict": Row(
+            rg.ForceLimits.from_dict, {"data": rg.ForceLimits([[1, 0]], [1]).to_dict()}
+        ),
+        "torque_limits": Row(
+            rg.torque_limits,
+            {"jacobian": [[1, 0], [0, 1]], "torques": [1, 2]},
+            {"jacobian": "table", "torques": "torques", "normal": "some normal"},
+        ),
         "Contact.from_dict": Row(rg.Contact.from_dict, {"data": GRASP["P1"].to_dict()}),
         "Wrench": Row(rg.Wrench, {"force": [1.0, 2.0]}, {"force": "vector", "torque": "number"}),
         "Wrench in space": Row(
@@ -677,6 +693,10 @@ KINDS |= {
         np.array(["x", "y"]), [OBJECT, 1],
     ),
     "stiffnesses": (*NOT_NUMBERS, [], 0, -1.0, [0, 0], [-1, 1], np.ones((1, 1, 1, 1))),
+    "contact limits": (*[v for v in NOT_A_VALUE if v is not None], ([[1, 0, 0]], [1]), ([[1, 0]], [0])),
+    "bounds": (*NOT_NUMBERS, 5, [], [0, 1], [-1, 1], [1, 2, 3], np.ones((2, 2))),
+    "torques": (*[v for v in NOT_NUMBERS if v != [inf, 0]], 0, -1, [0, 1], [1, 2, 3], np.ones((2, 2))),
+    "some normal": (*[v for v in NOT_A_VECTOR if v is not None], [0, 0], [1, 2, 3]),
     "rising limits": (*NOT_NUMBERS, 5, [], [2, 1], [1, 1], [-1, 1], np.zeros((2, 2))),
     "finger rows": (*NOT_NUMBERS, [], [1, 2, 3], np.ones((3, 4))),
     "fingers' numbers": (*NOT_NUMBERS, [], -1.0, [1, 2, 3]),

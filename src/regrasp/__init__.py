@@ -7,6 +7,7 @@ from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverFailed,
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.force_limits import ForceLimits, torque_limits
 from regrasp.mechanics.margins import Margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
@@ -158,6 +159,7 @@ __all__ = [
     "EquilibriumLocus",
     "EscapeTwist",
     "ForceCost",
+    "ForceLimits",
     "Grasp",
     "GraspState",
     "HeldCentres",
@@ -231,6 +233,7 @@ __all__ = [
     "sensitivity",
     "sweep",
     "tolerances",
+    "torque_limits",
     "verify",
     "wrench_ball",
     "wrench_balls",

@@ -98,3 +98,34 @@ def test_a_hold_follows_its_load_and_is_written_and_read(tmp_path: Path) -> None
     assert isinstance(plan.path, rg.StraightPath)
     with pytest.raises(rg.InvalidInput, match="early_loss"):
         parse_scenario(TEXT.format(set="force = 0.1", task='kind = "hold"\nearly_loss = true'))
+
+
+JOINTS = "limits = {jacobian = [[0.0, 0.06], [0.05, 0.02]], torques = 0.3}"
+
+
+@pytest.mark.parametrize("words", [JOINTS, "limits = {rows = [[1.0, 0.0], [0.0, 1.0]], bounds = [3.5, 2.0]}"])
+def test_linear_limits_go_through_scenarios_and_plan_files(words: str, tmp_path: Path) -> None:
+    calm = TEXT.format(set="force = 0.01", task='kind = "removal"\ncontact = "P3"')
+    scenario = parse_scenario(calm.replace("friction = 0.3", f"friction = 0.3\n{words}", 1))
+    plan = plan_scenario(scenario)
+    limits = plan.grasp["P1"].limits
+    assert limits is not None
+    assert plan.grasp["P2"].limits is None
+    assert rg.verify(plan).ok
+    write_plan(plan, tmp_path / "plan.json")
+    assert read_plan(tmp_path / "plan.json").grasp == plan.grasp
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        ("limits = {rows = [[1.0, 0.0]]}", "expected rows and bounds, or jacobian and torques"),
+        ("limits = {rows = [[1.0, 0.0]], bounds = [0.0]}", "bounds of limits must be greater than 0"),
+        ("limits = {rows = [[1.0, 0.0, 0.0]], bounds = [1.0]}", "rows of limits must have 2 numbers"),
+        ("limits = {jacobian = [[1.0]], torques = 1.0}", "jacobian must have 2, 3 or 4 rows"),
+    ],
+)
+def test_bad_linear_limits_are_refused_in_one_message(words: str, problem: str) -> None:
+    calm = TEXT.format(set="force = 0.01", task='kind = "removal"\ncontact = "P3"')
+    with pytest.raises(rg.InvalidInput, match=problem):
+        parse_scenario(calm.replace("friction = 0.3", f"friction = 0.3\n{words}", 1))

@@ -69,6 +69,15 @@ def turning_peaks(start: Array, end: Array, delta: float) -> tuple[float, float]
     return sqrt(highest), sqrt(steepest)
 
 
+def row_crests(start: Array, end: Array, delta: Array) -> Array:
+    """The largest value on turns by ``delta`` of what is linear in forces, from its values at the ends."""
+    half = delta / 2
+    u, v = (start + end) / (2 * np.cos(half)), (end - start) / (2 * np.sin(half))
+    is_between = np.abs(np.arctan2(v, u)) <= np.abs(half)
+    crests: Array = np.where(is_between, np.hypot(u, v), np.maximum(start, end))
+    return crests
+
+
 def arc_weights(delta: float, theta: Array) -> tuple[Array, Array, Array]:
     """(a, c, b) of an arc by ``delta`` in (-pi, pi) at angles ``theta`` (...) between 0 and delta."""
     whole, before, after = sin(delta / 2), np.sin(theta / 2), np.sin((delta - theta) / 2)

@@ -15,6 +15,7 @@ from regrasp.explore.question import LONGEST_NAME, MOST_FINGERS, OBJECTIVES, Que
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.parts import PARTS
@@ -126,6 +127,7 @@ def question_of(grasp: Grasp, load: Wrench, **asked: Any) -> Question:
         raise InvalidInput("the explorer works in the plane; of a plan in space, html writes a page to turn")
     if len(grasp) > MOST_FINGERS or len(grasp) < 2:
         raise InvalidInput(f"the explorer takes 2 to {MOST_FINGERS} contacts, got {len(grasp)}")
+    refuse_limits(grasp, "the explorer")
     contacts = [
         {
             "name": str(c.name)[:LONGEST_NAME],

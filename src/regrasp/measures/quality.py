@@ -39,6 +39,7 @@ def quality(
     Args:
         grasp: the contacts that hold.
         limit: each finger's largest normal force [N], a number or (n,); where the sum is limited, their mean.
+            Linear limits of contacts count where ``load`` and ``loads`` do, and nowhere else.
         length: by which torques are divided [m], the grasp's size if not given.
         load: adds the least sum of normal forces that balances it.
         loads: a hull; adds the largest factor by which it may be scaled (the contacts' own ``max_force``

@@ -99,7 +99,7 @@ def wrench_ball(
     Args:
         grasp: the contacts that hold.
         limit: ``Linf``, each finger's largest normal force, a number or (n,); ``L1``, the largest sum of the
-            normal forces [N]. Force limits of the contacts themselves do not count.
+            normal forces [N]. Force limits of the contacts themselves, linear ones too, do not count.
         norm: ``Linf``, every finger has its own limit, or ``L1``, their sum has one.
         length: by which torques are divided [m]; the grasp's size if not given, so that the result does not
             depend on the unit of length.

@@ -62,6 +62,14 @@ class Cones:
         result[..., 3] *= self._arms
         return result
 
+    def measuring(self, rows: Array, i: int) -> Array:
+        """Rows (m, w) that multiply forces of contact ``i``, as rows that multiply ``measured`` ones."""
+        if self._arms is None:
+            return rows
+        result = rows.copy()
+        result[:, 3] *= self._arms[i]
+        return result
+
     def normal(self, measured: Array) -> Array:
         """(..., n) normal forces [N]."""
         result: Array = (measured * self.normals).sum(axis=-1)

@@ -6,8 +6,12 @@ from functools import cached_property
 from math import atan, hypot
 from typing import Any
 
+import numpy as np
+
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, number, point
+from regrasp.mechanics.checks import Array, ArrayLike, number, point, read_only
+from regrasp.mechanics.limits.force_limits import ForceLimits
+from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue, numbers
 
@@ -31,6 +35,8 @@ class Contact(ArrayValue):
             than 0, or None for a point contact. Together with the tangential force it stays inside the limit
             surface (|f_t| / mu)^2 + (m / torsion)^2 <= f_n^2 (Howe and Cutkosky, Int. J. Robotics Research
             15, 1996).
+        limits: linear limits A f <= b of the force in the contact's frame, as ``ForceLimits`` or a pair (A,
+            b), such as ``torque_limits`` makes them; None for none.
         name: how to address the contact; a ``Grasp`` names unnamed contacts P1, P2, ...
 
     Raises:
@@ -42,6 +48,7 @@ class Contact(ArrayValue):
     friction: float
     max_force: float | None = field(default=None, kw_only=True)
     torsion: float | None = field(default=None, kw_only=True)
+    limits: ForceLimits | None = field(default=None, kw_only=True)
     name: str | None = field(default=None, kw_only=True)
 
     def __init__(
@@ -52,6 +59,7 @@ class Contact(ArrayValue):
         *,
         max_force: float | None = None,
         torsion: float | None = None,
+        limits: ForceLimits | tuple[ArrayLike, ArrayLike] | None = None,
         name: str | None = None,
     ) -> None:
         _check_name(name)
@@ -87,6 +95,8 @@ class Contact(ArrayValue):
                     f"{label}: a contact {without} has no torsion; leave it out, got {torsion:g}"
                 )
         object.__setattr__(self, "torsion", torsion)
+        rows = None if limits is None else _limits(limits, where.size, torsion is not None, label)
+        object.__setattr__(self, "limits", rows)
         object.__setattr__(self, "name", name)
 
     @cached_property
@@ -111,6 +121,15 @@ class Contact(ArrayValue):
         """(position, normal, friction) as plain floats, the way the closed forms take a contact."""
         return (*self.position.tolist(), *self.normal.tolist(), self.friction)
 
+    @cached_property
+    def limit_rows(self) -> Array | None:
+        """(m, d) or (m, d + 1) rows A of ``limits`` in the object's frame: A f <= ``limits.bounds``."""
+        if self.limits is None:
+            return None
+        d, given = self.dimension, self.limits.rows
+        frame = np.vstack([self.normal, tangents_of(self.normal[None])[0]])
+        return read_only(np.hstack([given[:, :d] @ frame, given[:, d:]]))
+
     def named(self, name: str) -> "Contact":
         """The same contact under another name.
 
@@ -123,12 +142,13 @@ class Contact(ArrayValue):
         return same
 
     def changed(self, **fields: Any) -> "Contact":
-        """The same contact with other ``friction``, ``max_force``, ``torsion`` or ``name``.
+        """The same contact with other ``friction``, ``max_force``, ``torsion``, ``limits`` or ``name``.
 
         Args:
-            **fields: ``friction`` [-], ``max_force`` [N], ``torsion`` [m] or ``name``, as of ``Contact``.
+            **fields: ``friction`` [-], ``max_force`` [N], ``torsion`` [m], ``limits`` or ``name``, as of
+                ``Contact``.
         """
-        kept = {"max_force": self.max_force, "torsion": self.torsion, "name": self.name} | fields
+        kept = {name: getattr(self, name) for name in ("max_force", "torsion", "limits", "name")} | fields
         return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
 
     def to_dict(self) -> dict[str, Any]:
@@ -139,7 +159,9 @@ class Contact(ArrayValue):
             "normal": self.normal.tolist(),
             "friction": self.friction,
             "max_force": self.max_force,
-        } | ({} if self.torsion is None else {"torsion": self.torsion})
+            **({} if self.torsion is None else {"torsion": self.torsion}),
+            **({} if self.limits is None else {"limits": self.limits.to_dict()}),
+        }
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Contact":
@@ -151,17 +173,39 @@ class Contact(ArrayValue):
         Raises:
             InvalidInput: For other keys and as ``Contact`` does.
         """
-        optional = ("name", "max_force", "torsion")
-        return cls(**entries(data, "a contact", ("position", "normal", "friction"), optional))
+        optional = ("name", "max_force", "torsion", "limits")
+        given = entries(data, "a contact", ("position", "normal", "friction"), optional)
+        if given.get("limits") is not None:
+            given["limits"] = ForceLimits.from_dict(given["limits"])
+        return cls(**given)
 
     def __repr__(self) -> str:
         limit = "" if self.max_force is None else f", max_force={self.max_force:g}"
         soft = "" if self.torsion is None else f", torsion={self.torsion:g}"
+        rows = "" if self.limits is None else f", limits={self.limits!r}"
         name = "" if self.name is None else f", name={self.name!r}"
         return (
             f"Contact({numbers(self.position)}, normal={numbers(self.normal)}, "
-            f"friction={self.friction:g}{limit}{soft}{name})"
+            f"friction={self.friction:g}{limit}{soft}{rows}{name})"
         )
+
+
+def _limits(
+    given: ForceLimits | tuple[ArrayLike, ArrayLike], d: int, is_soft: bool, label: str
+) -> ForceLimits:
+    """Limits of rows that a force of the contact has numbers for."""
+    if not isinstance(given, ForceLimits):
+        if not isinstance(given, (tuple, list)) or len(given) != 2:
+            raise InvalidInput(f"{label}: limits must be ForceLimits or a pair (A, b), got {shown(given)}")
+        try:
+            given = ForceLimits(*given)
+        except InvalidInput as error:
+            raise InvalidInput(f"{label}: {error}") from None
+    wide = given.rows.shape[1]
+    if wide != d and not (is_soft and wide == d + 1):
+        soft = f" or {d + 1}" if is_soft else ""
+        raise InvalidInput(f"{label}: rows of limits must have {d}{soft} numbers, got {wide}")
+    return given
 
 
 def _check_name(name: object) -> None:

@@ -12,6 +12,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, finite, items, read_only
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.limits.limit_rows import LimitRows, stacked
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries, listed
 from regrasp.mechanics.value import ArrayValue, one_line
@@ -215,6 +216,11 @@ class Grasp(ArrayValue):
     def max_forces(self) -> Array:
         """(n,) [N], infinite where a contact has no limit."""
         return read_only(np.array([np.inf if c.max_force is None else c.max_force for c in self.contacts]))
+
+    @cached_property
+    def limit_rows(self) -> LimitRows | None:
+        """The contacts' linear ``limits``, as the cones measure forces; None where there are none."""
+        return stacked(self.contacts, self.cones)
 
     @cached_property
     def size(self) -> float:

@@ -166,13 +166,14 @@ class GraspState(ArrayValue):
                 return False
             if contact.max_force is not None and magnitude > contact.max_force:
                 return False
-        return True
+        return self.grasp.limit_rows is None or self.grasp.limit_rows.kept(np.array(rows))
 
     def balanced(self, *, reserve: float = RESERVE) -> "GraspState":
         """The nearest state in equilibrium inside the cones and force limits.
 
         Least change of all forces together, sum |f_i - f_i given|^2. ``reserve`` is the fraction of every
-        friction coefficient kept back. A state that is balanced already is returned as it is.
+        friction coefficient kept back. A state that is balanced already is returned as it is. Where the
+        nearest state breaks linear limits of contacts it is refused: ``choose_state`` keeps them.
 
         Args:
             reserve: fraction of every friction coefficient that is kept back [-].
@@ -196,6 +197,12 @@ class GraspState(ArrayValue):
             raise Infeasible(
                 f"no forces of {', '.join(grasp.names)} inside their friction cones and force limits "
                 f"balance {shown(self.load)}"
+            )
+        if grasp.limit_rows is not None and not grasp.limit_rows.kept(forces):
+            i = int(grasp.limit_rows.spare(forces).argmin())
+            raise Infeasible(
+                f"the nearest forces inside the friction cones and force limits break the linear limits of "
+                f"{grasp.names[i]}, and others are not looked for; choose_state finds forces that keep them"
             )
         return GraspState(grasp, self.load, grasp.cones.forces(forces))
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from regrasp.closed_form.turning_path import (
     arc_path,
     arc_peaks,
     arc_slope,
+    row_crests,
     turning_path,
     turning_peaks,
     turning_slope,
@@ -191,6 +192,24 @@ class TurningPath(ArrayValue, Path):
         """
         largest: Array = self._extremes(start)[:, :, 0].max(axis=0)
         return largest
+
+    def spare(self, start: GraspState, end: GraspState) -> Array:
+        """(n,) the least by which each finger keeps its linear limits on the way [N]; infinite without any.
+
+        Args:
+            start: the state at the start, of every contact in play.
+            end: the state at the end, of the same contacts.
+        """
+        rows = start.grasp.limit_rows
+        if rows is None:
+            return np.full(len(start.grasp), inf)
+        states = start.grasp.cones.measured(self.deciding(start, end))
+        least: Array = rows.spare(states).min(axis=0)
+        if self.middles is not None:  # the forces between are means of those
+            return least
+        each = np.einsum("mw,kmw->km", rows.rows, states[:, rows.contacts])
+        crests = row_crests(each[:-1], each[1:], np.diff(self.angles)[:, None]).max(axis=0)
+        return np.minimum(least, rows.least(rows.bounds - crests))
 
     def friction_needed(self, start: GraspState, end: GraspState) -> Array:
         """(n,) the least coefficient of each finger that keeps its forces on the path inside its cone [-].

@@ -6,6 +6,7 @@ rounding and, for cones and limits, with zero tolerance:
     cone         f.n >= 0   and   |f|^2 |n|^2 <= (1 + mu^2) (f.n)^2
     soft finger  f.n >= 0   and   e^2 (|f|^2 |n|^2 - (f.n)^2) + mu^2 m^2 |n|^2 <= mu^2 e^2 (f.n)^2
     limit        |f|^2 <= max_force^2, of a soft finger |f|^2 + (mu m / e)^2
+    linear ones  A f <= b, A the contact's rows in the object's frame, as doubles (``Contact.limit_rows``)
     equilibrium  |sum f_i + F|^2 <= a^2   and   |sum r_i x f_i + tau|^2 <= a^2 l^2
     with         a = min(2^-40 s, 2^-10 w)
 
@@ -90,8 +91,21 @@ def _check_force(row: _Force, what: str) -> tuple[float, list[str]]:
         broken.append(f"{what} is outside its friction cone: it uses {use:.12g} of the friction available")
     if limit is not None and ff > Fraction(limit) ** 2:
         broken.append(f"{what} is {root(ff):.12g}, above its limit {limit:.12g}")
+    broken += _check_rows(row, what)
     slack = rounded((1 + mu * mu) - ff * nn / (normal * normal)) if normal > 0 else (-inf if ff else inf)
     return slack, broken
+
+
+def _check_rows(row: _Force, what: str) -> list[str]:
+    """Which of its linear limits a force breaks."""
+    contact, force, broken = row.contact, [*row.f, row.m], []
+    if contact.limits is None or contact.limit_rows is None:
+        return []
+    for k, (a, b) in enumerate(zip(contact.limit_rows.tolist(), contact.limits.bounds.tolist(), strict=True)):
+        used = dot(exact(a), force[: len(a)])
+        if used > Fraction(b):
+            broken.append(f"{what} breaks its linear limit {k}: {rounded(used):.12g}, above {b:.12g}")
+    return broken
 
 
 def _check_equilibrium(rows: list[_Force], load: Vector, asked: float, label: str) -> tuple[float, list[str]]:

@@ -6,9 +6,10 @@ tangential forces are within 16 u |f| of the true ones, so that
 
     mu f_n - |f_t| > 2^-40 (1 + mu) |f|   and   |f| <= (1 - 2^-40) max_force
 
-prove a force inside its cone and limit, with 2^13 u where 16 u (1 + mu) would do. A sum of n forces, or of
-their torques over the largest arm l, is within 8 (n + 1)^2 u of the largest of |f_i|, |F|, |tau| / l and
-|m_i| / l: by that much less than min(2^-40 s, 2^-10 w) a row must be in equilibrium.
+prove a force inside its cone and limit (a linear one with 2^-40 of its terms to spare), with 2^13 u where
+16 u (1 + mu) would do. A sum of n forces, or of their torques over the largest arm l, is within 8 (n + 1)^2 u
+of the largest of |f_i|, |F|, |tau| / l and |m_i| / l: by that much less than min(2^-40 s, 2^-10 w) a row must
+be in equilibrium.
 """
 
 from functools import reduce
@@ -71,6 +72,10 @@ def judge_rows(
     known &= (magnitude > _LEAST) & (magnitude < _MOST)
     inside = known & (mu * normal - tangential > _DOUBT * (1 + mu) * magnitude)
     inside &= magnitude <= limits * (1 - _DOUBT)
+    for i, contact in enumerate(grasp.contacts):
+        if contact.limit_rows is not None and contact.limits is not None:
+            within = _surely_within(forces[..., i, :], contact.limit_rows, contact.limits.bounds)
+            inside[..., i] = np.logical_and(inside[..., i], within)
     idle = ~folded(np.logical_or, forces != 0)
     inside |= idle  # the apex
     total = np.einsum("mni->mi", pushed) + loads[:, :d], np.einsum("mni->mi", torques) + loads[:, d:] / arm
@@ -94,6 +99,14 @@ def judge_rows(
     angles = np.arctan(mu) - np.arctan2(tangential, normal)
     least = angles[magnitude > _DOUBT * size[:, None]].min(initial=inf)
     return broken, max(residuals), float(least), min(slacks)
+
+
+def _surely_within(forces: Array, rows: Array, bounds: Array) -> NDArray[np.bool_]:
+    """Whether forces (..., w) keep linear limits by more than rounding."""
+    terms = forces[..., : rows.shape[1]]
+    room = bounds - terms @ rows.T - _DOUBT * (np.abs(terms) @ np.abs(rows).T + bounds)
+    result: NDArray[np.bool_] = (room > 0).all(axis=-1)
+    return result
 
 
 def folded(ufunc: np.ufunc, values: NDArray[Any]) -> NDArray[Any]:

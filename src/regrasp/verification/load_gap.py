@@ -105,6 +105,9 @@ def _room(plan: Plan, forces: Array, stays: list[int]) -> float:
     tangential = _lengths(forces - normal[..., None] * normals)
     edge = (mu * normal - tangential) / np.hypot(1.0, mu)
     spare = grasp.max_forces[stays] - _lengths(forces)
+    rows = grasp.subset(stays).limit_rows
+    if rows is not None:
+        spare = np.minimum(spare, rows.spare(forces))
     least = plan.record.least_normals
     above = normal - np.array(least)[stays] if least else normal
     return float(min(edge.min(), spare.min(), above.min()))

@@ -178,7 +178,7 @@ def _differ(a: Matrix, b: Matrix) -> bool:
 
 def _where(contact: Contact) -> tuple[object, ...]:
     """Which contact it is, and all that it may do."""
-    limits = (contact.friction, contact.max_force, contact.torsion)
+    limits = (contact.friction, contact.max_force, contact.torsion, contact.limits)
     return (contact.name, *contact.position.tolist(), *contact.normal.tolist(), *limits)
 
 

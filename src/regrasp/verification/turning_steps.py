@@ -22,6 +22,7 @@ from math import inf, isqrt
 
 import numpy as np
 
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import one_line
 from regrasp.verification.exact import (
@@ -118,6 +119,7 @@ def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
     broken = []
     c, s = cosine_sine(step)
     for i, contact in enumerate(plan.start.grasp.contacts):
+        broken += _check_rows(contact, turn.forces[k, i], turn.forces[k + 1, i], c, s)
         if contact.max_force is None:
             continue
         limit = Fraction(contact.max_force)
@@ -127,6 +129,30 @@ def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
             broken.append(
                 f"force of {one_line(str(contact.name))} reaches {root(peak2):.12g} between two angles, "
                 f"above its limit {contact.max_force:.12g}"
+            )
+    return broken
+
+
+def _check_rows(contact: Contact, first: Array, last: Array, c: Fraction, s: Fraction) -> list[str]:
+    """Which linear limits a force breaks between two angles.
+
+    Its work p along a row runs on a sine wave from p_1 to p_2, of amplitude^2 (p_1^2 + p_2^2 - 2 p_1 p_2 c) /
+    s^2, whose crest is between if it rises from the first and falls to the second; and a + b <= 1 / cos(Delta
+    / 2), whose square is 2 / (1 + c).
+    """
+    broken: list[str] = []
+    if contact.limits is None or contact.limit_rows is None:
+        return broken
+    for k, (a, b) in enumerate(zip(contact.limit_rows.tolist(), contact.limits.bounds.tolist(), strict=True)):
+        row, most = exact(a), Fraction(b)
+        p, q = (dot(row, exact(force.tolist()[: len(row)])) for force in (first, last))
+        if not (q - p * c > 0 and p - q * c > 0):
+            continue  # the highest is at an end, which is checked by itself
+        crest2 = min((p * p + q * q - 2 * p * q * c) / (s * s), max(p, q) ** 2 * 2 / (1 + c))
+        if crest2 > most**2:
+            broken.append(
+                f"force of {one_line(str(contact.name))} breaks its linear limit {k} between two angles: "
+                f"{root(crest2):.12g}, above {b:.12g}"
             )
     return broken
 

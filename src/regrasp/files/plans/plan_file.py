@@ -38,6 +38,11 @@ NotNegative = Annotated[float, Field(ge=0)]
 VERSION = 1
 
 
+class _Limits(Strict):
+    rows: list[list[float]]
+    bounds: list[float]
+
+
 class _Contact(Strict):
     name: str
     position: list[float]
@@ -45,6 +50,7 @@ class _Contact(Strict):
     friction: float
     max_force: float | None
     torsion: float | None = None  # of a soft finger
+    limits: _Limits | None = None
 
 
 class _Scaling(Strict):
@@ -256,6 +262,7 @@ def _document(plan: Transition) -> dict[str, Any]:
                 "max_force": c.max_force,
             }
             | ({} if c.torsion is None else {"torsion": c.torsion})
+            | ({} if c.limits is None else {"limits": c.limits.to_dict()})
             for c in plan.grasp
         ],
         "start": plan.start.forces.tolist(),
@@ -307,7 +314,15 @@ def _document(plan: Transition) -> dict[str, Any]:
 
 def _plan(stored: _Transition) -> Transition:
     grasp = Grasp(
-        Contact(c.position, c.normal, c.friction, max_force=c.max_force, torsion=c.torsion, name=c.name)
+        Contact(
+            c.position,
+            c.normal,
+            c.friction,
+            max_force=c.max_force,
+            torsion=c.torsion,
+            limits=None if c.limits is None else (c.limits.rows, c.limits.bounds),
+            name=c.name,
+        )
         for c in stored.contacts
     )
     for key in ("rate_limits", "least_normals"):

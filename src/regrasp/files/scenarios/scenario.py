@@ -20,6 +20,7 @@ from regrasp.files.scenarios.keys import (
     Name,
     Positive,
 )
+from regrasp.files.scenarios.limits_entry import LimitsEntry
 from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
@@ -62,6 +63,9 @@ class ContactEntry(Strict):
         None,
         description="of a soft finger in space: most torque about the normal per normal force [m]",
     )
+    limits: LimitsEntry | None = Field(
+        None, description="linear limits of this finger's force, such as its joints have"
+    )
     force: AnyForce | None = Field(
         None,
         description="starting force on the object [N]: of every contact in touch at the start, or of none; "
@@ -75,7 +79,7 @@ class ContactEntry(Strict):
         """The contact as a value, on the surface of an object if there is one."""
         if mesh is None:
             assert self.normal is not None  # checked by the scenario, which knows whether there is an object
-            return Contact(
+            contact = Contact(
                 self.position,
                 self.normal,
                 self.friction,
@@ -83,13 +87,17 @@ class ContactEntry(Strict):
                 torsion=self.torsion,
                 name=self.name,
             )
-        return mesh.contact_at(
-            np.array(self.position) + mesh.centre_of_mass,
-            friction=self.friction,
-            max_force=self.max_force,
-            torsion=self.torsion,
-            name=self.name,
-        )
+        else:
+            contact = mesh.contact_at(
+                np.array(self.position) + mesh.centre_of_mass,
+                friction=self.friction,
+                max_force=self.max_force,
+                torsion=self.torsion,
+                name=self.name,
+            )
+        if self.limits is None:
+            return contact
+        return contact.changed(limits=self.limits.value(contact.normal.tolist()))
 
     @model_validator(mode="after")
     def _is_a_contact(self) -> "ContactEntry":

@@ -35,6 +35,7 @@ def moved(grasp: Grasp, offsets: Array, curvatures: Array) -> Grasp:
                 contact.friction,
                 max_force=contact.max_force,
                 torsion=contact.torsion,
+                limits=contact.limits,
                 name=contact.name,
             )
         )

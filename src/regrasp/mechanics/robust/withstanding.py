@@ -5,6 +5,7 @@ e) is inside the cone of friction mu and within the limit L for all members exac
 
     g . f >= sigma(-R' g)        with g = mu n - u, u across n, besides
     L - u . f >= sigma(R' u)     for all u,
+    b - a . f >= sigma(R' a)     for each linear limit a . f <= b,
 
 sigma(y) = sigma_D(y) + s sigma_S(y) the most work of members along y. The factor is the least ratio.
 """
@@ -19,6 +20,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.cones import Cones
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import LimitRows
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.robust.spheres import least_over
 from regrasp.mechanics.wrench import Wrench
@@ -49,7 +51,7 @@ class Withstanding:
     """Forces that answer with stiffness.
 
     forces: (n, w) and responses: (n, w, q) as the cones measure them. frictions, limits: (n,), infinite for
-    none. base: a set that is withstood besides, whatever else is scaled; None for none.
+    none. rows: linear limits. base: a set that is withstood besides, whatever else is scaled; None for none.
     """
 
     cones: Cones
@@ -58,6 +60,7 @@ class Withstanding:
     frictions: Array
     limits: Array
     base: LoadSet | None = None
+    rows: LimitRows | None = None
 
     def factors(self, scaled: LoadSet) -> Worst:
         """How far ``scaled``, around no load, may be scaled; below 0 where ``base`` fails."""
@@ -94,12 +97,19 @@ class Withstanding:
                 forces=self.forces[limited],
                 responses=self.responses[limited],
                 limits=self.limits[limited],
+                rows=None,
             )
             reached, us = least_over(lambda u: some._exceeding(u, measure), limited.size, w)
             for k, i in enumerate(limited.tolist()):
                 if reached[k] < least[i]:
                     least[i], hows[i] = reached[k], EXCEEDS
                     twists[i] = self.responses[i].T @ us[k]
+        if self.rows is not None:
+            reached = measure(self._row_room(self.rows)[None], self._row_twists(self.rows)[None])[0]
+            for k, i in enumerate(self.rows.contacts.tolist()):
+                if reached[k] < least[i]:
+                    least[i], hows[i] = reached[k], EXCEEDS
+                    twists[i] = self._row_twists(self.rows)[k]
         deviations = [self._deviation(y, m, member) for y, m in zip(twists, least.tolist(), strict=True)]
         hows = [self._how(i, how, deviations[i]) for i, how in enumerate(hows)]
         return Worst(least, deviations, hows)
@@ -114,7 +124,19 @@ class Withstanding:
             ample = np.where(self.limits < inf, self.limits, 0.0)[:, None]
             reached, _ = least_over(lambda u: self._room(-u, ample), n, w)
             least = np.where(self.limits < inf, np.minimum(least, reached), least)
+        if self.rows is not None:
+            least = np.minimum(least, self.rows.least(self._row_room(self.rows)))
         return least
+
+    def _row_room(self, rows: LimitRows) -> Array:
+        """(m,) b - a . f - sigma_base(R' a)."""
+        room: Array = rows.bounds - np.einsum("mw,mw->m", rows.rows, self.forces[rows.contacts])
+        return room if self.base is None else room - self.base.support(self._row_twists(rows))
+
+    def _row_twists(self, rows: LimitRows) -> Array:
+        """(m, q) R' a."""
+        result: Array = np.einsum("mw,mwq->mq", rows.rows, self.responses[rows.contacts])
+        return result
 
     def _room(self, g: Array, constant: Array) -> Array:
         """(n, m) constant + g . f - sigma_base(-R' g)."""

@@ -7,6 +7,7 @@ import numpy as np
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, read_only
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
@@ -94,6 +95,7 @@ def _places(vertices: Array, grasp: Grasp, friction: float, name: str) -> Places
     """The sides of three contacts, by point and normal, and the fractions passed."""
     if not isinstance(grasp, Grasp) or grasp.dimension != 2 or len(grasp) != 3:
         raise InvalidInput(f"{name} must be a planar Grasp of three contacts, got {shown(grasp)}")
+    refuse_limits(grasp, "a search on a whole outline")
     if (grasp.frictions != friction).any():
         raise InvalidInput(
             f"all contacts of the {name} must have the friction {friction:g} of the outline, "

@@ -101,7 +101,13 @@ def limited(grasp: Grasp, max_force: float | None) -> Grasp:
 
 def eased(grasp: Grasp, fraction: float) -> Grasp:
     """The grasp with a fraction of every force limit, which leaves room for forces to grow in a turn."""
-    return Grasp(c if c.max_force is None else with_limit(c, fraction * c.max_force) for c in grasp)
+    return Grasp(
+        c.changed(
+            max_force=None if c.max_force is None else fraction * c.max_force,
+            limits=None if c.limits is None else c.limits.scaled(fraction),
+        )
+        for c in grasp
+    )
 
 
 def with_limit(contact: Contact, limit: float) -> Contact:

@@ -204,10 +204,15 @@ def _path(
         stays=stays,
         unit=max(largest, _SQUEEZED * float(max(start.magnitudes.max(), end.magnitudes.max()))) or 1.0,
         set_back=None if demand is None or d == 3 else demand.set_back(),
+        row_bounds=None if grasp.limit_rows is None else grasp.limit_rows.bounds,
     )
     if demand is not None:  # what limits keep for the set; ends may know better, and all of it is checked
         ends = np.maximum(*(np.linalg.norm(f, axis=1) for f in (task.start, task.end)))
-        task = replace(task, limits=np.maximum(task.limits - demand.largest_changes(), ends))
+        task = replace(
+            task,
+            limits=np.maximum(task.limits - demand.largest_changes(), ends),
+            row_bounds=demand.row_bounds(),
+        )
     forces = planned_path(task, demands.path_objective or "change", criteria, backend, demands.facets)
     forces = grasp.cones.forces(forces)
     forces[0], forces[-1] = start.forces, end.forces

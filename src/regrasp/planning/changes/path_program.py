@@ -8,6 +8,7 @@ instants holds between them.
     friction      mu n.f_k,i - |f_t| >= margin sqrt(1 + mu^2)      non-negative; second order in space
     least normal  n.f_k,i >= least_i                               non-negative
     limits        |f_k,i| <= limit_i                               second order
+    linear ones   a . f_k,i <= b                                   non-negative
     rates         |f_k+1,i - f_k,i| <= rate_i (t_k+1 - t_k)        second order
 
     change        minimise sum_k |f_k+1 - f_k|^2 / (s_k+1 - s_k)     s: the phase, from 0 to 1
@@ -44,7 +45,8 @@ class PathTask:
     false where a finger carries no force. phases: (K,) rising from 0 to 1. frictions, limits [N], rates
     [N/s] and least_normals [N]: (n,), infinite or 0 for none. stays: (n,), the fingers whose margin counts.
     unit: the size of a force [N]. set_back: in the plane (n, 2), what the edges mu n -+ t of the cones of
-    fingers keep for a disturbance, g . f at least so much [N]; None for nothing.
+    fingers keep for a disturbance, g . f at least so much [N]; None for nothing. row_bounds: (m,) of the
+    contacts' linear limits [N]; None for none.
     """
 
     grasp: Grasp
@@ -61,6 +63,7 @@ class PathTask:
     stays: NDArray[np.bool_]
     unit: float
     set_back: Array | None = None
+    row_bounds: Array | None = None
 
     @property
     def end_margin(self) -> float:
@@ -125,6 +128,10 @@ class _Builder:
             normals = self._of_fingers(grasp.cones.normals[held, None], held)
             self.rows.at_least_zero(self._wide(normals[0]), -task.least_normals[held][normals[1]] / unit)
         self._circles(np.flatnonzero(task.limits < inf), task.limits / unit, None)
+        rows = grasp.limit_rows
+        if rows is not None and task.row_bounds is not None:
+            matrix, place = self._of_fingers(-rows.rows[:, None], rows.contacts)
+            self.rows.at_least_zero(self._wide(matrix), task.row_bounds[place] / unit)
         if self.objective == "peak":
             self._circles(np.arange(len(grasp)), np.zeros(len(grasp)), 1.0)
         change, offset = self._change()

@@ -38,7 +38,7 @@ def planned_path(
             return forces
         slack += 2 * breach
     raise SolverFailed(
-        f"{backend}: the path breaks a rate limit or a least normal force by {breach:.2g} of it",
+        f"{backend}: the path breaks a rate or linear limit or a least normal force by {breach:.2g} of it",
         answer.program,
         answer,
     )
@@ -74,7 +74,17 @@ def _kept(task: PathTask, slack: float) -> PathTask:
         limits=keep * task.limits,
         rates=(1 - slack) * task.rates,
         least_normals=(1 + slack) * task.least_normals,
+        row_bounds=_less(task, slack),
     )
+
+
+def _less(task: PathTask, slack: float) -> Array | None:
+    """What a share less than that of linear limits leaves."""
+    rows = task.grasp.limit_rows
+    if rows is None or task.row_bounds is None:
+        return task.row_bounds
+    left: Array = task.row_bounds - slack * rows.bounds
+    return left
 
 
 def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
@@ -124,6 +134,10 @@ def _why_not(
                 f"no path keeps every normal force at {task.least_normals.max():g} or more; without "
                 f"min_normal there is one"
             )
+    if proven and task.row_bounds is not None:
+        freed = replace(task, row_bounds=None)
+        if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
+            return Infeasible("no path keeps the contacts' linear limits; without them there is one")
     if proven:
         return Infeasible(
             "no path keeps all of this together: every instant can be held, and no single limit is to blame; "
@@ -198,9 +212,13 @@ def _balanced(task: PathTask, forces: Array, loads: Array, used: NDArray[np.intp
 
 
 def _breach(task: PathTask, forces: Array) -> float:
-    """The fraction by which the exact forces break a rate or a least normal force; not above 0 if none."""
+    """The fraction by which exact forces break a rate, a least normal force or a linear limit, if above 0."""
     speed = np.linalg.norm(np.diff(forces, axis=0), axis=-1) / np.diff(task.times)[:, None]
     normal = task.grasp.cones.normal(forces)
     needed = task.active & (task.least_normals > 0)
     short = (1 - normal / np.where(task.least_normals > 0, task.least_normals, 1.0))[needed]
-    return float(max((speed / task.rates - 1).max(), short.max(initial=-inf)))
+    rows, over = task.grasp.limit_rows, np.zeros(0)
+    if rows is not None and task.row_bounds is not None:
+        used = np.einsum("mw,kmw->km", rows.rows, forces[1:-1, rows.contacts])
+        over = (used - task.row_bounds) / rows.bounds
+    return float(max((speed / task.rates - 1).max(), short.max(initial=-inf), over.max(initial=-inf)))

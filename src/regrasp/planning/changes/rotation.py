@@ -191,6 +191,13 @@ def _axis(axis: ArrayLike | None, grasp: Grasp) -> Array | None:
 
 
 def _refuse_high_forces(plan: Transition) -> None:
+    assert plan.turn is not None
+    spare = plan.turn.spare(plan.start, plan.end)
+    if (spare < 0).any():
+        raise Infeasible(
+            f"{plan.grasp.names[int(spare.argmin())]} would break its linear limits in the turn by "
+            f"{-spare.min():.4g}; choose states with less force, or loosen them"
+        )
     for i, contact in enumerate(plan.grasp):
         peak = float(plan.peaks[i])
         if contact.max_force is not None and peak > contact.max_force:

@@ -55,7 +55,7 @@ class Chooser(NamedTuple):
     def under(self, load: Wrench) -> ChosenForces:
         """The best forces under a load, within eased limits if there are any."""
         grasp, criteria = self.grasp, self.criteria
-        if any(contact.max_force is not None for contact in grasp):
+        if any(contact.max_force is not None or contact.limits is not None for contact in grasp):
             less = eased(grasp, self.ease)
             try:
                 return choose_forces(less, load, replace(criteria, max_force=None), *self.how)
@@ -104,14 +104,22 @@ def halved(chooser: Chooser, knots: list[Knot], between: Between) -> TurningPath
 
 def within_limits(chooser: Chooser, before: Knot, after: Knot) -> None:
     """Raise ``Infeasible`` where a force between two states exceeds its limit; no state is needed there."""
-    limits = chooser.grasp.max_forces
-    if not (limits < inf).any():
+    limits, rows = chooser.grasp.max_forces, chooser.grasp.limit_rows
+    if not (limits < inf).any() and rows is None:
         return
     (a, f), (b, g) = before, after
     ends = [
         GraspState(chooser.grasp, turned_load(chooser.load, x, chooser.axis), y) for x, y in (before, after)
     ]
-    peaks = TurningPath([0.0, b - a], [f, g], chooser.axis).peaks(ends[0], ends[1])
+    path = TurningPath([0.0, b - a], [f, g], chooser.axis)
+    spare = path.spare(ends[0], ends[1])
+    if (spare < 0).any():
+        who = chooser.grasp.names[int(spare.argmin())]
+        raise Infeasible(
+            f"{who} would break its linear limits by {-spare.min():.4g} between turns of {a:.6g} and {b:.6g} "
+            f"rad; choose states with less force, or loosen them"
+        )
+    peaks = path.peaks(ends[0], ends[1])
     for contact, peak in zip(chooser.grasp, peaks.tolist(), strict=True):
         if contact.max_force is not None and peak > contact.max_force:
             raise Infeasible(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, function, items, number, whole
 from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
@@ -81,6 +82,7 @@ class HoldGraph(ArrayValue):
         contacts = tuple(items(self.contacts, "contacts"))
         if len(contacts) < 2 or any(not isinstance(c, Contact) or c.dimension != 2 for c in contacts):
             raise InvalidInput("a hold graph needs two planar contacts or more")
+        refuse_limits(contacts, "a hold graph")
         object.__setattr__(self, "contacts", contacts)
         number(self.peak_ratio, "peak_ratio", least=1)
         number(self.min_distance, "min_distance", least=0)

@@ -9,6 +9,7 @@ import numpy as np
 from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
 from regrasp.mechanics.checks import Array, number, read_only
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
@@ -87,6 +88,7 @@ def contact_regions(
         raise InvalidInput(f"shape must be an Outline that is a polygon, got {shown(shape)}")
     if not isinstance(grasp, Grasp) or grasp.dimension != 2 or not 2 <= len(grasp) <= 6:
         raise InvalidInput(f"grasp must be a planar Grasp of two to six contacts, got {shown(grasp)}")
+    refuse_limits(grasp, "a search for regions")
     if len(set(grasp.frictions.tolist())) > 1:
         raise InvalidInput("contacts of a grasp with regions must all have the same friction")
     check_planar(load)

@@ -38,7 +38,8 @@ class Answered:
     def __init__(self, view: View, base: LoadSet | None) -> None:
         rest = view.at_work
         limits = rest.limits.tolist()
-        self.grasp = Grasp(_limited(c, m) for c, m in zip(rest.grasp, limits, strict=True))
+        share = rest.share
+        self.grasp = Grasp(_limited(c, m, share) for c, m in zip(rest.grasp, limits, strict=True))
         self.load, self.names = view.state.load, rest.grasp.names
         corners = None if base is None else base.vertices
         self.deviations = [Wrench.from_vector(v) for v in ([] if corners is None else corners)]
@@ -144,7 +145,9 @@ def some(views: Iterable[View]) -> list[View]:
     return [chosen[k] for k in np.linspace(0, len(chosen) - 1, VIEWS).round().astype(int).tolist()]
 
 
-def _limited(contact: Contact, limit: float) -> Contact:
+def _limited(contact: Contact, limit: float, share: float) -> Contact:
+    if contact.limits is not None and share < 1:
+        contact = contact.changed(limits=contact.limits.scaled(share))
     return contact if limit == inf else contact.changed(max_force=limit)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.robust.moved import moved
 from regrasp.mechanics.robust.stiffness import response, stiffness_matrices
 from regrasp.mechanics.robust.withstanding import EXCEEDS, OPENS, SLIPS, Withstanding, measured_response
@@ -144,10 +145,25 @@ class _Moving:
         normals[:, i, :d] = normal
         along = (measured * normals).sum(axis=-1)
         across = np.sqrt(((measured - along[..., None] * normals) ** 2).sum(axis=-1))
-        mu = grasp.frictions
-        return _Spares(
-            (mu * along - across) / np.sqrt(1 + mu**2), self.view.limits - np.hypot(along, across), along
-        )
+        mu, within = grasp.frictions, self.view.limits - np.hypot(along, across)
+        if grasp.limit_rows is not None:
+            within = np.minimum(within, self._row_spares(forces + change, measured, normal))
+        return _Spares((mu * along - across) / np.sqrt(1 + mu**2), within, along)
+
+    def _row_spares(self, forces: Array, measured: Array, normal: Array) -> Array:
+        """(m, n) what linear limits leave, where those of the contact that is off turn with its normal."""
+        grasp, i, share, d = self.view.grasp, self.i, self.view.share, self.view.grasp.dimension
+        rows, contact = grasp.limit_rows, grasp.contacts[i]
+        assert rows is not None
+        spares = rows.scaled(share).spare(measured)
+        if contact.limits is None:
+            return spares
+        frame = np.concatenate([normal[:, None], tangents_of(normal)], axis=1)
+        given, bounds = contact.limits.rows, share * contact.limits.bounds
+        used = np.einsum("kd,mde,me->mk", given[:, :d], frame, forces[:, i, :d])
+        used += forces[:, i, d : given.shape[1]] @ given[:, d:].T
+        spares[:, i] = ((bounds - used) / np.hypot.reduce(given, axis=1)).min(axis=1)
+        return spares
 
     def _places(self, offsets: Array) -> tuple[Array, Array]:
         """(m, d) points and normals of the contact off along its surface (``moved``)."""
@@ -173,8 +189,9 @@ class _Moving:
             forces = stacked + answer @ ((off.matrix - grasp.matrix) @ stacked)
             measured = off.cones.measured(forces.reshape(view.state.forces.shape))
             given = Withstanding(
-                off.cones, measured, measured_response(off, answer), off.frictions, view.limits, base
-            )
+                off.cones, measured, measured_response(off, answer), off.frictions, view.limits, base,
+                None if off.limit_rows is None else off.limit_rows.scaled(view.share),
+            )  # fmt: skip
             found.append((given.spare(), off.cones.normal(measured)))
         spares, normal = (np.array(column) for column in zip(*found, strict=True))
         return _Spares(spares, np.full(spares.shape, inf), normal)

@@ -29,7 +29,7 @@ class View(ArrayValue):
     """Forces of a grasp under a load at one instant.
 
     label: when, in words; empty for a state alone. controlled: places of the fingers whose force is
-    controlled. limits: (n,) [N], infinite for none.
+    controlled. limits: (n,) [N], infinite for none. share: of the contacts' linear limits that may be used.
     """
 
     label: str
@@ -37,6 +37,7 @@ class View(ArrayValue):
     controlled: tuple[int, ...]
     stiffness: Stiffness
     limits: Array
+    share: float = 1.0
 
     @property
     def grasp(self) -> Grasp:
@@ -58,6 +59,7 @@ class View(ArrayValue):
             friction * grasp.frictions,
             self.limits,
             base,
+            None if grasp.limit_rows is None else grasp.limit_rows.scaled(self.share),
         )
 
     @cached_property
@@ -123,7 +125,7 @@ def _of_turn(plan: Transition, stiffness: Stiffness, limits: Array, idle: tuple[
     share = 1.0 if turn.middles is not None else cos(max(abs(b - a) for a, b in pairwise(angles)) / 2)
     for angle, forces in zip(angles, turn.forces, strict=True):
         state = GraspState(grasp, turned_load(load, angle, turn.axis), forces)
-        yield View(f"angle {angle:.6g} rad", state, idle, stiffness, read_only(share * limits))
+        yield View(f"angle {angle:.6g} rad", state, idle, stiffness, read_only(share * limits), share)
     for (a, b), forces in zip(pairwise(angles), () if turn.middles is None else turn.middles, strict=False):
         state = GraspState(grasp, load_between(load, a, b, turn.axis), forces)
         yield View(f"between {a:.6g} and {b:.6g} rad", state, idle, stiffness, limits)

@@ -5,6 +5,7 @@ from typing import Unpack
 from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
 from regrasp.mechanics.checks import whole
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.state import check_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
@@ -96,6 +97,7 @@ def _refuse_closed_form(grasp: Grasp, criteria: Criteria, facets: int | None) ->
     """Raise ``InvalidInput`` where the closed form was asked for and does not answer."""
     if criteria.withstands:
         raise InvalidInput("the closed form knows no disturbance; use method='auto'")
+    refuse_limits(grasp, "the closed form")
     if criteria.presses:
         raise InvalidInput("the closed form keeps no least normal forces; use method='auto'")
     if len(grasp) != 2 or grasp.dimension != 2:

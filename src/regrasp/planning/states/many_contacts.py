@@ -40,7 +40,7 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
-    if criteria.presses or criteria.demand(grasp) is not None:
+    if criteria.presses or grasp.limit_rows is not None or criteria.demand(grasp) is not None:
         return _pressed(grasp, load, criteria, backend, facets)
     objective = criteria.objective
     if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
@@ -66,7 +66,7 @@ def solved_forces(
 def _pressed(
     grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
 ) -> ChosenForces:
-    """The best forces with which every finger keeps its least normal force and withstands what it must."""
+    """The best forces where fingers keep least normal forces or linear limits, or withstand a set."""
     demand = criteria.demand(grasp)
     if demand is not None and facets is not None:
         raise InvalidInput(
@@ -142,6 +142,13 @@ def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
             f"deviations in the {criteria.disturbance} were found, within cones and force limits; a smaller "
             f"disturbance, or objective 'wrench', says how much of it they withstand; higher force limits "
             "let them squeeze more"
+        )
+    if not criteria.presses:
+        who = ", ".join(str(c.name) for c in grasp if c.limits is not None)
+        return Infeasible(
+            f"no forces of {', '.join(grasp.names)} that balance {shown(load)} within the linear limits of "
+            f"{who} were found, within cones and force limits; without these limits no motion proves that "
+            f"there are none: loosen them"
         )
     least = ", ".join(f"{n} {f:g}" for n, f in zip(grasp.names, criteria.least_normals(grasp), strict=True))
     return Infeasible(

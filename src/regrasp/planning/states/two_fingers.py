@@ -13,6 +13,7 @@ from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue, kept
@@ -206,6 +207,7 @@ def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     question = _question(grasp, criteria)
     if question is None:
         criteria.refuse_pressing("the closed form")
+        refuse_limits(grasp, "the closed form")
         raise InvalidInput(f"objective {shown(criteria.objective.name)} has no closed form; use choose_state")
     if question.needs_load and not any(load.plain):
         criteria.demand_limit(grasp, load)
@@ -237,7 +239,7 @@ def _asked(grasp: Grasp, criteria: Criteria) -> _Question | None:
     code = criteria.objective.closed_form
     if len(grasp) != 2 or grasp.dimension != 2 or code is None or criteria.presses or criteria.withstands:
         return None
-    if is_one_point(grasp):
+    if is_one_point(grasp) or grasp.limit_rows is not None:
         return None
     first, second = (_plain(contact)[:4] for contact in grasp.contacts)
     mu1, mu2 = criteria.frictions(grasp)

@@ -84,6 +84,8 @@ class HeldDirections:
 def held_directions(grasp: Grasp) -> HeldDirections:
     """The directions of a force through the centre of mass that planar contacts balance inside their cones.
 
+    Force limits do not count: directions have no size.
+
     Args:
         grasp: planar contacts.
 

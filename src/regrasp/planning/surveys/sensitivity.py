@@ -10,6 +10,7 @@ from regrasp.display import Pictured
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, read_only
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
@@ -195,6 +196,7 @@ def sensitivity(
     """
     instance(grasp, "grasp", Grasp)
     check_load(grasp, load)
+    refuse_limits(grasp, "a sensitivity")
     if grasp.dimension != 2:
         raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
     if len(grasp) < 2:

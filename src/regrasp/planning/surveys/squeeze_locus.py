@@ -9,6 +9,7 @@ import numpy as np
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number, read_only, whole
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.state import GraspState, check_load
@@ -61,6 +62,7 @@ class SqueezeLocus(ArrayValue):
                 "choose_state for their states"
             )
         check_load(self.grasp, self.load)
+        refuse_limits(self.grasp, "a squeeze locus")
         if self.max_force is not None:
             number(self.max_force, "max_force", above=0)
 

@@ -18,7 +18,8 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
     """|f_i(t)| of every finger (Fig. 9a), below its force limit.
 
     Limits are dashed, those that contacts have and those that the plan's states were chosen under; one that
-    all share is grey. A limit far above every force is left out.
+    all share is grey. Linear limits are dash-dotted: how large a force in the direction of f_i(t) may be.
+    What is far above every force is left out.
 
     Args:
         transition: the transition to draw.
@@ -31,6 +32,7 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
     _lines(ax, transition, t, magnitudes, units)
     largest = float(magnitudes.max())
+    _linear_limits(ax, transition, t, magnitudes, _SHOWN * largest)
     _limits(ax, transition, force_limits(transition), _SHOWN * largest)
     ax.set_ylim(bottom=min(ax.get_ylim()[0], -0.03 * largest))  # a line along zero stays visible
     label_axis(ax.yaxis, r"$|f_i|$", units.force, _largest(ax))
@@ -143,6 +145,22 @@ def _limits(ax: Axes, transition: Transition, limits: dict[str, float], most: fl
             ax.axhline(limit, color=colour, linewidth=0.9, linestyle="--", gid=f"limit {name}", zorder=1.9)
         if one:
             break
+
+
+def _linear_limits(ax: Axes, transition: Transition, t: Array, magnitudes: Array, most: float) -> None:
+    """For each finger with linear limits the largest force in the direction it has."""
+    forces = transition.forces(t)
+    for i, (contact, colour) in enumerate(
+        zip(transition.grasp, contact_colours(transition.grasp).values(), strict=True)
+    ):
+        if contact.limits is None or contact.limit_rows is None:
+            continue
+        rows = contact.limit_rows
+        used = (forces[:, i, : rows.shape[1]] @ rows.T / contact.limits.bounds).max(axis=1)
+        reach = np.divide(magnitudes[:, i], used, out=np.full(t.size, np.nan), where=used > 0)
+        reach[reach > most] = np.nan
+        gid = f"linear limit {contact.name}"
+        ax.plot(t, reach, color=colour, linewidth=0.9, linestyle="-.", gid=gid, zorder=1.9)
 
 
 def _values(ax: Axes) -> Array:

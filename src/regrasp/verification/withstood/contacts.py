@@ -58,6 +58,18 @@ class Body:
         unit = np.eye(self.loads.center.vector.size)
         self.sizes = np.maximum(loads.support(unit), loads.support(-unit))
 
+    def allows(self, room: Fraction, twist: Vector) -> bool:
+        """Whether no member works more than ``room`` along a twist."""
+        if self.axes is not None:
+            left = room - dot(twist, self.center)
+            work = times(transposed(self.axes), twist)
+            return left >= 0 and left**2 >= dot(work, work)
+        if self.is_exact and self.vertices is not None:
+            return all(room >= dot(twist, v) for v in self.vertices)
+        y = np.array([float(x) for x in twist])
+        highest = float(self.loads.support(y)) + _ROUNDING * float(np.abs(y) @ self.sizes)
+        return room >= Fraction(highest)
+
 
 class Touch:
     """A contact with its cone and limit; ``friction``: the factor on its coefficient that is judged."""
@@ -76,6 +88,11 @@ class Touch:
             for i, a in enumerate(self.n)
         ]
         self.limit = None if contact.max_force is None else Fraction(contact.max_force)
+        self.rows: list[tuple[Vector, Fraction]] = []
+        if contact.limits is not None and contact.limit_rows is not None:
+            for a, b in zip(contact.limit_rows.tolist(), contact.limits.bounds.tolist(), strict=True):
+                none = [Fraction(0)] * (width - len(a))
+                self.rows.append(([*exact(a), *none], Fraction(b)))
 
     def broken(
         self, force: Vector, answer: Matrix, body: Body, limit_share: Fraction = Fraction(1)
@@ -84,7 +101,9 @@ class Touch:
 
         answer: R, (w, q). limit_share: the part of the limit that may be used.
         """
-        found = self._edges(force, answer, body) if len(force) == 2 else None
+        found = self._by_rows(force, answer, body, limit_share)
+        if found is None and len(force) == 2:
+            found = self._edges(force, answer, body)
         checks = [] if len(force) == 2 else [(self._in_cone, "leaves its friction cone")]
         limit = None if self.limit is None else self.limit * limit_share
         if limit is not None:
@@ -107,20 +126,20 @@ class Touch:
         for sign in (-1, 1, 0):
             g = [self.mu * a + sign * b if sign else a for a, b in zip(self.n, across, strict=True)]
             twist = [-dot(g, list(column)) for column in zip(*answer, strict=True)]
-            room = dot(g, force)
-            if body.axes is not None:
-                room -= dot(twist, body.center)
-                work = times(transposed(body.axes), twist)
-                holds = room >= 0 and room**2 >= dot(work, work)
-            elif body.is_exact and body.vertices is not None:
-                holds = all(room >= dot(twist, v) for v in body.vertices)
-            else:
-                y = np.array([float(x) for x in twist])
-                highest = float(body.loads.support(y)) + _ROUNDING * float(np.abs(y) @ body.sizes)
-                holds = room >= Fraction(highest)
-            if not holds:
+            if not body.allows(dot(g, force), twist):
                 y = np.array([float(x) for x in twist])
                 return self._with_member("leaves its friction cone", force, answer, body.loads.extreme(y))
+        return None
+
+    def _by_rows(self, force: Vector, answer: Matrix, body: Body, share: Fraction) -> Broken | None:
+        """Linear limits: b - a . f >= sigma(R' a), for any set."""
+        for a, b in self.rows:
+            twist = [dot(a, list(column)) for column in zip(*answer, strict=True)]
+            if body.allows(b * share - dot(a, force), twist):
+                continue
+            member = body.loads.extreme(np.array([float(x) for x in twist]))
+            after = _changed(force, answer, exact(member.vector.tolist()))
+            return Broken("breaks a linear limit", None if dot(a, after) <= b * share else member)
         return None
 
     def _with_member(

@@ -32,7 +32,7 @@ class WithstoodFactor(ConvexObjective):
         given = forces.reshape(-1, *forces.shape[-2:])
         base, loads = around_center(self.deviations(grasp))
         found = [
-            Withstanding(grasp.cones, f, answers, grasp.frictions, grasp.max_forces, base)
+            Withstanding(grasp.cones, f, answers, grasp.frictions, grasp.max_forces, base, grasp.limit_rows)
             .factors(loads)
             .factors
             for f in given

@@ -105,6 +105,16 @@ class Demand:
         work = self.disturbance.support(twists)
         return work + _SPARE * np.abs(work)
 
+    def row_bounds(self) -> Array | None:
+        """(m,) what linear limits leave on the way, b less the most work of the set [N]; None without any."""
+        rows = self.grasp.limit_rows
+        if rows is None:
+            return None
+        twists = np.einsum("mw,mwq->mq", rows.rows, self.cases[0].responses[rows.contacts])
+        work = self.disturbance.support(twists)
+        left: Array = rows.bounds - work - _SPARE * np.abs(work)
+        return left
+
     def largest_changes(self) -> Array:
         """(n,) at least the largest change of each force on the way [N]."""
         responses, around, axes = self.cases[0].responses, self.disturbance.cover, self.disturbance.half_axes
@@ -134,5 +144,11 @@ class Demand:
     def _withstanding(self, case: Case, forces: Array, limits: Array) -> Withstanding:
         grasp = self.grasp
         return Withstanding(
-            grasp.cones, case.after(forces), case.responses, grasp.frictions, limits, self.disturbance
+            grasp.cones,
+            case.after(forces),
+            case.responses,
+            grasp.frictions,
+            limits,
+            self.disturbance,
+            grasp.limit_rows,
         )

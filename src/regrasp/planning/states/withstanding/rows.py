@@ -6,7 +6,7 @@ the half-spaces h_k . a >= sigma(-R' h_k) of an outer pyramid h_k of the dual co
 a + R d is in the cone for every d (an apex of it), and so is f + R d. That holds in proportion: of the widest
 factor it reaches 0.99 or more (24 sides), where a pyramid in the place of the cone may lose all of it.
 
-Limits: |f + R v| <= L by vertices; of a ball |f + R c| + |R A| <= L, sufficient.
+Limits: |f + R v| <= L by vertices; of a ball |f + R c| + |R A| <= L, sufficient. Linear ones like edges.
 """
 
 from functools import lru_cache
@@ -115,6 +115,10 @@ class _Demands:
             self._faces(mu * normal - _outside(w) @ tangents, apex, answer)
             none = np.zeros(w)
             self._round(np.vstack([mu * normal, tangents]) @ (pick - apex), none, none)
+        rows = self.demand.grasp.limit_rows
+        if rows is not None and (rows.contacts == i).any():
+            mine = rows.contacts == i
+            self._faces(-rows.rows[mine], pick, answer, rows.bounds[mine] / self.unit)
         if self.limits[i] < inf:
             self._limit(self.limits[i] / self.unit, pick, answer)
 
@@ -123,13 +127,14 @@ class _Demands:
         assert found is not None
         return found
 
-    def _faces(self, faces: Array, pick: Array, answer: Array) -> None:
+    def _faces(self, faces: Array, pick: Array, answer: Array, bounds: Array | float = 0.0) -> None:
+        """Bounds + faces . f at least the most work of the set against them."""
         work = self.set.support(-faces @ answer)
         if self.by_factor:
             stays = -faces @ answer @ self.center
-            self.rows.at_least_zero(faces @ pick - (work - stays)[:, None] * self.last, -stays)
+            self.rows.at_least_zero(faces @ pick - (work - stays)[:, None] * self.last, bounds - stays)
         else:
-            self.rows.at_least_zero(faces @ pick, -work - _SPARE * (1 + np.abs(work)))
+            self.rows.at_least_zero(faces @ pick, bounds - work - _SPARE * (1 + np.abs(work)))
 
     def _round(self, matrix: Array, change: Array, stays: Array) -> None:
         if self.by_factor:

@@ -14,6 +14,7 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, ArrayLike, number, point, read_only
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
@@ -119,6 +120,7 @@ def held_centres(
         InvalidInput: For bad input.
     """
     check_load(grasp, weight)
+    refuse_limits(grasp, "the region of centres of mass")
     if not weight.force.any():
         raise InvalidInput("weight must have a force: a torque alone does not depend on the centre of mass")
     number(gap, "gap", above=0)

@@ -32,7 +32,7 @@ class LargestLoad(ArrayValue):
         base: external wrench that stays as it is, object frame [N, N m]; None for none.
         factor: [-], proven by ``state``, which balances base + factor direction; infinite where it has no
             limit, ``state`` then balances the direction alone.
-        bounds: (factor, upper): forces beyond are proven not to exist.
+        bounds: (factor, upper): forces beyond are proven not to exist, linear limits of contacts apart.
         state: a state.
         escape: the twist that proves it just above the upper bound; None where there is no bound.
     """
@@ -74,7 +74,8 @@ def largest_load(
         grasp: the contacts that hold.
         direction: of the load, object frame, of any length but zero.
         base: external wrench that stays as it is, object frame [N, N m].
-        max_force: limits every force besides the contacts' own limits [N]. Friction counts in full. By one
+        max_force: limits every force besides the contacts' own limits [N]. Friction counts in full. Linear
+            limits of contacts count in the factor; the upper bound is proven without them. By one
             conic program; its forces prove the factor from below and its dual the bound from above, both
             checked.
 
@@ -92,7 +93,7 @@ def largest_load(
     start = (base.vector if base is not None else np.zeros_like(direction.vector)) / unit
     along = direction.vector[:, None] / unit
     scaled = [limit / unit for limit in limits]
-    found = farthest(grasp, start, along, np.ones(1), scaled)
+    found = farthest(grasp, start, along, np.ones(1), scaled, unit=unit)
     if found.k is not None and found.is_unbounded and _is_held_somewhere(grasp, start, along, scaled, unit):
         ray = Reached(np.ones(1), found.forces / float(found.k[0]), found.twist)
         if (held := held_state(grasp, 0 * start, along, ray, np.ones(1), scaled, unit)) is not None:
@@ -120,7 +121,7 @@ def _is_held_somewhere(grasp: Grasp, base: Array, along: Array, limits: list[flo
     """Whether base + k direction is balanced for some k."""
     if not base.any():
         return True
-    found = farthest(grasp, base, along, np.zeros(1), limits)
+    found = farthest(grasp, base, along, np.zeros(1), limits, unit=unit)
     return (
         found.k is not None and held_state(grasp, base, along, found, found.k + 1, limits, unit) is not None
     )

@@ -87,7 +87,8 @@ def least_friction(
         grasp: the contacts that hold.
         load: external wrench on the object about its centre of mass, object frame [N, N m].
         contacts: those that have friction, all if not given; the others stay without.
-        max_force: limits every force besides the contacts' own limits [N]. Torsion of soft fingers stays as
+        max_force: limits every force besides the contacts' own limits [N]; their linear ones count, too, and
+            not in the lower bound. Torsion of soft fingers stays as
             it is, per normal force.
 
     Raises:
@@ -129,7 +130,7 @@ def _by_formula(
     grasp: Grasp, load: Wrench, criteria: Criteria, rough: Container[int]
 ) -> "tuple[float, GraspState | None, EscapeTwist | None] | None":
     """Two planar contacts: the closed form of the least friction use."""
-    if grasp.dimension == 3 or len(grasp) != 2:
+    if grasp.dimension == 3 or len(grasp) != 2 or grasp.limit_rows is not None:
         return None
     given = _with(grasp, _FORMULA, rough)
     used = Criteria("friction_use", criteria.max_force, reserve=0.0)

@@ -3,7 +3,8 @@
     maximise c . k   subject to   G f + base + D k = 0,   f_i in cone_i,   |f_i| <= limit_i
 
 For any twist y, the contacts do no work below -sum limit_i opposition_i(y) along it, so y . (base + D k) is
-at most that sum, whatever k: a half-plane of k that holds all k that are balanced.
+at most that sum, whatever k: a half-plane of k that holds all k that are balanced. Linear limits of contacts
+count in the programs and not in this bound, which stays true and is looser then.
 """
 
 from math import inf
@@ -14,6 +15,7 @@ import numpy as np
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.limit_rows import LimitRows
 from regrasp.mechanics.opposition import oppositions
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
@@ -39,11 +41,17 @@ class Reached(NamedTuple):
 
 
 def farthest(
-    grasp: Grasp, base: Array, directions: Array, cost: Array, limits: list[float], most: float = inf
+    grasp: Grasp,
+    base: Array,
+    directions: Array,
+    cost: Array,
+    limits: list[float],
+    most: float = inf,
+    unit: float = 1.0,
 ) -> Reached:
     """base: (3 or 6,), directions: (3 or 6, p) in one unit of force; torques as they are. cost: (p,).
 
-    most: keeps k within a box of this half-side.
+    most: keeps k within a box of this half-side. unit: of force, in which linear limits are measured [N].
     """
     n, w = len(grasp), grasp.width
     p = directions.shape[1]
@@ -57,6 +65,9 @@ def farthest(
     for i, limit in enumerate(limits):
         if limit < inf:
             rows.second_order(np.vstack([np.zeros(t + p), _pick(i, w, t + p)]), [limit, *[0.0] * w])
+    linear = grasp.limit_rows
+    if linear is not None:
+        rows.at_least_zero(-_spread(linear, w, t + p), (1 - SLACK) * linear.bounds / unit)
     if most < inf:
         box = np.hstack([np.zeros((p, t)), np.eye(p)])
         rows.at_least_zero(np.vstack([box, -box]), most)
@@ -92,6 +103,9 @@ def largest_share(grasp: Grasp, load: Wrench, limits: list[float]) -> tuple[Gras
         rows.second_order(np.vstack([np.zeros(t + 1), _pick(i, w, t + 1)]), [1.0, *[0.0] * w])
         if limit < inf and limit < LOOSE * unit:
             rows.second_order(np.vstack([(1 - SLACK) * limit / unit * share, _pick(i, w, t + 1)]))
+    linear = grasp.limit_rows
+    if linear is not None:
+        rows.at_least_zero((1 - SLACK) * linear.bounds[:, None] / unit * share - _spread(linear, w, t + 1))
     answer = _answer(rows.program(-share[0]))
     twist = -answer.duals[: len(target)] * weight
     twist = -twist if twist @ load.vector < 0 else twist
@@ -125,6 +139,14 @@ def _pick(i: int, w: int, unknowns: int) -> Array:
     pick = np.zeros((w, unknowns))
     pick[:, w * i : w * i + w] = np.eye(w)
     return pick
+
+
+def _spread(linear: LimitRows, w: int, unknowns: int) -> Array:
+    """(m, unknowns) the rows of linear limits, forces first among the unknowns."""
+    wide = np.zeros((len(linear.rows), unknowns))
+    for row, i, a in zip(wide, linear.contacts.tolist(), linear.rows, strict=True):
+        row[w * i : w * i + w] = a
+    return wide
 
 
 def _answer(program: Program) -> Solution:
