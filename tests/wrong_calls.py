@@ -136,7 +136,8 @@ NAMES: dict[str, str] = {
     "disturbance": "value", "stiffness": "stiffnesses", "tip_radius": "not negative", "early_loss": "flag",
     "start_objective": "word", "also": "numbers",
     "angle": "number", "magnitude": "positive", "degree": "count", "segments": "count", "divisions": "count",
-    "crease": "positive", "contact": "contact of", "limits": "contact limits", "squeeze": "numbers", "direction": "vector",
+    "crease": "positive", "contact": "contact of", "squeeze": "numbers", "direction": "vector",
+    "limits": "contact limits",
 }  # fmt: skip
 """Of parameters that are of one kind wherever they appear."""
 
@@ -695,7 +696,10 @@ KINDS |= {
     "stiffnesses": (*NOT_NUMBERS, [], 0, -1.0, [0, 0], [-1, 1], np.ones((1, 1, 1, 1))),
     "contact limits": (*[v for v in NOT_A_VALUE if v is not None], ([[1, 0, 0]], [1]), ([[1, 0]], [0])),
     "bounds": (*NOT_NUMBERS, 5, [], [0, 1], [-1, 1], [1, 2, 3], np.ones((2, 2))),
-    "torques": (*[v for v in NOT_NUMBERS if v != [inf, 0]], 0, -1, [0, 1], [1, 2, 3], np.ones((2, 2))),
+    "torques": (
+        *[v for v in NOT_NUMBERS if not isinstance(v, list) or v[:1] != [inf]],
+        *(0, -1, [0, 1], [1, 2, 3], np.ones((2, 2))),
+    ),
     "some normal": (*[v for v in NOT_A_VECTOR if v is not None], [0, 0], [1, 2, 3]),
     "rising limits": (*NOT_NUMBERS, 5, [], [2, 1], [1, 1], [-1, 1], np.zeros((2, 2))),
     "finger rows": (*NOT_NUMBERS, [], [1, 2, 3], np.ones((3, 4))),

@@ -137,7 +137,17 @@ def test_every_key_is_needed_or_has_a_default(name: str) -> None:
     value = VALUES[name]()
     for key in value.to_dict():
         less = {k: v for k, v in value.to_dict().items() if k != key}
-        if key in ("name", "max_force", "min_normal", "deviations", "torque", "torsion", "holes", "centre"):
+        if key in (
+            "name",
+            "max_force",
+            "min_normal",
+            "deviations",
+            "torque",
+            "torsion",
+            "limits",
+            "holes",
+            "centre",
+        ):
             assert type(value).from_dict(less) is not None
         else:
             with pytest.raises(rg.InvalidInput, match=r"must have the key|must have exactly one of"):

@@ -253,18 +253,7 @@ def _document(plan: Transition) -> dict[str, Any]:
         "kind": plan.kind,
         "contact": plan.contact,
         "load": plan.start.load.vector.tolist(),
-        "contacts": [
-            {
-                "name": c.name,
-                "position": c.position.tolist(),
-                "normal": c.normal.tolist(),
-                "friction": c.friction,
-                "max_force": c.max_force,
-            }
-            | ({} if c.torsion is None else {"torsion": c.torsion})
-            | ({} if c.limits is None else {"limits": c.limits.to_dict()})
-            for c in plan.grasp
-        ],
+        "contacts": [c.to_dict() for c in plan.grasp],
         "start": plan.start.forces.tolist(),
         "end": plan.end.forces.tolist(),
         "scaling": {
@@ -313,18 +302,7 @@ def _document(plan: Transition) -> dict[str, Any]:
 
 
 def _plan(stored: _Transition) -> Transition:
-    grasp = Grasp(
-        Contact(
-            c.position,
-            c.normal,
-            c.friction,
-            max_force=c.max_force,
-            torsion=c.torsion,
-            limits=None if c.limits is None else (c.limits.rows, c.limits.bounds),
-            name=c.name,
-        )
-        for c in stored.contacts
-    )
+    grasp = Grasp(Contact.from_dict(c.model_dump()) for c in stored.contacts)
     for key in ("rate_limits", "least_normals"):
         count = len(getattr(stored.record, key))
         if count not in (0, len(grasp)):
