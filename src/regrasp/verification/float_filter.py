@@ -72,10 +72,7 @@ def judge_rows(
     known &= (magnitude > _LEAST) & (magnitude < _MOST)
     inside = known & (mu * normal - tangential > _DOUBT * (1 + mu) * magnitude)
     inside &= magnitude <= limits * (1 - _DOUBT)
-    for i, contact in enumerate(grasp.contacts):
-        if contact.limit_rows is not None and contact.limits is not None:
-            within = _surely_within(forces[..., i, :], contact.limit_rows, contact.limits.bounds)
-            inside[..., i] = np.logical_and(inside[..., i], within)
+    inside &= _surely_within(grasp, forces)
     idle = ~folded(np.logical_or, forces != 0)
     inside |= idle  # the apex
     total = np.einsum("mni->mi", pushed) + loads[:, :d], np.einsum("mni->mi", torques) + loads[:, d:] / arm
@@ -101,12 +98,17 @@ def judge_rows(
     return broken, max(residuals), float(least), min(slacks)
 
 
-def _surely_within(forces: Array, rows: Array, bounds: Array) -> NDArray[np.bool_]:
-    """Whether forces (..., w) keep linear limits by more than rounding."""
-    terms = forces[..., : rows.shape[1]]
-    room = bounds - terms @ rows.T - _DOUBT * (np.abs(terms) @ np.abs(rows).T + bounds)
-    result: NDArray[np.bool_] = (room > 0).all(axis=-1)
-    return result
+def _surely_within(grasp: Grasp, forces: Array) -> NDArray[np.bool_]:
+    """(m, n) whether forces (m, n, w) keep linear limits by more than rounding."""
+    inside = np.ones(forces.shape[:-1], dtype=bool)
+    for i, contact in enumerate(grasp.contacts):
+        rows, limits = contact.limit_rows, contact.limits
+        if rows is None or limits is None:
+            continue
+        terms, bounds = forces[..., i, : rows.shape[1]], limits.bounds
+        room = bounds - terms @ rows.T - _DOUBT * (np.abs(terms) @ np.abs(rows).T + bounds)
+        inside[..., i] = (room > 0).all(axis=-1)
+    return inside
 
 
 def folded(ufunc: np.ufunc, values: NDArray[Any]) -> NDArray[Any]:
