@@ -31,6 +31,13 @@ class CurveBoundary(ArrayValue):
     def at(self, u: Array, order: int = 0) -> Array:
         """(..., 2) the derivative of x of an order 0, 1 or 2."""
 
+    @abstractmethod
+    def cubics(self) -> tuple[Array, Array]:
+        """(k + 1,) values of u and (k, 4, 2) control points of cubic Bezier pieces between them.
+
+        They are the curve but for rounding.
+        """
+
     @cached_property
     def _u(self) -> Array:
         breaks = self.breaks
@@ -86,11 +93,11 @@ class CurveBoundary(ArrayValue):
 
     def points(self, s: ArrayLike) -> Array:
         """(..., 2) points at arc lengths."""
-        return self.at(self._parameter(s))
+        return self.at(self.parameter(s))
 
     def tangents(self, s: ArrayLike) -> Array:
         """(..., 2) unit tangents."""
-        velocity = self.at(self._parameter(s), 1)
+        velocity = self.at(self.parameter(s), 1)
         result: Array = velocity / np.linalg.norm(velocity, axis=-1, keepdims=True)
         return result
 
@@ -133,8 +140,8 @@ class CurveBoundary(ArrayValue):
         result: Array = self._s[k] + _integrals(self._speed, self._u[k], u)
         return result
 
-    def _parameter(self, s: ArrayLike) -> Array:
-        """The u of arc lengths."""
+    def parameter(self, s: ArrayLike) -> Array:
+        """(...) the u of arc lengths (...) [m], modulo the length."""
         wrapped = np.asarray(s, dtype=float) % self.length
         flat = wrapped.ravel()
         k = np.clip(np.searchsorted(self._s, flat, side="right") - 1, 0, self._u.size - 2)

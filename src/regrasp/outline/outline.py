@@ -24,6 +24,7 @@ from regrasp.mechanics.checks import (
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 from regrasp.outline.boundary import Boundary
+from regrasp.outline.curve import CurveBoundary
 from regrasp.outline.curves import EllipseBoundary, SplineBoundary
 from regrasp.outline.plain import holes_of, outline_data, shape_of
 from regrasp.outline.polygon import PolygonBoundary
@@ -221,6 +222,16 @@ class Outline(ArrayValue):
             tolerance: how far a chord may be from a smooth boundary [m]; 1e-4 of its length if not given.
         """
         return _chords(self.boundary, tolerance) - self.centre_of_mass
+
+    def cubics(self) -> Array | None:
+        """(k, 4, 2) control points of the cubic Bezier pieces of a smooth outer boundary; None of a polygon.
+
+        Relative to the centre of mass [m], one piece after the other, counter-clockwise. A spline is its
+        pieces to rounding; an ellipse is in 160, off it by less than 1e-13 of its larger half axis.
+        """
+        if isinstance(self.boundary, CurveBoundary):
+            return read_only(self.boundary.cubics()[1] - self.centre_of_mass)
+        return None
 
     def hole_polygons(self, tolerance: float | None = None) -> tuple[Array, ...]:
         """The same for every hole.

@@ -24,7 +24,7 @@ from regrasp.verification.float_filter import Checked, check_rows
 from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.placed.chosen_grasps import Chosen, verify_chosen, verify_proof
-from regrasp.verification.placed.placements import Proof
+from regrasp.verification.placed.protocol import Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record

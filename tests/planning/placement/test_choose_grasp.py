@@ -219,7 +219,7 @@ def test_progress_sees_both_bounds_close_in() -> None:
 def test_what_cannot_be_answered_is_refused() -> None:
     for given, words in (
         ({"objective": "force"}, "objective must be one of sum_normal"),
-        ({"shape": rg.Outline.ellipse(2, 1)}, "polygon"),
+        ({"shape": [[0, 0], [1, 0], [0, 1]]}, "shape must be an Outline"),
         ({"load": rg.Wrench([0, 0, 1])}, "planar load"),
         ({"tolerance": 2.0}, "tolerance"),
         ({"fingers": 5}, "fingers"),
@@ -328,7 +328,7 @@ def test_fingers_stay_within_arcs() -> None:
 @pytest.mark.parametrize("radius", [0.1, 0.3, 0.45, 0.6])
 def test_round_tips_touch_nothing_else(radius: float) -> None:
     """Against the distance of the tip's centre to the outline, by sampling; a slot one wide takes no 0.6."""
-    from regrasp.planning.placement.sides import sides_of
+    from regrasp.planning.placement.reachable import sides_of
 
     slotted = rg.Outline([[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]])
     sides = sides_of(slotted, 0.0, None, radius)

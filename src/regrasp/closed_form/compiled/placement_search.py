@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import wrench_gauge
+from regrasp.closed_form.compiled import cubic_arcs, wrench_gauge
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
+from regrasp.closed_form.compiled.cubic_arcs import CONTROL, bend, farthest, polar
 from regrasp.closed_form.compiled.wrench_gauge import bound_by, gauge, workspace
 from regrasp.compilation import kept
 
@@ -26,6 +27,8 @@ CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 @njit(**VIEWS)
 def _point(sides, j, u):  # type: ignore[no-untyped-def]
     along = u - sides[j, 8]
+    if sides.shape[1] > CONTROL:
+        return polar(sides, j, 0, along, along, along), polar(sides, j, 1, along, along, along)
     return sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
 
 
@@ -62,17 +65,26 @@ def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
+def _farthest(sides, i, one, j, other):  # type: ignore[no-untyped-def]
+    """No two points on parts of two sides are farther apart."""
+    if sides.shape[1] > CONTROL:
+        e, f = sides[i, 8], sides[j, 8]
+        return farthest(sides, i, one[0] - e, one[1] - e, j, other[0] - f, other[1] - f)
+    far = 0.0
+    for a in range(2):
+        for b in range(2):
+            far = max(far, _apart(sides, i, one[a], j, other[b]))
+    return far
+
+
+@njit(**VIEWS)
 def _too_near(sides, arcs, ends, least):  # type: ignore[no-untyped-def]
     """Two fingers on one side each that are nearer than ``least`` wherever they are; else -1."""
     for i in range(len(arcs)):
         for j in range(i):
-            if arcs[i, 0] == arcs[i, 1] and arcs[j, 0] == arcs[j, 1]:
-                far = 0.0
-                for a in range(2):
-                    for b in range(2):
-                        far = max(far, _apart(sides, arcs[i, 0], ends[i, a], arcs[j, 0], ends[j, b]))
-                if far < least:
-                    return True
+            single = arcs[i, 0] == arcs[i, 1] and arcs[j, 0] == arcs[j, 1]
+            if single and _farthest(sides, arcs[i, 0], ends[i], arcs[j, 0], ends[j]) < least:
+                return True
     return False
 
 
@@ -156,13 +168,14 @@ def _put(sides, places, least, arcs, ends):  # type: ignore[no-untyped-def]
 def _to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
     """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
     chosen, most = -1, -1.0
+    curved = sides.shape[1] > CONTROL
     for i in range(len(arcs)):
         first, last = arcs[i]
         if first < last:
             apart = 0.0
             if seen[i, 2] <= seen[i, 4]:
                 apart = _apart(sides, int(seen[i, 3]), seen[i, 2], int(seen[i, 5]), seen[i, 4])
-            matters = apart + 1e-6 * (last - first)
+            matters = apart + (0.1 if curved else 1e-6 * (last - first))
         else:
             j = first
             length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
@@ -172,6 +185,8 @@ def _to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped
             matters = 1e-3 * width
             if seen[i, 0] <= seen[i, 1]:
                 matters = (seen[i, 1] - seen[i, 0]) * length + 1e-6 * width
+            if curved:
+                matters += 0.5 * bend(sides, j, ends[i, 0], ends[i, 1])
             if near:  # only a smaller box tells whether fingers can be far enough apart
                 matters = width
         if matters > most:
@@ -193,7 +208,8 @@ def _cut(sides, arcs, ends, seen, i):  # type: ignore[no-untyped-def]
         at = min(max(at, first), last - 1)
         return at, sides[at, 7]
     lo, hi = ends[i, 0], ends[i, 1]
-    middle = 0.5 * (seen[i, 0] + seen[i, 1]) if seen[i, 0] <= seen[i, 1] else 0.5 * (lo + hi)
+    pressed = seen[i, 0] <= seen[i, 1] and sides.shape[1] <= CONTROL
+    middle = 0.5 * (seen[i, 0] + seen[i, 1]) if pressed else 0.5 * (lo + hi)
     return first, min(max(middle, lo + 0.1 * (hi - lo)), hi - 0.1 * (hi - lo))
 
 
@@ -243,8 +259,8 @@ def _loop(digest: str) -> Any:
     ):
         """Goes on with a search; see the module. Returns why it ends.
 
-        sides: (m, 9) as of ``wrench_gauge.gauge``. loads: (L, 3) to be made. law: mu, what placements tried
-        may use of it, size, norm, precision.
+        sides: (m, 9) or (m, 17) as of ``wrench_gauge.gauge``. loads: (L, 3) to be made. law: mu, what
+        placements tried may use of it, size, norm, precision.
         fixed: a level, or infinite to follow the least value times 1 - tolerance. least: distance of fingers.
         narrow: arcs shorter than this are not split.
         boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), twists (N, 3), loads' numbers (N,), kinds (N,),
@@ -336,5 +352,5 @@ def _loop(digest: str) -> Any:
     return search
 
 
-# Numba's cache watches this file only; the digest in the loop's closure makes it watch the gauge, too.
-search = _loop(digest((wrench_gauge,)))
+# Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
+search = _loop(digest((cubic_arcs, wrench_gauge)))

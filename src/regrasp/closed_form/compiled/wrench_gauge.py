@@ -10,7 +10,8 @@ sizes. Any twist y bounds it: gauge(b) >= b . y / H(y); H, the support function 
     sigma_i(y) = max { v . f : f in K_i, size(f) <= 1 },     v = G_i' y.
 
 Each sigma is convex in v, and v is affine along a straight side: the largest over an arc is at an end of one
-of its sides. So the same formula with these largest values bounds every placement in a box of arcs.
+of its sides. So the same formula with these largest values bounds every placement in a box of arcs. On curves
+``cubic_arcs`` gives values that are no smaller.
 
 The best y is found by the dual simplex method: three points of W whose planes g . y = 1 meet in y; the point
 of W that is farthest along y takes the place of one of them, until none is beyond.
@@ -23,6 +24,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
+from regrasp.closed_form.compiled.cubic_arcs import CONTROL, support_of_cubics
 
 NORMAL, DISC = 0, 1
 """size(f): n . f, or |f|."""
@@ -40,6 +42,9 @@ _PIVOT = 1e-13
 @njit(**VIEWS)
 def _support_of_arc(sides, first, last, lo, hi, mu, size, y, out):  # type: ignore[no-untyped-def]
     """Writes sigma, the side, u, f_x, f_y, the torque and n . f of the best force on an arc; 0 for none."""
+    if sides.shape[1] > CONTROL:
+        support_of_cubics(sides, first, last, lo, hi, mu, size, y, out)
+        return
     for c in range(7):
         out[c] = 0.0
     slant = sqrt(1.0 + mu * mu)
@@ -166,7 +171,8 @@ def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work): 
     """A lower bound of the gauge of b on a box, and in ``best`` its twist; ends early at ``enough``.
 
     sides: (m, 9) of straight sides: a point, its direction per u, unit normal, least and largest u, and the u
-    of the point. arcs: (k, 2) first and last side of each finger. ends: (k, 2) least and largest u.
+    of the point; (m, 17) of sides of cubics with their control points, too. arcs: (k, 2) first and last side
+    of each finger. ends: (k, 2) least and largest u.
     What ``work`` holds at the end are forces that reach the bound, but for ``precision``: finger i has
     x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2.
     """

@@ -9,16 +9,15 @@ from regrasp.mechanics.checks import Array, array, function, number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
-from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.laws import LEVELS, law_of
 from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level, run_level
 from regrasp.planning.placement.loads import check_planar, inner_and_outer, offset_by
+from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
 from regrasp.planning.placement.search import MOST_BOXES, Progress, Search
-from regrasp.planning.placement.sides import sides_of
 from regrasp.planning.states.objectives import Objective
 
 FROM_CORNERS = 1e-3
@@ -56,7 +55,7 @@ def choose_grasp(
     returns the best so far, with its gap.
 
     Args:
-        shape: a polygon; contacts are on its outer boundary.
+        shape: a polygon or a smooth outline; contacts are on its outer boundary.
         fingers: how many, 2 to 4; all alike.
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
             forces for each load, has to hold; the value is that of the worst load [N, N m].
@@ -109,7 +108,7 @@ def choose_grasp(
     limit = None if max_force is None else number(max_force, "max_force", above=0)
     constraints = Constraints(limit, number(min_normal, "min_normal", least=0), keep, removable)
     _check_constraints(constraints, goal, fingers)
-    most = CONSTRAINED_BOXES if constraints.any else MOST_BOXES
+    most = CONSTRAINED_BOXES if constraints.any and goal not in LEVELS else MOST_BOXES
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
@@ -196,8 +195,6 @@ def _deviations(disturbance: LoadSet) -> Array:
 def _check(shape: Outline, load: Wrench | LoadSet, progress: Progress | None) -> None:
     if not isinstance(shape, Outline):
         raise InvalidInput(f"shape must be an Outline, got {shown(shape)}")
-    if not isinstance(shape.boundary, PolygonBoundary):
-        raise InvalidInput("shape must be a polygon; give Outline(shape.polygon(tolerance)) of a smooth one")
     check_planar(load)
     if progress is not None and not callable(progress):
         raise InvalidInput(f"progress must be a function of bound and value, got {shown(progress)}")

@@ -157,11 +157,11 @@ def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
 def _improved(
     search: Search, level: Level, known: float, places: np.ndarray, u: Array
 ) -> tuple[float, np.ndarray, Array]:
-    """The best level of a placement and of those that fingers find by sliding along their sides."""
+    """The best level of a placement and of those that fingers find by sliding along the boundary."""
     reached = _reached(search, level, known, places, u)
     for _ in range(_SLIDES):
         level.put(search, reached)
-        u = _slid(search, places, u)
+        places, u = _slid(search, places, u)
         further = _reached(search, level, reached, places, u)
         gained, reached = further - reached, further
         if gained <= _SLOW * abs(reached):
@@ -169,21 +169,20 @@ def _improved(
     return reached, places, u
 
 
-def _slid(search: Search, places: np.ndarray, u: Array) -> Array:
+def _slid(search: Search, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
     """Places of less norm, one finger at a time, by steps that are halved where none helps."""
-    least, most = search.sides.ends[places].T
     norm, step = search.norm_at(places, u), 0.125
     while step > _SHORTEST:
         helped = False
         for i in range(len(u)):
             for way in (-step, step):
-                there = u.copy()
-                there[i] = min(max(u[i] + way, least[i]), most[i])
-                found = search.norm_at(places, there) if search.are_apart(places, there) else inf
+                on, there = places.copy(), u.copy()
+                on[i], there[i] = search.sides.moved(int(places[i]), float(u[i]), way)
+                found = search.norm_at(on, there) if search.are_apart(on, there) else inf
                 if found < norm:
-                    norm, u, helped = found, there, True
+                    norm, places, u, helped = found, on, there, True
         step *= 1.0 if helped else 0.5
-    return u
+    return places, u
 
 
 def _reached(search: Search, level: Level, known: float, places: np.ndarray, u: Array) -> float:

@@ -38,6 +38,8 @@ class PlacementProof(ArrayValue):
         children: (n, 2) the first box that one is split into, and how many; 0 of a box that is not.
         number: (n,) of the load that bounds a box; -1 where its fingers are nearer than ``min_distance``.
         twists: (n, 3) velocity of the centre of mass, then angular velocity.
+        control: (k, 4, 2) of a smooth boundary, the control points of its cubic edges, which begin at the
+            ``vertices`` [m]; None of a polygon.
     """
 
     vertices: Array
@@ -55,6 +57,7 @@ class PlacementProof(ArrayValue):
     children: np.ndarray
     number: np.ndarray
     twists: Array
+    control: Array | None = None
 
     @property
     def digest(self) -> str:
@@ -68,7 +71,7 @@ class PlacementProof(ArrayValue):
 
     def _plain(self) -> dict[str, Any]:
         values = ((f.name, getattr(self, f.name)) for f in fields(self))
-        return {name: v.tolist() if isinstance(v, np.ndarray) else v for name, v in values}
+        return {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in values if v is not None}
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data, which JSON can hold; ``from_dict`` gives back the equal proof."""
@@ -84,7 +87,9 @@ class PlacementProof(ArrayValue):
         Raises:
             InvalidInput: For other keys, shapes and types, and for numbers that the digest does not fit.
         """
-        given = entries(data, "a proof", [*(f.name for f in fields(cls)), "digest"])
+        names = [f.name for f in fields(cls) if f.name != "control"]
+        given = entries(data, "a proof", [*names, "digest"], ("control",))
+        control = given.get("control")
         k = whole(given["fingers"], "fingers", least=1)
         children = _integers(given["children"], "children", (None, 2))
         n = len(children)
@@ -104,6 +109,7 @@ class PlacementProof(ArrayValue):
             children,
             _integers(given["number"], "number", (n,)),
             array(given["twists"], "twists", (n, 3)),
+            None if control is None else array(control, "control", (None, 4, 2)),
         )
         if given["digest"] != proof.digest:
             raise InvalidInput("the digest of a proof does not fit its numbers: one of them was changed")

@@ -18,8 +18,9 @@ from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.loads import check_planar, inner_and_outer
+from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
-from regrasp.planning.placement.sides import Sides, sides_of
+from regrasp.planning.placement.sides import Sides
 from regrasp.planning.states.choosing import choose_state
 
 PEAK_RATIO = 3.0

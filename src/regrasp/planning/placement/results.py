@@ -14,6 +14,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
+from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
 from regrasp.planning.placement.laws import Law
 from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level
@@ -160,8 +161,9 @@ def _plain(state: ChosenState) -> GraspState:
 
 def proof_of(search: Search, asked: Asked, bound: float) -> PlacementProof:
     """The proof of a search, on the outline asked for."""
-    vertices: Array = asked.shape.boundary.vertices  # type: ignore[attr-defined]
-    return search.proof(bound, vertices, asked.shape.centre_of_mass)
+    boundary = asked.shape.boundary
+    edges = boundary.vertices if isinstance(boundary, PolygonBoundary) else boundary.cubics()[1]  # type: ignore[attr-defined]
+    return search.proof(bound, read_only(edges), asked.shape.centre_of_mass)
 
 
 def _none_holds(search: Search, asked: Asked) -> Infeasible:

@@ -215,8 +215,11 @@ class Search:
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         return [(row[0] * self.unit, row[1::2].astype(int), row[2::2]) for row in rows]
 
-    def proof(self, bound: float, vertices: Array, centre: Array) -> PlacementProof:
-        """That no norm is below ``bound`` [N]; polygon and centre of mass as they were given [m]."""
+    def proof(self, bound: float, edges: Array, centre: Array) -> PlacementProof:
+        """That no norm is below ``bound`` [N].
+
+        edges: (k, 2) vertices or (k, 4, 2) control points, and ``centre`` of mass, as they were given [m].
+        """
         n = self.count
         arcs, ends, _, twists, _, kinds, children, *_ = (values[:n] for values in self._boxes)
         sides = np.column_stack([self.sides.edges, self.sides.ends])
@@ -227,9 +230,11 @@ class Search:
         given["children"] = np.where(split[:, None], children, 0)
         given["number"] = np.where(split, 0, number)
         given["twists"] = np.where(split[:, None], 0.0, twists / [1, 1, self.sides.size])
+        smooth = edges.ndim == 3
         return PlacementProof(
-            vertices, centre, fingers=self.fingers, friction=self.friction, size=self.law.size,
-            norm=self.law.norm, min_distance=self.apart, bound=bound,
+            _frozen(edges[:, 0]) if smooth else edges, centre, fingers=self.fingers, friction=self.friction,
+            size=self.law.size, norm=self.law.norm, min_distance=self.apart, bound=bound,
+            control=edges if smooth else None,
             **{name: _frozen(values) for name, values in given.items()},
         )  # fmt: skip
 

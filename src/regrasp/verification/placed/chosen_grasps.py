@@ -10,7 +10,9 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
-from regrasp.verification.placed.placements import Proof, check_proof
+from regrasp.verification.placed.placements import check_proof
+from regrasp.verification.placed.protocol import Proof
+from regrasp.verification.placed.touching import Touching
 from regrasp.verification.verdict import Verification
 
 
@@ -19,6 +21,9 @@ class Shape(Protocol):
 
     def polygon(self) -> Array:
         """(k, 2) vertices relative to the centre of mass [m]."""
+
+    def cubics(self) -> Array | None:
+        """(k, 4, 2) control points of a smooth boundary's pieces, None of a polygon [m]."""
 
 
 class Chosen(Protocol):
@@ -126,9 +131,7 @@ def verify_proof(proof: Proof) -> Verification:
 
 def _part(proof: Proof) -> str:
     """Which part of the outline the places are on that a proof is about; empty for all of it."""
-    along = np.hypot(*(np.roll(proof.vertices, -1, axis=0) - proof.vertices).T)
-    edges, least, most = proof.sides.T
-    share = float(along[edges.astype(int)] @ (most - least) / along.sum())
+    share = Touching(proof).share
     return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the outline that was asked about"
 
 
@@ -198,8 +201,8 @@ def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
     elif chosen.objective == "angle":
         proven = chosen.bound >= atan(mu)
     else:  # k forces make no larger wrench than k times the limit, at the largest lever
-        reach = float(np.hypot(*(np.asarray(proof.vertices) - proof.centre_of_mass).T).max())
-        most = len(chosen.grasp) * float(chosen.max_force or 0.0) * np.array([1.0, 1.0, reach])
+        levers = np.array([1.0, 1.0, Touching(proof).reach])
+        most = len(chosen.grasp) * float(chosen.max_force or 0.0) * levers
         center, deviations = np.asarray(proof.loads)[0], np.asarray(chosen.deviations)
         proven = bool((np.abs(center + deviations * chosen.bound) >= most).any())
     return [] if proven else ["the proof proves no bound"]
@@ -222,25 +225,19 @@ def _norm(state: GraspState, size: str, norm: str) -> float:
 
 def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
     """That the contacts are fingers that the proof is about, on the shape given."""
-    vertices = np.asarray(proof.vertices) - proof.centre_of_mass
-    if not np.array_equal(vertices, chosen.shape.polygon()):
+    control = chosen.shape.cubics()
+    if (control is None) != (proof.control is None):
+        return ["the proof is about another kind of outline"]
+    edges, given = (proof.vertices, chosen.shape.polygon()) if control is None else (proof.control, control)
+    if not np.array_equal(np.asarray(edges) - proof.centre_of_mass, given):
         return ["the proof is about another outline"]
     if len(chosen.grasp) != proof.fingers:
         return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]
     broken = []
-    scale = float(np.hypot(*vertices.T).max())
-    slack = float(RESOLUTION) * scale
-    along = np.roll(vertices, -1, axis=0) - vertices
-    edges = proof.sides[:, 0].astype(int)
-    start = vertices[edges] + (proof.sides[:, 1] - edges)[:, None] * along[edges]
-    stop = vertices[edges] + (proof.sides[:, 2] - edges)[:, None] * along[edges]
-    unit = along[edges] / np.hypot(*along[edges].T)[:, None]
+    touching = Touching(proof)
+    slack = float(RESOLUTION) * touching.reach
     for contact in chosen.grasp:
-        away = contact.position - start
-        feet = np.clip((away * unit).sum(axis=1), 0.0, np.hypot(*(stop - start).T))
-        distance = np.hypot(*(away - feet[:, None] * unit).T)
-        turned = np.hypot(contact.normal[0] + unit[:, 1], contact.normal[1] - unit[:, 0])
-        if not ((distance <= slack) & (turned <= 4 * float(RESOLUTION))).any():
+        if contact not in touching:
             broken.append(f"contact {contact.name} is on none of the sides that the proof is about")
         if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")

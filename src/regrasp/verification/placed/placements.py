@@ -10,85 +10,23 @@ affine in p. With sigma(v) the most of v . f over f in K of size 1, a convex fun
     (-w) . y = sum_i v_i . f_i <= sum_i sigma(v_i) size(f_i) <= N*(sigma(v_1), ...) N(size(f_1), ...)
 
 for the norm N and its dual N*: so N is at least (-w) . y / N*(largest sigma of each arc), and the largest
-sigma of an arc is at an end of one of its sides. Everything is decided in rationals; 1 / |edge| and roots are
-rounded up.
+sigma of an arc is at an end of one of its sides (``straight``); on curves there is a bound of it (``cubic``).
+Everything is decided in rationals; roots are rounded to the safe side.
 """
 
 from fractions import Fraction
-from math import inf, isqrt
-from typing import Any, Protocol
+from math import inf
+from typing import Any
 
 import numpy as np
 
-from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.cubic import CubicEdges
+from regrasp.verification.placed.protocol import Point, Proof
+from regrasp.verification.placed.roots import root_above
+from regrasp.verification.placed.straight import StraightEdges
 
-_BITS = 96  # of roots
 _ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
 _SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them
-
-
-class Proof(Protocol):
-    """What is needed to know of a proof, whoever made it; the words are those of ``PlacementProof``."""
-
-    @property
-    def vertices(self) -> Array:
-        """(k, 2) of the polygon [m]."""
-
-    @property
-    def centre_of_mass(self) -> Array:
-        """(2,) [m]."""
-
-    @property
-    def sides(self) -> Array:
-        """(m, 3) edge, least and largest u."""
-
-    @property
-    def fingers(self) -> int:
-        """How many."""
-
-    @property
-    def friction(self) -> float:
-        """Coefficient [-]."""
-
-    @property
-    def loads(self) -> Array:
-        """(L, 3) [N, N m]."""
-
-    @property
-    def size(self) -> str:
-        """``normal`` or ``force``."""
-
-    @property
-    def norm(self) -> str:
-        """``sum``, ``squares`` or ``largest``."""
-
-    @property
-    def min_distance(self) -> float:
-        """Between fingers [m]."""
-
-    @property
-    def bound(self) -> float:
-        """No placement is better."""
-
-    @property
-    def arcs(self) -> Any:
-        """Of each finger."""
-
-    @property
-    def ends(self) -> Array:
-        """(n, fingers, 2) u."""
-
-    @property
-    def children(self) -> Any:
-        """(n, 2) first box and how many."""
-
-    @property
-    def number(self) -> Any:
-        """(n,) of the load, or -1."""
-
-    @property
-    def twists(self) -> Array:
-        """(n, 3)."""
 
 
 Arc = tuple[int, int, Fraction, Fraction]
@@ -115,6 +53,8 @@ def _shapes(proof: Proof) -> list[str]:
         ("children", proof.children, (n, 2)), ("number", proof.number, (n,)),
         ("twists", proof.twists, (n, 3)),
     ]  # fmt: skip
+    if proof.control is not None:
+        wanted.append(("control", proof.control, (len(proof.vertices), 4, 2)))
     broken = [f"proof: {name} must have shape {shape}" for name, a, shape in wanted if np.shape(a) != shape]
     finite = all(np.isfinite(a).all() for _, a, _ in wanted) and np.isfinite(proof.bound)
     if not finite:
@@ -128,61 +68,21 @@ def _shapes(proof: Proof) -> list[str]:
     return broken
 
 
-class _Doubles:
-    """The sides of a proof in doubles, for what rounding cannot decide."""
-
-    def __init__(self, proof: Proof) -> None:
-        points = np.asarray(proof.vertices - proof.centre_of_mass)
-        self.edges = proof.sides[:, 0].astype(int)
-        self.start = points[self.edges]
-        # of the vertices: less the centre of mass they are rounded, which short sides would not stand
-        self.along = (np.roll(proof.vertices, -1, axis=0) - proof.vertices)[self.edges]
-        self.unit = self.along / np.hypot(*self.along.T)[:, None]
-        self.reach = float(np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass))
-
-    def largest(self, first: int, last: int, lo: Array, hi: Array, y: Array, proof: Proof) -> float:
-        """The largest sigma over ends (m,) of sides."""
-        part = slice(first, last + 1)
-        most = 0.0
-        for u in (lo, hi):
-            p = self.start[part] + (u - self.edges[part])[:, None] * self.along[part]
-            vx, vy = y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]
-            tx, ty = self.unit[part].T
-            ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
-            value = ahead + proof.friction * aside
-            if proof.size == "force":
-                value = value / np.sqrt(1 + proof.friction**2)
-                # inside the cone, and a little around it, the whole of v
-                value = np.where(aside <= proof.friction * ahead, np.hypot(vx, vy), value)
-            most = max(most, float(value.max(initial=0.0)))
-        return most
-
-
 class _Checked:
     """One proof in exact numbers."""
 
     def __init__(self, proof: Proof) -> None:
         self.proof = proof
-        self.mu = Fraction(proof.friction)
-        centre = [Fraction(c) for c in proof.centre_of_mass.tolist()]
-        points = [[Fraction(x) - c for x, c in zip(p, centre, strict=True)] for p in proof.vertices.tolist()]
-        self.points = points
-        self.along = [
-            [b - a for a, b in zip(p, q, strict=True)]
-            for p, q in zip(points, points[1:] + points[:1], strict=True)
-        ]
+        self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
         self.sides = [(int(e), Fraction(lo), Fraction(hi)) for e, lo, hi in proof.sides.tolist()]
-        # 1 / |edge|, rounded up
-        self.per = [1 / _root_below(x * x + y * y) for x, y in self.along]
-        self.slant = 1 / _root_below(1 + self.mu**2)
-        self.filtered = _Doubles(proof)
 
     def violations(self) -> list[str]:
         """What is wrong, in words."""
         broken = [
             f"proof: side {i} is no stretch of an edge"
             for i, (e, lo, hi) in enumerate(self.sides)
-            if not (0 <= e < len(self.points) and e <= lo < hi <= e + 1)
+            if not (0 <= e < self.boundary.count and e <= lo < hi <= e + 1)
+            or not self.boundary.turns_little(e, lo - e, hi - e)
         ]
         broken += [
             f"proof: side {i + 1} does not come after the one before"
@@ -266,26 +166,28 @@ class _Checked:
         elif self.proof.norm == "largest":
             dual = sum(most, start=Fraction(0))
         else:
-            dual = _root_above(sum((s * s for s in most), start=Fraction(0)))
+            dual = root_above(sum((s * s for s in most), start=Fraction(0)))
         if work < bound * dual or (dual == 0 and work <= 0):
             return [f"proof: the twist of box {box} does not exclude it"]
         return []
 
     def _is_clear(self, box: int, number: int) -> bool:
         """Whether doubles show that a box is excluded, by more than all of their rounding together."""
-        proof, filtered = self.proof, self.filtered
+        proof = self.proof
         y = proof.twists[box]
         terms = -proof.loads[number] * y
         most, room = (
             [],
-            _ROUNDING * (abs(y[0]) + abs(y[1]) + abs(y[2]) * filtered.reach) * (1 + proof.friction),
+            _ROUNDING * (abs(y[0]) + abs(y[1]) + abs(y[2]) * self.boundary.reach) * (1 + proof.friction),
         )
         if not min(room, _ROUNDING * np.abs(terms).sum()) > _SMALL:
             return False
         for (first, last), (lo, hi) in zip(proof.arcs[box].tolist(), proof.ends[box].tolist(), strict=True):
             least, largest = proof.sides[first : last + 1, 1].copy(), proof.sides[first : last + 1, 2].copy()
             least[0], largest[-1] = lo, hi
-            most.append(filtered.largest(first, last, least, largest, y, proof) + room)
+            edges = proof.sides[first : last + 1, 0]
+            found = self.boundary.roughly(edges.astype(int), least - edges, largest - edges, y)
+            most.append(found + room)
         if proof.norm == "sum":
             dual = max(most)
         else:
@@ -299,55 +201,21 @@ class _Checked:
         most = Fraction(0)
         for j in range(first, last + 1):
             edge, least, largest = self.sides[j]
-            for u in (lo if j == first else least, hi if j == last else largest):
-                most = max(most, self._sigma(edge, u - edge, y))
+            lo_j, hi_j = lo if j == first else least, hi if j == last else largest
+            most = max(most, self.boundary.most(edge, lo_j - edge, hi_j - edge, y))
         return most
-
-    def _sigma(self, edge: int, fraction: Fraction, y: list[Fraction]) -> Fraction:
-        (ax, ay), (dx, dy) = self.points[edge], self.along[edge]
-        px, py = ax + fraction * dx, ay + fraction * dy
-        vx, vy = y[0] - y[2] * py, y[1] + y[2] * px
-        ahead, aside = dx * vy - dy * vx, abs(dx * vx + dy * vy)  # times |edge|
-        if self.proof.size == "force" and aside <= self.mu * ahead:
-            return _root_above(vx * vx + vy * vy)
-        value = ahead + self.mu * aside
-        if value <= 0:
-            return Fraction(0)
-        return value * self.per[edge] * (self.slant if self.proof.size == "force" else 1)
 
     def _near(self, arcs: list[Arc]) -> bool:
         """Whether two fingers on one side each are nearer than they must be, wherever they are."""
         least2 = Fraction(self.proof.min_distance) ** 2
         single = [arc for arc in arcs if arc[0] == arc[1]]
-        corners = [[self._point(arc[0], u) for u in arc[2:]] for arc in single]
+        corners = [self._hull(*arc) for arc in single]
         for i, one in enumerate(corners):
             for other in corners[:i]:
                 if all((p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 < least2 for p in one for q in other):
                     return True
         return False
 
-    def _point(self, side: int, u: Fraction) -> tuple[Fraction, Fraction]:
+    def _hull(self, side: int, _: int, lo: Fraction, hi: Fraction) -> list[Point]:
         edge = self.sides[side][0]
-        (ax, ay), (dx, dy) = self.points[edge], self.along[edge]
-        return ax + (u - edge) * dx, ay + (u - edge) * dy
-
-
-def _root_above(value: Fraction) -> Fraction:
-    """A rational at or above the root, nearly equal to it."""
-    if value == 0:
-        return value
-    root, scale = _root(value)
-    return (root + 1) / scale
-
-
-def _root_below(value: Fraction) -> Fraction:
-    """A rational at or below the root of a positive value, nearly equal to it."""
-    root, scale = _root(value)
-    return root / scale
-
-
-def _root(value: Fraction) -> tuple[Fraction, Fraction]:
-    """(r, s) with r / s at or just below the root of a positive value: r an integer of many bits."""
-    shift = _BITS - (value.numerator.bit_length() - value.denominator.bit_length()) // 2
-    scale = Fraction(2) ** shift
-    return Fraction(isqrt(int(value * scale * scale))), scale
+        return self.boundary.hull(edge, lo - edge, hi - edge)

@@ -1,0 +1,149 @@
+"""A smooth boundary as cubic sides on which fingers may be."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.outline.curve import CurveBoundary
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.sides import Sides
+
+MOST_TURN = 0.3
+"""Outermost tangents of a side differ by no more [rad]."""
+_MOST_SIDES = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class CurvedSides(Sides):
+    """Stretches of the cubic pieces of a smooth outline, each with little turn.
+
+    Args:
+        control: (k, 4, 2) control points of the edges, which are cubics [m].
+        outline: whose boundary they are.
+    """
+
+    control: Array
+    outline: Outline
+
+    @cached_property
+    def lengths(self) -> Array:
+        """(k,) of the edges [m]."""
+        return _speeds_at(self.control, np.polynomial.legendre.leggauss(12))
+
+    @cached_property
+    def size(self) -> float:
+        """The largest distance of a control point from the centre of mass [m]."""
+        return float(np.hypot(*self.control.reshape(-1, 2).T).max())
+
+    def table(self) -> Array:
+        """(m, 17) as the compiled search takes them, lengths in units of ``size``."""
+        ends = self.ends - self.edges[:, None]
+        control = self.control[self.edges] / self.size
+        start, stop = (_at(control, u) for u in ends.T)
+        along = (stop - start) / np.diff(ends, axis=1)
+        unit = along / np.hypot(*along.T)[:, None]
+        at = start - ends[:, :1] * along
+        normals = np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+        shown = [at, along, normals, self.ends, self.edges.astype(float), control.reshape(-1, 8)]
+        return np.column_stack(shown)
+
+    def arc_length(self, side: int, u: float) -> float:
+        """Along the boundary, from its start [m]."""
+        point = self.points(np.array([side]), np.array([u]))[0]
+        return self.outline.nearest(point + self.outline.centre_of_mass)
+
+    def u_at(self, s: float) -> float:
+        """The place at an arc length from 0 to the length of the outline [m]."""
+        knots, at = self._knots, float(self._boundary.parameter(s))
+        edge = min(int(np.searchsorted(knots, at, "right")), len(knots) - 1) - 1
+        return edge + float((at - knots[edge]) / (knots[edge + 1] - knots[edge]))
+
+    def moved(self, place: int, u: float, way: float) -> tuple[int, float]:
+        """A place some way along the boundary, a fraction of half of it, or at the end of a stretch."""
+        there = (u + 0.5 * way * len(self.control)) % len(self.control)
+        on = max(int(np.searchsorted(self.ends[:, 0], there, "right")) - 1, 0)
+        return on, min(max(there, self.ends[on, 0]), self.ends[on, 1])
+
+    @property
+    def _boundary(self) -> CurveBoundary:
+        return cast(CurveBoundary, self.outline.boundary)
+
+    @cached_property
+    def _knots(self) -> Array:
+        return self._boundary.cubics()[0]
+
+    def points(self, places: np.ndarray, u: Array) -> Array:
+        """(k, 2) of places on sides [m]."""
+        edges = self.edges[places]
+        return _at(self.control[edges], u - edges)
+
+    def contact(self, side: int, u: float, friction: float, name: str) -> Contact:
+        """A finger on a side."""
+        edge = int(self.edges[side])
+        control, t = self.control[edge : edge + 1], np.array([u - edge])
+        tangent = _velocity(control, t)[0]
+        return Contact(_at(control, t)[0], [-tangent[1] + 0.0, tangent[0]], friction, name=name)
+
+
+def curved_sides(outline: Outline, control: Array) -> CurvedSides:
+    """All of a smooth outline, its cubics halved until each part turns by ``MOST_TURN`` at most."""
+    edges = np.arange(len(control))
+    ends = np.stack([edges, edges + 1.0], axis=1)
+    while True:
+        wide = _turns(control[edges], *(ends - edges[:, None]).T) > MOST_TURN
+        if not wide.any():
+            break
+        if len(edges) > _MOST_SIDES:
+            raise InvalidInput("the outline turns too sharply somewhere to be made of sides that turn little")
+        middle = ends.mean(axis=1)
+        halves = np.stack([ends[:, 0], middle, middle, ends[:, 1]], axis=1).reshape(-1, 2, 2)
+        kept = np.where(wide, 2, 1)
+        ends = np.concatenate([h if w else e[None] for h, w, e in zip(halves, wide, ends, strict=True)])
+        edges = np.repeat(edges, kept)
+    return CurvedSides(control[:, 0], edges, ends, control, outline)
+
+
+def _at(control: Array, t: Array) -> Array:
+    """(m, 2) points of cubics (m, 4, 2)."""
+    s, t = (1 - t)[:, None], t[:, None]
+    p = np.moveaxis(control, 1, 0)
+    result: Array = s**3 * p[0] + 3 * s**2 * t * p[1] + 3 * s * t**2 * p[2] + t**3 * p[3]
+    return result
+
+
+def _velocity(control: Array, t: Array) -> Array:
+    """(m, 2) a third of the derivatives of cubics (m, 4, 2)."""
+    return _polar(control, t, t)
+
+
+def _polar(control: Array, u: Array, v: Array) -> Array:
+    """(m, 2) the polar form of a third of the derivative."""
+    legs = np.diff(control, axis=1)
+    weights = np.stack([(1 - u) * (1 - v), u * (1 - v) + v * (1 - u), u * v], axis=1)
+    result: Array = (weights[..., None] * legs).sum(axis=1)
+    return result
+
+
+def _speeds_at(control: Array, rule: tuple[Array, Array]) -> Array:
+    """(k,) lengths of cubics, by a rule of Gauss and Legendre."""
+    total = np.zeros(len(control))
+    for at, weight in zip(*rule, strict=True):
+        velocity = 3 * _velocity(control, np.full(len(control), 0.5 + 0.5 * at))
+        total += 0.5 * weight * np.hypot(*velocity.T)
+    return total
+
+
+def _turns(control: Array, a: Array, b: Array) -> Array:
+    """(m,) the angle between the outermost tangents of parts a to b of cubics; pi for more [rad]."""
+    tangents = np.stack([_polar(control, u, v) for u, v in ((a, a), (a, b), (b, b))], axis=1)
+    middle = tangents.sum(axis=1, keepdims=True)
+    across = middle[..., 0] * tangents[..., 1] - middle[..., 1] * tangents[..., 0]
+    angles = np.arctan2(across, (middle * tangents).sum(axis=2))
+    none = (np.hypot(tangents[..., 0], tangents[..., 1]) == 0.0).any(axis=1)
+    result: Array = np.where(none | (abs(angles) > 1.5).any(axis=1), np.pi, np.ptp(angles, axis=1))
+    return result

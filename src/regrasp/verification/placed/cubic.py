@@ -1,0 +1,179 @@
+"""The most that a finger does along a twist on parts of cubic curves, in rationals and in doubles.
+
+The part from a to b of a cubic with polar form p is in the hull of p(a, a, a), p(a, a, b), p(a, b, b) and
+p(b, b, b); its tangents lie between those of d(a, a), d(a, b) and d(b, b), d the polar form of the
+derivative. With n_1 and n_2 the outermost of their normals, what a force of size 1 can be lies
+
+    size |f|:   in the sector between the edges of the cones, the clockwise one of n_1 and the other of n_2
+    size n . f: between 0 and the arcs of radius sqrt(1 + mu^2) from either edge of n_1 to the same of n_2
+
+so that the most of v . f over these, with v at the four points, is an upper bound.
+"""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.protocol import Point, Proof
+from regrasp.verification.placed.roots import root_above, root_below
+
+_SHORTEST = 0.02  # of the longest leg: tangents of less are not judged in doubles
+
+
+class CubicEdges:
+    """The edges of a smooth boundary."""
+
+    def __init__(self, proof: Proof) -> None:
+        assert proof.control is not None
+        self.force, self.mu = proof.size == "force", Fraction(proof.friction)
+        centre = [Fraction(c) for c in proof.centre_of_mass.tolist()]
+        self.control: list[list[Point]] = [
+            [(Fraction(x) - centre[0], Fraction(y) - centre[1]) for x, y in edge]
+            for edge in proof.control.tolist()
+        ]
+        self.slant = root_above(1 + self.mu**2)
+        self._friction = proof.friction
+        self._control = np.asarray(proof.control - proof.centre_of_mass)
+        self._legs = np.diff(proof.control, axis=1)
+        self.reach = float(
+            np.hypot(*np.abs(proof.control).reshape(-1, 2).max(axis=0)) + np.hypot(*proof.centre_of_mass)
+        )
+
+    @property
+    def count(self) -> int:
+        """How many edges."""
+        return len(self.control)
+
+    def turns_little(self, edge: int, lo: Fraction, hi: Fraction) -> bool:
+        """Whether tangents of a stretch are all less than a quarter of a turn from one another."""
+        found = self._tangents(edge, lo, hi)
+        return all(_dot(a, b) > 0 for a in found for b in found)
+
+    def hull(self, edge: int, lo: Fraction, hi: Fraction) -> list[Point]:
+        """Points whose hull contains a stretch, from fraction to fraction of an edge."""
+        control = self.control[edge]
+        return [_polar(control, at) for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi))]
+
+    def most(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> Fraction:
+        """An upper bound of sigma on a stretch, 0 or more."""
+        found = self._tangents(edge, lo, hi)
+        first = next(d for d in found if all(_cross(d, e) >= 0 for e in found))
+        last = next(d for d in found if all(_cross(d, e) <= 0 for e in found))
+        a, b = _edges(first, self.mu), _edges(last, self.mu)
+        most = Fraction(0)
+        for px, py in self.hull(edge, lo, hi):
+            v = (y[0] - y[2] * py, y[1] + y[2] * px)
+            if self.force:
+                most = max(most, _on_sector(a[0], b[1], v))
+            else:
+                most = max(most, self.slant * max(_on_arc(a[0], b[0], v), _on_arc(a[1], b[1], v)))
+        return most
+
+    def _tangents(self, edge: int, lo: Fraction, hi: Fraction) -> list[Point]:
+        control = self.control[edge]
+        legs = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(control)]
+        return [_polar(legs, at) for at in ((lo, lo), (lo, hi), (hi, hi))]
+
+    def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> float:
+        """The same for stretches (m,), in doubles; infinite where they may be off by more than rounding."""
+        legs = np.moveaxis(self._legs[edges], 1, 0)
+        d = np.stack([_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
+        size = np.hypot(d[..., 0], d[..., 1])
+        if not (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all():
+            return float("inf")
+        unit = d / size[..., None]
+        middle = unit.sum(axis=0)
+        angle = np.arctan2(_cross_of(middle, unit), (middle * unit).sum(axis=-1))
+        rows = np.arange(len(lo))
+        first, last = unit[angle.argmin(axis=0), rows], unit[angle.argmax(axis=0), rows]
+        (a, c), (e, b) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
+        control = np.moveaxis(self._control[edges], 1, 0)
+        most = 0.0
+        for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
+            p = _at(control, at)
+            v = np.stack([y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]], axis=1)
+            if self.force:
+                value = _roughly_on_sector(a, b, v)
+            else:
+                slant = np.sqrt(1 + self._friction**2)
+                value = slant * np.maximum(_roughly_on_arc(a, e, v), _roughly_on_arc(c, b, v))
+            most = max(most, float(value.max(initial=0.0)))
+        return most
+
+
+def _polar(points: list[Point], at: tuple[Fraction, ...]) -> Point:
+    """The polar form of a polynomial curve with these control points, one parameter after the other."""
+    for t in at:
+        points = [(p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])) for p, q in pairwise(points)]
+    return points[0]
+
+
+def _at(points: Array, at: tuple[Array, ...]) -> Array:
+    """The same of control points (c, m, 2) at parameters (m,)."""
+    for t in at:
+        points = points[:-1] + t[:, None] * (points[1:] - points[:-1])
+    result: Array = points[0]
+    return result
+
+
+def _dot(a: Point, b: Point) -> Fraction:
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def _cross(a: Point, b: Point) -> Fraction:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def _edges(d: Point, mu: Fraction) -> tuple[Point, Point]:
+    """The edges of the cone about the normal (-d_y, d_x), the clockwise one first."""
+    return (mu * d[0] - d[1], mu * d[1] + d[0]), (-mu * d[0] - d[1], -mu * d[1] + d[0])
+
+
+def _along(a: Point, v: Point) -> Fraction:
+    """The part of v along a, rounded up, or 0 if that is more."""
+    work = _dot(a, v)
+    return work / root_below(_dot(a, a)) if work > 0 else Fraction(0)
+
+
+def _on_arc(a: Point, b: Point, v: Point) -> Fraction:
+    """The most of v . f over f of length 1 from a to b, less than half a turn counter-clockwise; or 0."""
+    if _cross(a, v) >= 0 and _cross(v, b) >= 0 and _dot(a, v) + _dot(b, v) > 0:
+        return root_above(_dot(v, v))
+    return max(_along(a, v), _along(b, v))
+
+
+def _on_sector(a: Point, b: Point, v: Point) -> Fraction:
+    """The same, less than three quarters of a turn."""
+    if _cross(a, b) > 0 or _dot(a, b) > 0:
+        return _on_arc(a, b, v)
+    if _cross(a, v) >= 0 or _cross(v, b) >= 0:
+        return root_above(_dot(v, v))
+    return max(_along(a, v), _along(b, v))
+
+
+def _cross_of(a: Array, b: Array) -> Array:
+    result: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return result
+
+
+def _unit_edges(t: Array, mu: float) -> tuple[Array, Array]:
+    n = np.stack([-t[:, 1], t[:, 0]], axis=1)
+    slant = np.sqrt(1 + mu * mu)
+    return (n + mu * t) / slant, (n - mu * t) / slant
+
+
+def _roughly_on_arc(a: Array, b: Array, v: Array) -> Array:
+    first, second = (a * v).sum(axis=1), (b * v).sum(axis=1)
+    inside = (_cross_of(a, v) >= 0) & (_cross_of(v, b) >= 0) & (first + second > 0)
+    result: Array = np.where(inside, np.hypot(*v.T), np.maximum(first, second))
+    return result
+
+
+def _roughly_on_sector(a: Array, b: Array, v: Array) -> Array:
+    narrow = (_cross_of(a, b) > 0) | ((a * b).sum(axis=1) > 0)
+    inside = (_cross_of(a, v) >= 0) | (_cross_of(v, b) >= 0)
+    edge = np.maximum((a * v).sum(axis=1), (b * v).sum(axis=1))
+    result: Array = np.where(narrow, _roughly_on_arc(a, b, v), np.where(inside, np.hypot(*v.T), edge))
+    return result

@@ -1,0 +1,82 @@
+"""The most that a finger does along a twist on stretches of straight edges, in rationals and in doubles."""
+
+from fractions import Fraction
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.protocol import Point, Proof
+from regrasp.verification.placed.roots import root_above, root_below
+
+
+class StraightEdges:
+    """The edges of a polygon.
+
+    The most of v . f over forces f of size 1, sigma, is convex in v, and v is affine along an edge: the
+    largest on a stretch is at one of its ends. 1 / |edge| and roots are rounded up.
+    """
+
+    def __init__(self, proof: Proof) -> None:
+        self.force, self.mu = proof.size == "force", Fraction(proof.friction)
+        centre = [Fraction(c) for c in proof.centre_of_mass.tolist()]
+        self.points = [
+            [Fraction(x) - c for x, c in zip(p, centre, strict=True)] for p in proof.vertices.tolist()
+        ]
+        self.along = [
+            [b - a for a, b in zip(p, q, strict=True)]
+            for p, q in zip(self.points, self.points[1:] + self.points[:1], strict=True)
+        ]
+        self.per = [1 / root_below(x * x + y * y) for x, y in self.along]
+        self.slant = 1 / root_below(1 + self.mu**2)
+        # for what rounding cannot decide
+        self._start = np.asarray(proof.vertices - proof.centre_of_mass)
+        # of the vertices: less the centre of mass they are rounded, which short sides would not stand
+        self._along = np.roll(proof.vertices, -1, axis=0) - proof.vertices
+        self._unit = self._along / np.hypot(*self._along.T)[:, None]
+        self._friction = proof.friction
+        self.reach = float(np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass))
+
+    @property
+    def count(self) -> int:
+        """How many edges."""
+        return len(self.points)
+
+    def turns_little(self, edge: int, lo: Fraction, hi: Fraction) -> bool:
+        """Whether a bound of a stretch is one."""
+        return True
+
+    def hull(self, edge: int, lo: Fraction, hi: Fraction) -> list[Point]:
+        """Points whose hull contains a stretch, from fraction to fraction of an edge."""
+        (ax, ay), (dx, dy) = self.points[edge], self.along[edge]
+        return [(ax + t * dx, ay + t * dy) for t in (lo, hi)]
+
+    def most(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> Fraction:
+        """An upper bound of sigma on a stretch, 0 or more."""
+        return max(self._sigma(edge, p, y) for p in self.hull(edge, lo, hi))
+
+    def _sigma(self, edge: int, point: Point, y: list[Fraction]) -> Fraction:
+        dx, dy = self.along[edge]
+        vx, vy = y[0] - y[2] * point[1], y[1] + y[2] * point[0]
+        ahead, aside = dx * vy - dy * vx, abs(dx * vx + dy * vy)  # times |edge|
+        if self.force and aside <= self.mu * ahead:
+            return root_above(vx * vx + vy * vy)
+        value = ahead + self.mu * aside
+        if value <= 0:
+            return Fraction(0)
+        return value * self.per[edge] * (self.slant if self.force else 1)
+
+    def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> float:
+        """The largest sigma on stretches (m,), in doubles."""
+        most = 0.0
+        tx, ty = self._unit[edges].T
+        for t in (lo, hi):
+            p = self._start[edges] + t[:, None] * self._along[edges]
+            vx, vy = y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]
+            ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
+            value = ahead + self._friction * aside
+            if self.force:
+                value = value / np.sqrt(1 + self._friction**2)
+                # inside the cone, and a little around it, the whole of v
+                value = np.where(aside <= self._friction * ahead, np.hypot(vx, vy), value)
+            most = max(most, float(value.max(initial=0.0)))
+        return most

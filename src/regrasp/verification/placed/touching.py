@@ -1,0 +1,92 @@
+"""Where contacts are on the sides that a proof is about, in doubles."""
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.protocol import Proof
+
+_POINTS = 33  # of a curved side, from which Newton's method starts
+_STEPS = 8
+
+
+class Touching:
+    """The sides of a proof, relative to the centre of mass [m]."""
+
+    def __init__(self, proof: Proof) -> None:
+        self._edges, least, most = proof.sides[:, 0].astype(int), proof.sides[:, 1], proof.sides[:, 2]
+        self._lo, self._hi = least - self._edges, most - self._edges
+        vertices = np.asarray(proof.vertices)
+        if proof.control is None:
+            ends = np.roll(vertices, -1, axis=0)
+            thirds = [vertices + (ends - vertices) * k / 3 for k in range(4)]
+            self._control = np.stack(thirds, axis=1)
+        else:
+            self._control = np.asarray(proof.control)
+        self._control = self._control - proof.centre_of_mass
+        self.reach = float(np.hypot(*self._control.reshape(-1, 2).T).max())
+        self._straight = proof.control is None
+
+    def __contains__(self, contact: Contact) -> bool:
+        """Whether a contact is on one of them, with its inward normal."""
+        control = self._control[self._edges]
+        t = self._nearest(control, contact.position)
+        away = np.hypot(*(_at(control, t) - contact.position).T)
+        tangent = _slope(control, t)
+        tangent /= np.hypot(*tangent.T)[:, None]
+        turned = np.hypot(contact.normal[0] + tangent[:, 1], contact.normal[1] - tangent[:, 0])
+        near = away <= float(RESOLUTION) * self.reach
+        return bool((near & (turned <= 4 * float(RESOLUTION))).any())
+
+    def _nearest(self, control: Array, point: Array) -> Array:
+        """(m,) the parameters of the nearest points."""
+        lo, hi = self._lo, self._hi
+        if self._straight:
+            along = control[:, 3] - control[:, 0]
+            foot = ((point - control[:, 0]) * along).sum(axis=1) / (along**2).sum(axis=1)
+            result: Array = np.clip(foot, lo, hi)
+            return result
+        grid = lo + (hi - lo) * np.linspace(0, 1, _POINTS)[:, None]
+        away = np.array([np.hypot(*(_at(control, t) - point).T) for t in grid])
+        t: Array = grid[away.argmin(axis=0), np.arange(len(lo))]
+        for _ in range(_STEPS):
+            slope, off = _slope(control, t), _at(control, t) - point
+            bent = (slope**2).sum(axis=1) + (off * _curving(control, t)).sum(axis=1)
+            step = np.where(bent > 0, (off * slope).sum(axis=1) / np.where(bent > 0, bent, 1.0), 0.0)
+            t = np.clip(t - step, lo, hi)
+        return t
+
+    @property
+    def share(self) -> float:
+        """The part of the boundary that they are."""
+        every = np.arange(len(self._control))
+        whole = self._lengths(every, np.zeros(len(every)), np.ones(len(every)))
+        return float(self._lengths(self._edges, self._lo, self._hi).sum() / whole.sum())
+
+    def _lengths(self, edges: np.ndarray, lo: Array, hi: Array) -> Array:
+        grid = lo + (hi - lo) * np.linspace(0, 1, 2 if self._straight else _POINTS)[:, None]
+        chords = np.diff(np.array([_at(self._control[edges], t) for t in grid]), axis=0)
+        result: Array = np.hypot(chords[..., 0], chords[..., 1]).sum(axis=0)
+        return result
+
+
+def _at(control: Array, t: Array) -> Array:
+    """(m, 2) points of cubics (m, 4, 2)."""
+    s, t = (1 - t)[:, None], t[:, None]
+    p = np.moveaxis(control, 1, 0)
+    result: Array = s**3 * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t**3 * p[3]
+    return result
+
+
+def _slope(control: Array, t: Array) -> Array:
+    s, t = (1 - t)[:, None], t[:, None]
+    d = 3 * np.moveaxis(np.diff(control, axis=1), 1, 0)
+    result: Array = s * s * d[0] + 2 * s * t * d[1] + t * t * d[2]
+    return result
+
+
+def _curving(control: Array, t: Array) -> Array:
+    d = 6 * np.moveaxis(np.diff(control, n=2, axis=1), 1, 0)
+    result: Array = (1 - t)[:, None] * d[0] + t[:, None] * d[1]
+    return result
