@@ -358,11 +358,27 @@ def test_a_report_is_the_same_again_and_replaces_itself(tmp_path):
     assert len(read_rows(tmp_path / "run")) == len(many())  # the rows are still there
 
 
+def test_times_that_do_not_compare_are_marked_and_rank_nobody(tmp_path):
+    written(tmp_path / "run", many(), times="not comparable")
+    text = (tmp_path / "run" / "report.md").read_text(encoding="utf-8")
+    assert "Times are not comparable: solves shared a machine" in text
+    assert "| mean time (not comparable) |" in text
+    assert "| build (not comparable) | set-up (not comparable) |" in text
+    for absent in ("fastest |", "within 2x |", "## Growth", "## Another right side", "profile-"):
+        assert absent not in text.replace("most often fastest |", "")
+    assert [c.ranking for c in contests(outcomes(timed_apart()), timed=False)] == [["a", "z"]]
+    assert [c.ranking for c in contests(outcomes(timed_apart()))] == [["z", "a"]]
+
+
+def timed_apart() -> list[Row]:
+    return [row(1, "z", 1e-6), row(1, "a", 1e-3)]
+
+
 def test_a_report_of_little_says_what_is_missing(tmp_path):
     written(tmp_path / "one", [row(1, "a"), row(2, "b")], jobs=2)
     text = (tmp_path / "one" / "report.md").read_text(encoding="utf-8")
     assert "No problem was given to every solver" in text
-    assert "Several problems were solved at once, which disturbs times." in text
+    assert "Times are not comparable: solves shared a machine" in text
     assert "## Growth" not in text
     assert "## Failures\n\nNone.\n" in text
     with pytest.raises(InvalidInput, match="has no row yet"):

@@ -16,8 +16,9 @@ from bench_toys import TOYS, fake, qp, stripped
 from places import TESTS
 from processes import hear_interrupts, is_running
 from regrasp.bench.problems.problem import Family, Known, Truth, Verdict
+from regrasp.bench.running.jobs import Limits, chosen_problems, planned
 from regrasp.bench.running.result import Key
-from regrasp.bench.running.runner import Limits, chosen_problems, planned, run
+from regrasp.bench.running.runner import run
 from regrasp.bench.running.solvers import Solver
 from regrasp.bench.running.store import ROWS, Store, read_rows
 from regrasp.errors import InvalidInput
@@ -30,16 +31,17 @@ RUNNER = """
 import sys
 from pathlib import Path
 import bench_toys as t
-from regrasp.bench.running.runner import Limits, run
+from regrasp.bench.running.jobs import Limits
+from regrasp.bench.running.runner import run
 problems = [t.solvable(float(k)) for k in range(1, 8)] + [t.INFEASIBLE]
 solvers = [t.fake("slow"), t.fake("crashes"), t.fake("lies")]
-run(Path(sys.argv[1]), problems, solvers, limits=Limits(repeat=2, jobs=int(sys.argv[2])))
+run(Path(sys.argv[1]), problems, solvers, limits=Limits(repeat=2))
 """
 
 
-def start(fakes: Path, folder: Path, jobs: int = 1) -> subprocess.Popen[bytes]:
+def start(fakes: Path, folder: Path) -> subprocess.Popen[bytes]:
     path = os.pathsep.join([str(fakes), str(TESTS), *sys.path])
-    command = [sys.executable, "-c", RUNNER, str(folder), str(jobs)]
+    command = [sys.executable, "-c", RUNNER, str(folder)]
     return subprocess.Popen(command, env=os.environ | {"PYTHONPATH": path})
 
 
@@ -69,17 +71,11 @@ def test_a_run_killed_twenty_times_ends_with_the_rows_of_an_undisturbed_one(
     assert stripped(read_rows(broken)) == stripped(expected)
 
 
-def test_rows_do_not_depend_on_the_number_of_jobs(fakes: Path, tmp_path: Path) -> None:
-    one, two = tmp_path / "one", tmp_path / "two"
-    assert start(fakes, one).wait() == start(fakes, two, 2).wait() == 0
-    assert sorted(map(str, stripped(read_rows(one)))) == sorted(map(str, stripped(read_rows(two))))
-
-
 def test_no_worker_outlives_a_killed_runner(fakes: Path, tmp_path: Path) -> None:
     note = tmp_path / "pid"
     code = RUNNER.replace('t.fake("slow")', 't.fake("hangs")')
     path = os.pathsep.join([str(fakes), str(TESTS), *sys.path])
-    command = [sys.executable, "-c", code, str(tmp_path / "out"), "1"]
+    command = [sys.executable, "-c", code, str(tmp_path / "out")]
     process = subprocess.Popen(command, env=os.environ | {"PYTHONPATH": path})
     while not note.exists() or not note.read_text():
         assert process.poll() is None
@@ -193,7 +189,7 @@ def test_what_is_planned_has_one_key_each() -> None:
         planned([*TOYS, TOYS[0]], solvers, ("default",))
 
 
-@pytest.mark.parametrize("given", [{"repeat": 0}, {"jobs": 0}, {"time_limit": 0.0}, {"time_limit": nan}])
+@pytest.mark.parametrize("given", [{"repeat": 0}, {"time_limit": 0.0}, {"time_limit": nan}])
 def test_limits_that_make_no_sense_are_refused(given: dict[str, float]) -> None:
     with pytest.raises(InvalidInput, match=r"must be"):
         Limits(**given)  # type: ignore[arg-type]
@@ -213,17 +209,16 @@ def command(fakes: Path, *arguments: object) -> subprocess.CompletedProcess[str]
 def test_the_command_runs_resumes_and_says_what_came_of_it(fakes: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     asked = ["--family", "loci", "--most", "4", "--solver", "right", "--solver", "lies", "-o", out]
-    done = command(fakes, *asked, "--jobs", "2")
+    done = command(fakes, *asked)
     rows = read_rows(out)
     assert done.returncode == 0
-    warning, *progress = done.stderr.splitlines()
-    assert warning == "Warning: 2 solves at once disturb one another's timing."
+    progress = done.stderr.splitlines()
     assert len(progress) == 10  # a tenth a line where there is no terminal
     assert progress[-1] == f"{len(rows)} of {len(rows)} solves"
     right = [row for row in rows if row.solver == "right"]
     assert all(row.correct for row in right)
     assert f"{len(rows)} solves in {out}: {sum(row.correct is True for row in rows)} right" in done.stdout
-    assert command(fakes, *asked, "--jobs", "2").stdout == done.stdout
+    assert command(fakes, *asked).stdout == done.stdout
     assert read_rows(out) == rows
 
 

@@ -19,7 +19,8 @@ from regrasp.bench.problems.answer import Answer, understood
 from regrasp.bench.problems.problem import BenchProblem, Known, Truth, Verdict
 from regrasp.bench.problems.settings import SETTINGS, options
 from regrasp.bench.reporting.report import write_report
-from regrasp.bench.running.runner import Limits, run
+from regrasp.bench.running.jobs import Limits
+from regrasp.bench.running.runner import run
 from regrasp.bench.running.solvers import Solver, chosen_solvers, installed_solvers
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program

@@ -17,13 +17,13 @@ def test_it_starts_without_fcntl_and_resource(tmp_path: Path) -> None:
         "import regrasp.bench.running.worker, regrasp.files.staging\n"
         "from pathlib import Path\n"
         "from regrasp.bench.running.machine import can_limit_memory\n"
-        "from regrasp.bench.running.runner import Limits\n"
+        "from regrasp.bench.running.jobs import Limits\n"
         "from regrasp.bench.running.store import Store\n"
         "from regrasp.errors import InvalidInput\n"
-        "assert not can_limit_memory() and Limits().worker_memory == 0\n"
+        "assert not can_limit_memory() and Limits().memory_of(1) == 0\n"
         "with Store(Path('rows'), {'solvers': {}}): pass\n"
         "with regrasp.files.staging.whole_folder('out') as folder: (folder / 'a').write_text('b')\n"
-        "try: Limits(memory_limit=1).worker_memory\n"
+        "try: Limits(memory_limit=1).memory_of(1)\n"
         "except InvalidInput as error: print(error)\n"
     )
     path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])

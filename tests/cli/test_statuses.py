@@ -99,7 +99,11 @@ def test_infeasible_in_json(here: Path, capsys: pytest.CaptureFixture[str]) -> N
         ("bench", "-o", "out", "--time-limit", "inf"),
         ("bench", "-o", "out", "--time-limit", "0"),
         ("bench", "-o", "out", "--repeat", "9" * 400),
-        ("bench", "-o", "out", "--jobs", "9" * 400),
+        ("bench", "-o", "out", "--workers", "9" * 400),
+        ("bench", "-o", "out", "--workers", "2", "--repeat", "2"),
+        ("bench", "-o", "out", "--workers", "2", "--dask", "tcp://127.0.0.1:9"),
+        ("bench", "merge", "one", "-o", "out"),
+        ("bench", "merge", "none", "nothing", "-o", "out"),
         ("bench", "-o", "out", "--most", "9" * 400),
     ],
 )
@@ -178,7 +182,8 @@ def test_families_before_and_after_add_up(
     "option",
     [
         ("--solver", "osqp"), ("--settings", "low"), ("--repeat", "2"), ("--time-limit", "3"),
-        ("--jobs", "2"), ("--most", "9"), ("--quick",), ("-o", "elsewhere"), ("--family", "states"),
+        ("--workers", "2"), ("--dask", "x"), ("--most", "9"), ("--quick",), ("-o", "elsewhere"),
+        ("--family", "states"),
     ],
 )  # fmt: skip
 def test_option_that_a_subcommand_does_not_take_is_an_error(
@@ -346,7 +351,7 @@ def test_what_is_wrong_is_refused_before_any_work(
 
     for name in ("read_scenario", "parse_scenario", "read_plan", "plan_scenario"):
         monkeypatch.setattr(f"regrasp.files.{name}", worked)
-    for name in ("bench.running.runner.chosen_problems", "bench.exchange.export", "execution.simulate"):
+    for name in ("bench.running.jobs.chosen_problems", "bench.exchange.export", "execution.simulate"):
         monkeypatch.setattr(f"regrasp.{name}", worked)
     status, out, err = regrasp(capsys, *arguments)
     assert (status, out) == (2, "")

@@ -113,6 +113,7 @@ FLOORS: dict[str, Set[str]] = {
         "programs",
         "files",
         "plots",
+        "studies",
         "bench",
     },
     "cli": {

@@ -129,8 +129,16 @@ def test_columns_widen_and_earlier_parts_with_them(tmp_path: Path) -> None:
     np.testing.assert_array_equal(frame["late"], [np.nan] * 3 + [7.0] * 3)
 
 
-def test_other_readers_read_the_folder(tmp_path: Path) -> None:
+def test_other_readers_read_the_folder_a_half_written_part_beside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     swept(tmp_path, part_seconds=0.0)
+    rows, was = len(rg.read_study(tmp_path)), {path.name for path in tmp_path.iterdir()}
+    with monkeypatch.context() as torn:
+        torn.setattr("regrasp.studies.parts._place", lambda draft, path: draft.write_bytes(b"PAR1"))
+        swept(tmp_path, {"a": [9, 8]}, extend=True, part_seconds=0.0)
+    assert any(name.startswith(".rows-") for name in {path.name for path in tmp_path.iterdir()} - was)
+    assert len(rg.read_study(tmp_path)) == rows
     ours = rg.read_study(tmp_path)
     assert len(pd.read_parquet(tmp_path)) == len(ours)
     with_polars = pl.read_parquet(f"{tmp_path}/*.parquet")

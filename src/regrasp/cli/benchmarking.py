@@ -29,13 +29,8 @@ _QUICK_UNKNOWNS = 60
 @click.option(
     "--time-limit", type=float, default=None, metavar="SECONDS", help="Of each solve.  [default: 60, quick 5]"
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1, 1000),
-    default=1,
-    show_default=True,
-    help="Solves at once; disturbs timing.",
-)
+@click.option("--workers", type=click.IntRange(1, 1000), help="So many at once, where times do not count.")
+@click.option("--dask", metavar="ADDRESS", help="The same on a dask cluster with this scheduler.")
 @click.option("--most", type=click.IntRange(1, 10**9), metavar="UNKNOWNS", help="Leave larger problems out.")
 @click.option("--quick", is_flag=True, help="Small problems only: two minutes at most.")
 @click.option("-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Folder of the results.")
@@ -48,7 +43,8 @@ def bench(
     settings: tuple[str, ...],
     repeat: int,
     time_limit: float | None,
-    jobs: int,
+    workers: int | None,
+    dask: str | None,
     most: int | None,
     quick: bool,
     output: Path | None,
@@ -62,19 +58,22 @@ def bench(
         return None
     if output is None:
         raise click.UsageError("the results need a folder: -o DIR")
+    apart = workers is not None or dask is not None
+    if apart and repeat > 1:
+        raise click.UsageError("--repeat is for times, which do not count with --workers or --dask")
+    if workers is not None and dask is not None:
+        raise click.UsageError("the cluster knows its workers; give one of --workers and --dask")
     from regrasp.bench.families.catalogue import FAMILIES
-    from regrasp.bench.running.runner import Limits, chosen_problems, run
+    from regrasp.bench.running.jobs import Limits, chosen_problems
     from regrasp.bench.running.solvers import chosen_solvers
     from regrasp.files.staging import check_folder
 
     check_folder(output)
     if quick:
         most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
-    if jobs > 1:
-        click.echo(f"Warning: {jobs} solves at once disturb one another's timing.", err=True)
     if time_limit is None:
         time_limit = 5.0 if quick else 60.0
-    limits = Limits(repeat, time_limit, jobs)
+    limits = Limits(repeat, time_limit)
     with progress_bar() as progress:
         task = progress.add_task("making problems", total=None)
         problems = chosen_problems(FAMILIES, families, most)
@@ -90,7 +89,18 @@ def bench(
                 tenths = 10 * done // total
                 click.echo(f"{done} of {total} solves", err=True)
 
-        rows = run(output, problems, there, settings or ("default",), limits, told)
+        asked = (output, problems, there, settings or ("default",), limits, told)
+        if apart:
+            from regrasp.bench.running.apart import run_apart
+
+            try:
+                rows = run_apart(*asked, workers=workers or 1, client=dask)
+            except ImportError as error:
+                raise click.ClickException(str(error)) from None
+        else:
+            from regrasp.bench.running.runner import run
+
+            rows = run(*asked)
     right = sum(row.correct is True for row in rows)
     unjudged = sum(row.correct is None for row in rows)
     lost = sum(row.is_lost for row in rows)
@@ -126,6 +136,26 @@ def _hand_over(context: click.Context) -> None:
             raise click.UsageError(f"{parameter.opts[0]} is of a run; bench {name} does not take it")
         given[parameter.name] = context.params[parameter.name]
     context.obj = given
+
+
+@bench.command("merge")
+@click.argument("folders", metavar="DIR...", nargs=-1, type=click.Path(path_type=Path))
+@click.option("-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Folder of all rows.")
+@json_option
+@click.pass_context
+def bench_merge(context: click.Context, folders: tuple[Path, ...], output: Path | None) -> dict[str, Any]:
+    """Lay the rows of several runs, of other machines too, into one folder."""
+    from regrasp.bench.running.merging import merge
+    from regrasp.files.staging import check_folder
+
+    output = output or (context.obj or {}).get("output")  # one that stood before the subcommand counts, too
+    if output is None:
+        raise click.UsageError("the rows need a folder: -o DIR")
+    check_folder(output)
+    rows = merge(folders, output)
+    say(f"{len(rows)} solves of {len(folders)} runs in {output}")
+    say(f"Next: {called()} bench report {output}")
+    return {"status": "done", "exit": 0, "folder": output, "solves": len(rows)}
 
 
 @bench.command("report")

@@ -1,16 +1,18 @@
 """Hands the cases without a row to an engine, in batches, and keeps what comes of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import islice
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol
 
 from regrasp.errors import RegraspError
 from regrasp.files import write_plan
+from regrasp.studies.axes import Plain
 from regrasp.studies.cases import Case, Cases, key_of
 from regrasp.studies.engines import Engine
-from regrasp.studies.folder import PLANS, Folder
+from regrasp.studies.folder import PLANS
 from regrasp.studies.progress import Progress, Reporter
 from regrasp.studies.task import LOST, Outcome
 from regrasp.studies.worker import Batch, Done
@@ -25,7 +27,28 @@ CHEAP = 2e-4
 _LOOK = 0.5  # seconds between looks whether anything still comes
 
 
-def fill(folder: Folder, cases: Cases, engine: Engine, reporter: Reporter, part_seconds: float) -> None:
+class Rows(Protocol):
+    """Where rows are kept: a ``Folder`` of a study, or another store that outlives a kill."""
+
+    path: Path
+    keys: set[str]
+    """Of the cases that have a row."""
+
+    @property
+    def waiting(self) -> int:
+        """Rows that are not on the disk yet."""
+
+    def add(self, key: str, case: Mapping[str, Plain], outputs: Mapping[str, Plain], **rest: Any) -> None:
+        """Take a row."""
+
+    def flush(self) -> None:
+        """Have every row on the disk."""
+
+    def note_earlier(self, count: int) -> None:
+        """Hear how many rows are of other cases."""
+
+
+def fill(folder: Rows, cases: Cases, engine: Engine, reporter: Reporter, part_seconds: float) -> None:
     """Add the rows that are missing; whatever ends this, what was done is kept.
 
     Raises ``Refused`` where no case can be done, and ``RegraspError`` where nothing comes any more.
@@ -52,7 +75,7 @@ def fill(folder: Folder, cases: Cases, engine: Engine, reporter: Reporter, part_
 
 class _Filling:
     def __init__(
-        self, folder: Folder, cases: Cases, engine: Engine, reporter: Reporter, progress: Progress,
+        self, folder: Rows, cases: Cases, engine: Engine, reporter: Reporter, progress: Progress,
         part_seconds: float,
     ) -> None:  # fmt: skip
         self._folder, self._cases, self._engine = folder, cases, engine

@@ -12,7 +12,7 @@ from regrasp.studies.columns import Columns, held, schema_of
 if TYPE_CHECKING:
     import pyarrow
 
-SUFFIX, DRAFT = ".parquet", ".draft-"
+SUFFIX, DRAFT = ".parquet", ".draft"
 
 
 def parquet() -> Any:
@@ -75,13 +75,13 @@ def _parsing(path: Path) -> Iterator[None]:
 
 def clear_drafts(folder: Path) -> None:
     """Remove what a killed run was writing; the folder is ours."""
-    for draft in folder.glob(f"{DRAFT}*"):
+    for draft in folder.glob(f".*{DRAFT}"):
         draft.unlink(missing_ok=True)
 
 
 def replace_file(path: Path, content: bytes) -> None:
     """Write a file whole, in the place of an earlier one."""
-    draft = path.with_name(DRAFT + path.name)
+    draft = _draft_of(path)
     with draft.open("wb") as file:
         file.write(content)
         file.flush()
@@ -89,8 +89,13 @@ def replace_file(path: Path, content: bytes) -> None:
     _place(draft, path)
 
 
+def _draft_of(path: Path) -> Path:
+    """Where a file is written; no pattern for parts finds it."""
+    return path.with_name(f".{path.name}{DRAFT}")
+
+
 def _write(path: Path, table: "pyarrow.Table") -> None:
-    draft = path.with_name(DRAFT + path.name)
+    draft = _draft_of(path)
     with draft.open("wb") as file:
         parquet().write_table(table, file, compression="zstd")
         file.flush()

@@ -15,13 +15,14 @@ class Contest:
     """Problems of one class, quadratic or of second order, that every solver in it was given.
 
     outcomes: by solver, then by problem; each solver has the same problems. left_out: problems that only some
-    of them were given, because the run was ended or asked for less.
+    of them were given, because the run was ended or asked for less. timed: whether their times compare.
     """
 
     settings: str
     is_conic: bool
     outcomes: dict[str, dict[str, Outcome]]
     left_out: int
+    timed: bool = True
 
     @property
     def title(self) -> str:
@@ -60,13 +61,16 @@ class Contest:
 
     @property
     def ranking(self) -> list[str]:
-        """Solvers by the number of right answers, then of wrong ones, and only then by time."""
+        """Solvers by the number of right answers, then of wrong ones, and only then by times that compare."""
         return sorted(
             self.outcomes,
             key=lambda solver: (
-                -self.count(solver, Kind.RIGHT), self.count(solver, Kind.WRONG), self.mean(solver), solver
+                -self.count(solver, Kind.RIGHT),
+                self.count(solver, Kind.WRONG),
+                self.mean(solver) if self.timed else 0.0,
+                solver,
             ),
-        )  # fmt: skip
+        )
 
     @property
     def shared(self) -> list[str]:
@@ -78,7 +82,7 @@ class Contest:
         ]
 
 
-def contests(found: Iterable[Outcome]) -> list[Contest]:
+def contests(found: Iterable[Outcome], *, timed: bool = True) -> list[Contest]:
     """One for each settings and class of problems with cold solves."""
     groups: dict[tuple[str, bool], dict[str, dict[str, Outcome]]] = defaultdict(lambda: defaultdict(dict))
     for outcome in cold(found):
@@ -95,5 +99,5 @@ def contests(found: Iterable[Outcome]) -> list[Contest]:
             for solver, there in sorted(by_solver.items())
         }
         if shared:
-            result.append(Contest(settings, is_conic, kept, len(every) - len(shared)))
+            result.append(Contest(settings, is_conic, kept, len(every) - len(shared), timed))
     return result

@@ -31,7 +31,7 @@ from regrasp.bench.reporting.tables import (
     warmth_table,
 )
 from regrasp.bench.reporting.warmth import warmths
-from regrasp.bench.running.store import read_rows, read_run
+from regrasp.bench.running.store import read_rows, read_run, times_compare
 from regrasp.errors import InvalidInput
 from regrasp.files.staging import whole_folder
 
@@ -41,6 +41,12 @@ _COLUMNS = (
     "said", "why", "objective", "distance", "primal_residual", "dual_residual", "gap", "certificate_residual",
     "iterations", "total_time",
 )  # fmt: skip
+
+
+_NOT_TIMED = (
+    "Times are not comparable: solves shared a machine, or came from several. Columns of times say so, ranks "
+    "do not heed them, and profiles, growth with size and updates are left out; right and wrong are as ever."
+)
 
 
 def write_report(folder: Path) -> list[Path]:
@@ -82,13 +88,17 @@ def _blocks(found: list[Outcome], run: dict[str, Any]) -> Iterator[Block]:
     looks = solver_looks({outcome.row.solver for outcome in found})
     yield Heading("Solvers on contact-force problems", 1)
     yield from _opening(found)
-    all_contests = contests(found)
+    timed = times_compare(run)
+    if not timed:
+        yield Paragraph(_NOT_TIMED)
+    all_contests = contests(found, timed=timed)
     yield from _summary_blocks(all_contests)
     yield from _contest_blocks(all_contests, looks)
     settings = sorted({outcome.row.settings for outcome in found}, key=SETTINGS.index)
     yield from _truth_blocks(found, settings, looks)
-    yield from _growth_blocks(found, settings, looks)
-    yield from _warm_blocks(found)
+    if timed:
+        yield from _growth_blocks(found, settings, looks)
+        yield from _warm_blocks(found)
     yield from _certificate_blocks(found)
     yield Heading("Failures")
     yield from _failure_blocks(found)
@@ -161,7 +171,7 @@ def _contest_blocks(all_contests: list[Contest], looks: Any) -> Iterator[Block]:
         yield contest_table(contest)
         if contest.is_alone:
             yield Paragraph("One solver alone: nothing to compare it with.")
-        else:
+        elif contest.timed:
             rising = ratios(contest)
             ax = plot_profiles({solver: rising[solver] for solver in contest.ranking}, looks)
             words = f"Performance profiles: {contest.title}"
@@ -259,8 +269,6 @@ def _machine_blocks(found: list[Outcome], run: dict[str, Any]) -> Iterator[Block
     facts = {**machine, **others, **_asked(found)}
     yield Table(["", "value"], [[key.replace("_", " "), _fact(key, value)] for key, value in facts.items()])
     yield Table(["solver", "version"], [[name, str(version)] for name, version in solvers.items()])
-    if run.get("jobs", 1) > 1:
-        yield Paragraph("Several problems were solved at once, which disturbs times.")
 
 
 def _fact(key: str, value: Any) -> str:

@@ -36,15 +36,21 @@ def contest_table(contest: Contest) -> Table:
             *(str(contest.count(solver, kind)) for kind in _NOT_RIGHT),
             seconds(contest.mean(solver)),
         ]
-        if not contest.is_alone:
+        if contest.timed and not contest.is_alone:
             cells += [
                 seconds(shifted_geometric_mean(times)) if times else NOTHING,
                 *(f"{100 * share_within(rising[solver], factor):.0f} %" for factor in (1, 2, 10)),
             ]
         rows.append(cells)
-    header = ["solver", "right", "by family", "verdict only", *_NOT_RIGHT.values(), "mean time"]
-    compared = [] if contest.is_alone else ["mean, shared", "fastest", "within 2x", "within 10x"]
-    return Table([*header, *compared], rows)
+    header = ["solver", "right", "by family", "verdict only", *_NOT_RIGHT.values()]
+    compared = ["mean, shared", "fastest", "within 2x", "within 10x"]
+    alone = contest.is_alone or not contest.timed
+    return Table([*header, _marked("mean time", contest), *([] if alone else compared)], rows)
+
+
+def _marked(column: str, contest: Contest) -> str:
+    """The name of a column of times, with a word where they do not compare."""
+    return column if contest.timed else f"{column} (not comparable)"
 
 
 _NOT_RIGHT = {
@@ -65,13 +71,14 @@ def summary_table(all_contests: Iterable[Contest]) -> Table:
         first = [solver for solver in contest.ranking if contest.count(solver, Kind.RIGHT) == most > 0]
         shares = {solver: share_within(rising, 1) for solver, rising in ratios(contest).items()}
         fastest = max(contest.ranking, key=shares.__getitem__)
+        timed = contest.timed and shares[fastest] > 0
         best = [fastest, f"{100 * shares[fastest]:.0f} %", f"{contest.count(fastest, Kind.RIGHT)} of {size}"]
         rows.append(
             [
                 contest.title,
                 ", ".join(first) or NOTHING,
                 f"{most} of {size}",
-                *(best if shares[fastest] > 0 else [NOTHING] * 3),
+                *(best if timed else [NOTHING] * 3),
             ]
         )
     header = ["", "most right", "right answers", "most often fastest", "how often", "its right answers"]
@@ -102,7 +109,8 @@ def parts_table(contest: Contest) -> Table:
         counts = [outcome.row.iterations for outcome in right if outcome.row.iterations is not None]
         medians = [seconds(median(times)) if times else NOTHING for times in known]
         rows.append([solver, *medians, f"{median(counts):g}" if counts else NOTHING])
-    return Table(["solver", "build", "set-up", "solve", "whole call", "iterations"], rows)
+    times = [_marked(column, contest) for column in ("build", "set-up", "solve", "whole call")]
+    return Table(["solver", *times, "iterations"], rows)
 
 
 def growth_table(growths: dict[str, dict[str, Growth]]) -> Table:

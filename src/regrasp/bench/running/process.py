@@ -65,20 +65,10 @@ class Worker:
     def kill(self) -> None:
         """End the process, whatever it is doing."""
         if self._process is not None:
-            self._end()
+            end_group(self._process)  # with what it has started; they are a session of their own
             self._process.wait()
             self._connection.close()
         self._process = self.loaded = None
-
-    def interrupt(self) -> None:
-        """End the process from another thread; a reply that is awaited is lost."""
-        if self._process is not None:
-            self._end()
-
-    def _end(self) -> None:
-        """Kill the process and what it has started; they are a session of their own."""
-        assert self._process is not None
-        end_group(self._process)
 
     def _start(self) -> None:
         if os.name != "posix":

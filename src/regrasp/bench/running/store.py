@@ -4,7 +4,6 @@ import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from threading import Lock
 from types import TracebackType
 from typing import Any
 
@@ -15,6 +14,8 @@ from regrasp.files.locks import HAS_LOCKS, is_locked
 ROWS, RUN = "rows.jsonl", "run.json"
 # Of a run that goes on: more solvers change nothing for the rows of the others.
 _FREE = ("solvers", "started")
+COMPARABLE, NOT_COMPARABLE = "comparable", "not comparable"
+"""What a run says of its times: each solve had the machine to itself, or not."""
 
 
 def read_rows(folder: Path) -> list[Row]:
@@ -42,6 +43,11 @@ def read_run(folder: Path) -> dict[str, Any]:
     return run
 
 
+def times_compare(run: dict[str, Any]) -> bool:
+    """Whether each solve of a run had the same machine to itself."""
+    return bool(run.get("times", COMPARABLE) == COMPARABLE and run.get("jobs", 1) == 1)  # jobs: of old runs
+
+
 class Store:
     """The rows of one run, open for more; a context manager that no second run can enter meanwhile.
 
@@ -51,7 +57,7 @@ class Store:
     """
 
     def __init__(self, folder: Path, run: dict[str, Any]) -> None:
-        self._folder, self._run, self._lock = folder, run, Lock()
+        self._folder, self._run = folder, run
         self.rows: dict[Key, Row] = {}
 
     def __enter__(self) -> "Store":
@@ -82,13 +88,12 @@ class Store:
     def append(self, row: Row) -> None:
         """Write a row; when this returns it is on the disk."""
         line = (row.line() + "\n").encode()
-        with self._lock:
-            if row.key in self.rows:
-                raise InvalidInput(f"there is a row of {row.key} already")
-            while line:
-                line = line[os.write(self._file, line) :]
-            os.fsync(self._file)
-            self.rows[row.key] = row
+        if row.key in self.rows:
+            raise InvalidInput(f"there is a row of {row.key} already")
+        while line:
+            line = line[os.write(self._file, line) :]
+        os.fsync(self._file)
+        self.rows[row.key] = row
 
     def _agree(self) -> None:
         """Write down what the run is, or compare it with what the rows here come from."""
