@@ -516,7 +516,12 @@ def rows() -> dict[str, Row]:
         "RegraspProblem.allowing": Row(problem().allowing, {"force": 9.0}, {"force": "positive"}),
         "SpaceRegraspProblem": Row(rg.SpaceRegraspProblem, {"mesh": box, **solid, **small}),
         "SpaceRegraspProblem.sequences": Row(space_problem().sequences, {}),
-        "plan_regrasp": Row(rg.plan_regrasp, {"outline": outline, **asked, **small}, free=("options",)),
+        "plan_regrasp": Row(
+            rg.plan_regrasp,
+            {"outline": outline, **asked, **small, "motions": True, "tip_radius": 0.01, "clearance": 0.01},
+            {"speed": "positive", "acceleration": "positive", "capsules": "bars", "attempts": "count"},
+            free=("options",),
+        ),
         "plan_regrasps": Row(rg.plan_regrasps, {"outline": outline, **asked, **small}, free=("options",)),
         "HoldGraph": Row(
             rg.HoldGraph,
@@ -641,6 +646,7 @@ def file_rows() -> dict[str, Row]:
             files.write_cut, {"cut": VALUES["RegraspCut"](), "path": os.devnull}, {"cut": "value"}
         ),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
+        "read_motions": Row(files.read_motions, {"plan": removal()}, {"path": "path"}),
         "write_plan": Row(files.write_plan, {"plan": removal(), "path": os.devnull}),
         "write_mcap": Row(
             files.write_mcap,

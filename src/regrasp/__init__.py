@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
     from regrasp.motions.plan import plan_motions
+    from regrasp.motions.verb import plan_regrasp
     from regrasp.outline.outline import Outline
     from regrasp.planning.anywhere.deciding import regrasps_on_outline
     from regrasp.planning.anywhere.results import OutlineRegrasps
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from regrasp.planning.placement.regions import ContactRegions, contact_regions
     from regrasp.planning.regrasps.planar import RegraspProblem
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
-    from regrasp.planning.regrasps.verbs import plan_regrasp, plan_regrasps
+    from regrasp.planning.regrasps.verbs import plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
     from regrasp.planning.robustness.batch import BatchTolerances, batch_tolerances
     from regrasp.planning.robustness.least_stiffness import least_stiffness
@@ -113,7 +114,7 @@ _LATER = {
     "plan_addition": "regrasp.planning.changes.finger_change",
     "plan_exchange": "regrasp.planning.changes.finger_change",
     "plan_motions": "regrasp.motions.plan",
-    "plan_regrasp": "regrasp.planning.regrasps.verbs",
+    "plan_regrasp": "regrasp.motions.verb",
     "plan_regrasps": "regrasp.planning.regrasps.verbs",
     "plan_removal": "regrasp.planning.changes.finger_change",
     "plan_rotation": "regrasp.planning.changes.rotation",

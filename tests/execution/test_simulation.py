@@ -150,6 +150,10 @@ REFUSED = [
     ({"friction": [0.3, 0.3]}, "friction must be a number or have shape \\(3,\\)"),
     ({"contact_errors": [[0.0, 0.0]]}, "contact_errors must have shape \\(3, 2\\), got \\(1, 2\\)"),
     ({"delays": [0.1]}, "delays must have shape \\(3,\\), one for each finger"),
+    (
+        {"mass": 1e-8},
+        "this run takes .* steps of .* s, .* so small or light an object .* 500,000 are",
+    ),
     ({"shape": "box"}, "shape must be an Outline or a Mesh, got str"),
     ({"disturbance": 3.0}, "disturbance must be a function of time that returns a Wrench"),
 ]

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.transition import Transition
-    from regrasp.verification import MotionsVerification, Verification
+    from regrasp.verification import MotionRowsVerification, MotionsVerification, Verification
 
-Judged = TypeVar("Judged", bound="Verification | MotionsVerification")
+Judged = TypeVar("Judged", bound="Verification | MotionsVerification | MotionRowsVerification")
 
 # A plan with a thousand bad set-points says the same thing a thousand times.
 _SHOWN = 10

@@ -19,17 +19,19 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
     """Check a PLAN in exact arithmetic.
 
     PLAN is a plan.json or the folder that holds it, or a file of the cut that proves that there is none. A
-    setpoints.csv beside it is checked too: every row must hold the object and be the plan's at its time.
+    setpoints.csv beside it is checked too: every row must hold the object and be the plan's at its time. So
+    is a motions.csv, with positions, velocities and contacts of all fingers.
     """
     import numpy as np
 
     from regrasp import ChosenGrasp
     from regrasp import verify as verdict_on
-    from regrasp.files import read_plan
+    from regrasp.files import read_motions, read_plan
     from regrasp.files.plans.cut_file import holds_a_cut, read_cut
     from regrasp.files.plans.setpoints import checked, read_setpoints
     from regrasp.files.source import legible
     from regrasp.mechanics.checks import number
+    from regrasp.verification import verify_motion_rows
 
     if rate is not None:
         number(rate, "rate", above=0)
@@ -52,4 +54,8 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
                 verified(checked(planned, rows), table)
             count = sum(rows.times.size for rows in steps)
             say(f"each of {count} set-points in {table} verified too")
+        moved = path.with_name("motions.csv")
+        if moved.exists() and not isinstance(planned, ChosenGrasp):
+            found = verified(verify_motion_rows(planned, read_motions(moved, planned)), moved)
+            say(f"{moved}: {found}")
     return verdict_facts(planned, verdict, count)

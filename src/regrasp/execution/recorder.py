@@ -15,6 +15,8 @@ from regrasp.mechanics.wrench import torque
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 
+_QUARTER = np.array([-1.0, 1.0])  # (x, y) turned by a quarter is (-y, x)
+
 
 class Recorder:
     """Samples of a run in the simulation's units, and the slip summed over every step of it.
@@ -148,7 +150,7 @@ class Recorder:
 def _cross(spin: Array, arm: Array) -> Array:
     """Omega x r; in the plane omega is one number."""
     if arm.shape[1] == 2:
-        return spin.reshape(-1, 1) * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        return np.asarray(spin.reshape(-1, 1) * (arm[:, ::-1] * _QUARTER))
     return torque(np.broadcast_to(spin, arm.shape), arm)
 
 

@@ -17,6 +17,8 @@ from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 from regrasp.plans.transition import Transition
 
+MOST_STEPS = 500_000
+"""Steps of a simulation; some twenty thousand take a second."""
 # A finger in the air keeps this far from where it touched, as a fraction of the object's size.
 _LIFT = 0.12
 
@@ -121,7 +123,9 @@ def schedule(plan: Transition | RegraspPlan, setup: Setup, units: Units) -> Sche
     blocks, done, motions = [], -1.0, setup.motions  # done: on the clock of motions, which does not settle
     if motions is not None and motions.plan != plan:
         raise InvalidInput("motions must be those of the plan that is simulated")
-    for phase in phases(plan, units, motions):
+    run = list(phases(plan, units, motions))
+    _refuse_long(sum(phase.length for phase in run) / dt, dt)
+    for phase in run:
         ways = _Ways(tips, {str(c.name): c.normal for c in contacts}, lift, motions, done)
         local, *rest = _block(plan, phase, contacts, ways, dt)
         done = 0.0 if done < 0 else done + phase.length
@@ -138,6 +142,16 @@ def schedule(plan: Transition | RegraspPlan, setup: Setup, units: Units) -> Sche
     return Schedule(
         contacts, clock, planned, twists, forces, spins, targets, velocities, at, rotations, loads, gripping
     )
+
+
+def _refuse_long(steps: float, dt: float) -> None:
+    """Raise ``InvalidInput`` for a run of more than ``MOST_STEPS``."""
+    if steps > MOST_STEPS:
+        raise InvalidInput(
+            f"this run takes {steps:.3g} steps of {dt:.3g} s, a thousandth of the time in which so small or "
+            f"light an object swings; at most {MOST_STEPS:,} are done: give the plan less time, or the "
+            "object a larger mass, which adds inertia and no weight"
+        )
 
 
 def _block(

@@ -2,6 +2,7 @@
 
 from regrasp.files.plans.bag import write_mcap
 from regrasp.files.plans.cut_file import read_cut, write_cut
+from regrasp.files.plans.motion_rows import MotionRows, read_motions
 from regrasp.files.plans.motions_table import write_motions
 from regrasp.files.plans.plan_file import read_plan, write_plan
 from regrasp.files.plans.setpoints import write_setpoints
@@ -21,6 +22,7 @@ from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 __all__ = [
     "AnyScenario",
     "GraspScenario",
+    "MotionRows",
     "RegraspScenario",
     "Scenario",
     "SpaceRegraspScenario",
@@ -28,6 +30,7 @@ __all__ = [
     "plan_scenario",
     "plan_scenario_motions",
     "read_cut",
+    "read_motions",
     "read_plan",
     "read_scenario",
     "scenario_schema",

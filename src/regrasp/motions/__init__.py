@@ -8,15 +8,11 @@ from regrasp.motions.value import Motion, Motions
 
 if TYPE_CHECKING:
     from regrasp.motions.plan import plan_motions
-    from regrasp.motions.regrasps import plan_regrasp_motions
 
 # Loaded when they are asked for: values of motions are read without what plans them.
-_LATER = {
-    "plan_motions": "regrasp.motions.plan",
-    "plan_regrasp_motions": "regrasp.motions.regrasps",
-}
+_LATER = {"plan_motions": "regrasp.motions.plan"}
 
-__all__ = ["Motion", "Motions", "ShutIn", "plan_motions", "plan_regrasp_motions"]
+__all__ = ["Motion", "Motions", "ShutIn", "plan_motions"]
 
 
 def __getattr__(name: str) -> Any:

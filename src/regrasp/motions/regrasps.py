@@ -1,6 +1,9 @@
 """Whole regrasps whose free fingers have ways."""
 
-from typing import TYPE_CHECKING, Any, Unpack
+from collections.abc import Sequence
+from contextlib import suppress
+from itertools import combinations
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,44 +39,25 @@ def plan_regrasp_motions(
     attempts: int = 50,
     **options: Unpack["RegraspOptions"],
 ) -> Motions:
-    """The best regrasp of ``plan_regrasp`` whose free fingers have ways, and these ways.
+    """The best regrasp whose free fingers have ways, and these: ``plan_regrasp`` with ``motions``.
 
-    The regrasp is ``plan`` of what is returned. Fingers that hold together are apart by the clearance.
-    Where a finger of the best sequence is shut in, the holds in which it is are left out, and the next best
-    sequence is planned.
-
-    Args:
-        shape: an ``Outline``, or a ``Mesh`` in space.
-        start: as for ``plan_regrasp``.
-        goal: as for ``plan_regrasp``.
-        load: as for ``plan_regrasp`` [N].
-        tip_radius: as for ``plan_motions`` [m].
-        clearance: as for ``plan_motions`` [m].
-        speed: as for ``plan_motions`` [m/s].
-        acceleration: as for ``plan_motions`` [m/s^2].
-        capsules: as for ``plan_motions`` [m].
-        attempts: how many sequences are tried.
-        **options: of ``plan_regrasp``; ``friction`` [-] is required.
-
-    Raises:
-        Infeasible: Where there is no regrasp, or none of those tried has ways; then with the finger and the
-            place of the first, as ``ShutIn`` in ``certificate``.
-        InvalidInput: For arguments that are not what they must be.
+    Where a finger of the best sequence finds no way, the best of those sequences is next that lack the hold
+    meanwhile, or those before it, or those after it; where it is shut in by the object alone, of those that
+    do not touch there. Raises ``Infeasible`` where there is no regrasp, or none of those tried has ways.
     """
     from regrasp.planning.regrasps.verbs import plan_regrasp
 
     radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
     most = whole(attempts, "attempts", least=1)
-    barred = _Barred(options.get("keep"), _SAME * max(start.size, goal.size))
     asked: Any = options | {"min_distance": max(options.get("min_distance", 0.0), 2 * radius + keep)}
+    barred = _Barred(options.get("keep"), _SAME * max(start.size, goal.size))
+    waiting = [_Candidate(plan_regrasp(shape, start, goal, load, **asked), barred)]
+    seen: list[RegraspPlan] = []
     first: Infeasible | None = None
-    for tried in range(most):
-        try:
-            plan = plan_regrasp(shape, start, goal, load, **asked)
-        except Infeasible as error:
-            if first is None:
-                raise
-            raise _none(first, tried) from error
+    while waiting and len(seen) < most:
+        best = 0 if options.get("weights") else min(range(len(waiting)), key=lambda k: waiting[k].rank)
+        plan, barred = waiting.pop(best)
+        seen.append(plan)
         try:
             return plan_motions(
                 plan,
@@ -88,10 +72,13 @@ def plan_regrasp_motions(
             if _for_good(error.certificate, start, goal, barred.near):
                 raise
             first = first or error
-            barred.add(error.certificate, plan)
-            asked["keep"] = barred  # not before: with a rule of ours orientations are sampled
+            for less in barred.without(error.certificate, plan):
+                with suppress(Infeasible):
+                    other = plan_regrasp(shape, start, goal, load, **asked | {"keep": less})
+                    if other not in [*seen, *(candidate.plan for candidate in waiting)]:
+                        waiting.append(_Candidate(other, less))
     assert first is not None
-    raise _none(first, most)
+    raise _none(first, len(seen))
 
 
 def _none(first: Infeasible, tried: int) -> Infeasible:
@@ -111,26 +98,46 @@ def _for_good(found: ShutIn, start: Grasp, goal: Grasp, near: float) -> bool:
     )
 
 
+class _Candidate(NamedTuple):
+    """A sequence that may have ways, and what it leaves out."""
+
+    plan: RegraspPlan
+    barred: "_Barred"
+
+    @property
+    def rank(self) -> tuple[int, float]:
+        """The first is the best: of fewest moves, then of the widest margin."""
+        return len(self.plan.moves), -self.plan.margin
+
+
 class _Barred:
-    """Which fingers may hold together: as the caller says, less the holds in which one found no way."""
+    """Which fingers may hold together: as the caller says, less holds that lead to a move without way.
 
-    def __init__(self, keep: Any, near: float) -> None:
-        self._keep, self.near = keep, near
-        self._holds: list[Array] = []
+    A finger that finds no way from a to b while H holds came from a hold with a and all but one of H, and
+    goes on to one with b and all but one of H. Sequences that avoid this move lack H, or all of the former,
+    or all of the latter: three searches, the best of which is next.
+    """
 
-    def add(self, found: ShutIn, plan: RegraspPlan) -> None:
-        """Leave out the holds with a place that is shut in by itself, else those of the step or the pause."""
+    def __init__(self, keep: Any, near: float, holds: Sequence[Array] = ()) -> None:
+        self._keep, self.near, self._holds = keep, near, tuple(holds)
+
+    def without(self, found: ShutIn, plan: RegraspPlan) -> list["_Barred"]:
+        """What else to leave out, so that the finger need not go where it is shut in."""
         contacts = {str(c.name): c.position for step in plan.steps for c in step.grasp}
+        held = [contacts[name] for name in found.held]
         if found.alone:
-            self._holds.append(found.position[None])
-            return
-        self._holds.append(np.array([contacts[name] for name in found.held]))
-        if found.origin == found.target and found.step < len(
-            plan.steps
-        ):  # two in one another, of whom one holds
-            step = plan.steps[found.step]
-            held = [n for n in step.grasp.names if n not in (*step.leaving, *step.arriving)]
-            self._holds.append(np.array([contacts[n] for n in held]))
+            ways = [[found.position[None]]]
+        elif found.origin != found.target:
+            rest = list(combinations(held, len(held) - 1))
+            ends = (contacts[found.origin], contacts[found.target])
+            ways = [[np.array(held)], *([np.array([end, *some]) for some in rest] for end in ends)]
+        else:  # two in one another, of whom one holds
+            ways = [[np.array(held)]]
+            if found.step < len(plan.steps):
+                step = plan.steps[found.step]
+                names = [n for n in step.grasp.names if n not in (*step.leaving, *step.arriving)]
+                ways[0].append(np.array([contacts[n] for n in names]))
+        return [_Barred(self._keep, self.near, (*self._holds, *way)) for way in ways]
 
     def __call__(self, *given: Any) -> NDArray[np.bool_]:
         points = np.stack([g for g in given if np.ndim(g) == 2], axis=1)  # (k, fingers, d), an angle left out

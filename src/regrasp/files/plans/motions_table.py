@@ -4,6 +4,7 @@ import csv
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.staging import whole_file
@@ -12,6 +13,7 @@ from regrasp.mechanics.orientation.quaternion import quaternion
 from regrasp.motions.value import Motions
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.transition import Transition
 
 _MOST = 1e6  # rows; hours at a thousand per second are a slip of the pen
 _FORCES = ("fx", "fy", "fz", "mn")
@@ -39,16 +41,9 @@ def write_motions(motions: Motions, path: str | Path, rate: float = 1000.0) -> N
     if not isinstance(motions, Motions):
         raise InvalidInput(f"write_motions needs motions, got {shown(motions)}")
     t = motion_times(motions, rate)
-    d, fingers = motions.tips.shape[2], range(1, motions.tips.shape[1] + 1)
     forces = motions.forces(t)
-    turned = orientations(motions, t)
-    place = [*"xyz"[:d], *(f"v{axis}" for axis in "xyz"[:d])]
-    each = [*place, "touching", *_FORCES[: forces.shape[2]]]
-    columns = [
-        *("t", "plan_t", "step"),
-        *(["angle"] if d == 2 else ["qw", "qx", "qy", "qz"]),
-        *(f"F{i}_{what}" for i in fingers for what in each),
-    ]
+    turned = orientations(motions.plan, *motions.step_times(t))
+    columns = motion_columns(motions.tips.shape[2], *forces.shape[1:])
     numbers = zip(
         np.column_stack([t, motions.plan_time(t)]).tolist(),
         (motions.step_times(t)[0] + 1).tolist(),
@@ -81,12 +76,26 @@ def motion_times(motions: Motions, rate: float) -> Array:
     return np.unique(np.concatenate([even[even <= motions.duration], motions.starts, ends]))
 
 
-def orientations(motions: Motions, t: Array) -> Array:
-    """(m, 1) angles [rad] or (m, 4) quaternions (w, x, y, z) whose sign never jumps, at times (m,) [s]."""
-    plan, (k, local) = motions.plan, motions.step_times(t)
-    in_space = motions.tips.shape[2] == 3
-    result = np.zeros((t.size, 4 if in_space else 1))
-    for s, step in enumerate(motions.steps):
+def motion_columns(dimension: int, fingers: int, width: int) -> list[str]:
+    """Names of all columns; ``width`` numbers a force."""
+    place = [*"xyz"[:dimension], *(f"v{axis}" for axis in "xyz"[:dimension])]
+    each = [*place, "touching", *_FORCES[:width]]
+    return [
+        *("t", "plan_t", "step"),
+        *(["angle"] if dimension == 2 else ["qw", "qx", "qy", "qz"]),
+        *(f"F{i}_{what}" for i in range(1, fingers + 1) for what in each),
+    ]
+
+
+def orientations(plan: Transition | RegraspPlan, k: NDArray[np.intp], local: Array) -> Array:
+    """(m, 1) angles [rad] or (m, 4) quaternions (w, x, y, z) whose sign never jumps.
+
+    k, local: (m,) the step and the time in it [s].
+    """
+    steps = plan.steps if isinstance(plan, RegraspPlan) else (plan,)
+    in_space = steps[0].grasp.dimension == 3
+    result = np.zeros((k.size, 4 if in_space else 1))
+    for s, step in enumerate(steps):
         here = k == s
         if in_space:
             before = plan.rotations[s] if isinstance(plan, SpaceRegraspPlan) else np.eye(3)

@@ -107,7 +107,7 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
     if rate is not None:
         number(rate, "rate", above=0)
     columns = _columns(plan)
-    table = _table_of(path, columns)
+    table = table_of(path, columns)
     if isinstance(plan, RegraspPlan):
         return RegraspTable(plan).read(path, table, rate)
     times = table[:, 0]
@@ -121,7 +121,7 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
     return [Rows(0, times, angles, table[:, 1 + turned :].reshape(times.size, *plan.start.forces.shape))]
 
 
-def _table_of(path: Path, columns: list[str]) -> Array:
+def table_of(path: Path, columns: list[str]) -> Array:
     """(m, k) the numbers below a header of ``columns``; names may be quoted, as CSV quotes them."""
     numbers = array("d")
     with StringIO(text_of(path, "set-points in CSV", most=_MOST_BYTES), newline="") as text:

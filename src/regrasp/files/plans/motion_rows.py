@@ -1,0 +1,82 @@
+"""Set-points of positions and forces, read back from a file."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.errors import InvalidInput
+from regrasp.files.plans.motions_table import motion_columns, orientations
+from regrasp.files.plans.setpoint_rows import check_angles, check_quaternions
+from regrasp.files.plans.setpoints import table_of
+from regrasp.mechanics.checks import Array, file_path
+from regrasp.plans.regrasp_plan import RegraspPlan
+from regrasp.plans.transition import Transition
+
+_ROUNDING = 1e-9  # of the duration: how far a clock that is a sum may be off
+
+
+class MotionRows(NamedTuple):
+    """Set-points of positions, velocities, contacts and forces; k fingers.
+
+    times: (m,) rising from 0 [s]. steps: (m,) from 0, the pause before each included. local: (m,) the plan's
+    own time from the start of the step [s].
+    positions, velocities: (m, k, d) of the tips' centres in the object's frame [m, m/s]. touching: (m, k).
+    forces: (m, k, d) of the fingers on the object [N], (m, k, 4) with soft fingers.
+    """
+
+    times: Array
+    steps: NDArray[np.intp]
+    local: Array
+    positions: Array
+    velocities: Array
+    touching: NDArray[np.bool_]
+    forces: Array
+
+
+def read_motions(path: str | Path, plan: Transition | RegraspPlan) -> MotionRows:
+    """The set-points of a file that ``write_motions`` wrote for motions of this plan.
+
+    Raises ``InvalidInput`` for other columns, rows that are not numbers, clocks and steps that do not rise
+    from the plan's start to its end, orientations that are not the plan's, and marks of contact that are
+    neither 0 nor 1. ``verify_motion_rows`` judges the rest.
+    """
+    path = file_path(path)
+    steps = plan.steps if isinstance(plan, RegraspPlan) else (plan,)
+    fingers = len(plan.fingers[0]) if isinstance(plan, RegraspPlan) else len(steps[0].grasp)
+    d, width = steps[0].grasp.dimension, steps[0].start.forces.shape[1]
+    table = table_of(path, motion_columns(d, fingers, width))
+    t, clock, number = table[:, 0], table[:, 1], table[:, 2] - 1
+    ends = np.cumsum([0.0, *(step.duration for step in steps)])
+    slack = _ROUNDING * ends[-1]
+    if t[0] != 0 or not (np.diff(t) > 0).all():
+        raise InvalidInput(f"{path}: times t must rise from 0")
+    if (np.diff(number) < 0).any() or set(number.tolist()) != set(range(len(steps))):
+        raise InvalidInput(f"{path}: steps must rise from 1 to {len(steps)}, and each have rows")
+    k = number.astype(np.intp)
+    ran = np.diff(clock)
+    if clock[0] != 0 or clock[-1] != ends[-1] or (ran < 0).any() or (ran > np.diff(t) + slack).any():
+        raise InvalidInput(
+            f"{path}: the plan's time plan_t must go from 0 to {ends[-1]:g} s, and no faster than t"
+        )
+    local = clock - ends[k]
+    lengths = np.diff(ends)[k]
+    if (local < -slack).any() or (local > lengths + slack).any():
+        raise InvalidInput(f"{path}: plan_t must lie within the step of its row")
+    for s, (begin, end) in enumerate(pairwise(ends)):
+        if clock[k == s].min() > begin + slack or clock[k == s].max() < end - slack:
+            raise InvalidInput(f"{path}: step {s + 1} must have rows at its start and at its end")
+    local = np.clip(local, 0.0, lengths)
+    turned = 1 if d == 2 else 4
+    planned, found = orientations(plan, k, local), table[:, 3 : 3 + turned]
+    if d == 2:
+        check_angles(path, found[:, 0], planned[:, 0])
+    else:
+        check_quaternions(path, found, planned)
+    each = table[:, 3 + turned :].reshape(len(t), fingers, 2 * d + 1 + width)
+    marks = each[..., 2 * d]
+    if not np.isin(marks, (0.0, 1.0)).all():
+        raise InvalidInput(f"{path}: whether a finger touches must be 0 or 1")
+    return MotionRows(t, k, local, each[..., :d], each[..., d : 2 * d], marks > 0, each[..., 2 * d + 1 :])

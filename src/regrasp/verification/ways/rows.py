@@ -1,0 +1,179 @@
+"""The verdict on set-points of positions, velocities, contacts and forces, row by row, without the shape."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.value import ArrayValue
+from regrasp.verification.sampling import verify_setpoints
+
+_SAME = 1e-9  # of the size of the grasps: places that are one
+
+
+class MovedRows(Protocol):
+    """Set-points of k fingers at m times, the pauses of the plan's clock included."""
+
+    @property
+    def times(self) -> Array: ...  # noqa: D102
+    @property
+    def steps(self) -> NDArray[np.intp]: ...  # noqa: D102
+    @property
+    def local(self) -> Array: ...  # noqa: D102
+    @property
+    def positions(self) -> Array: ...  # noqa: D102
+    @property
+    def velocities(self) -> Array: ...  # noqa: D102
+    @property
+    def touching(self) -> NDArray[np.bool_]: ...  # noqa: D102
+    @property
+    def forces(self) -> Array: ...  # noqa: D102
+
+
+@dataclass(frozen=True, eq=False)
+class MotionRowsVerification(ArrayValue):
+    """The verdict on set-points of positions and forces.
+
+    Args:
+        violations: each broken condition in words; none for rows that keep everything.
+        tip_radius: of the fingers, from where they touch [m].
+        to_fingers: the least distance of two tips' surfaces [m]; infinite where there is one finger.
+        touching: how many fingers are at contacts, at the least.
+        rows: how many there are.
+    """
+
+    violations: tuple[str, ...]
+    tip_radius: float
+    to_fingers: float
+    touching: int
+    rows: int
+
+    @property
+    def ok(self) -> bool:
+        """Whether every row holds the object, and fingers neither jump nor let go of a contact."""
+        return not self.violations
+
+    def __str__(self) -> str:
+        if not self.ok:
+            return "\n".join(["set-points not verified:", *(f"  {words}" for words in self.violations)])
+        return (
+            f"{self.rows} set-points of positions and forces verified: tips of radius {self.tip_radius:.4g} "
+            f"keep {self.to_fingers:.4g} from one another, {self.touching} or more touch at every row"
+        )
+
+
+def verify_motion_rows(plan: Any, rows: MovedRows) -> MotionRowsVerification:
+    """Check rows of set-points against their plan.
+
+    Forces at contacts hold the object and are the plan's, and there are none in the air; positions move as
+    velocities say; a finger that is said to touch is at a contact of the plan, one radius off it, every
+    contact of a step has a finger all through it, and two fingers, in space three, touch at every row. Tips
+    are not in one another. What the object's shape decides is a matter of ``verify_motions``.
+
+    Args:
+        plan: the transition or regrasp that they are of.
+        rows: as ``files.read_motions`` returns them.
+    """
+    steps = plan.steps if hasattr(plan, "steps") else (plan,)
+    near = _SAME * max(step.grasp.size for step in steps)
+    radius, on = _touched(steps, rows, near)
+    violations = [*_jumps(rows, near), *_contacts(steps, rows, on), *_forces(steps, rows, on)]
+    apart = [
+        np.linalg.norm(rows.positions[:, i] - rows.positions[:, j], axis=1).min() - 2 * radius
+        for i, j in combinations(range(rows.positions.shape[1]), 2)
+    ]
+    to_fingers = float(min(apart, default=np.inf))
+    if not to_fingers >= -near:
+        violations.append(f"two tips are in one another by {-to_fingers:.3g}")
+    least = int(rows.touching.sum(axis=1).min())
+    return MotionRowsVerification(tuple(violations), radius, to_fingers, least, rows.times.size)
+
+
+_On = dict[str, NDArray[np.bool_]]
+"""(m, k) by the name of a contact: which finger touches there."""
+
+
+def _touched(steps: Any, rows: MovedRows, near: float) -> tuple[float, _On]:
+    """The tips' radius, and who touches where."""
+    contacts = {str(c.name): c for step in steps for c in step.grasp}
+    touches = np.argwhere(rows.touching)
+    radius = (
+        _radius(list(contacts.values()), rows.positions[tuple(touches[0])], near) if touches.size else 0.0
+    )
+    on: _On = {}
+    for name, contact in contacts.items():
+        off = rows.positions - (contact.position - radius * contact.normal)
+        on[name] = rows.touching & (np.linalg.norm(off, axis=2) <= near)
+    return radius, on
+
+
+def _radius(contacts: list[Any], tip: Array, near: float) -> float:
+    """How far a tip is off the nearest contact on whose normal it is; not a number where it is on none's."""
+    found = []
+    for contact in contacts:
+        off = contact.position - tip
+        away = float(off @ contact.normal)
+        if away >= -near and np.linalg.norm(off - away * contact.normal) <= near:
+            found.append(max(away, 0.0))
+    return min(found, default=float("nan"))
+
+
+def _jumps(rows: MovedRows, near: float) -> Iterator[str]:
+    """Where positions are not what velocities say: between rows a velocity is one between those at both."""
+    passed = np.diff(rows.times)[:, None]
+    said = (rows.velocities[1:] + rows.velocities[:-1]) / 2 * passed[..., None]
+    off = np.linalg.norm(np.diff(rows.positions, axis=0) - said, axis=2)
+    change = np.linalg.norm(np.diff(rows.velocities, axis=0), axis=2)
+    around = np.maximum(change, np.maximum(np.roll(change, 1, axis=0), np.roll(change, -1, axis=0)))
+    bad = ~(off <= passed * around + near)
+    if bad.any():
+        k, i = np.argwhere(bad)[0]
+        yield f"finger {i + 1} moves otherwise than its velocity says at {rows.times[k]:.6g} s"
+
+
+def _contacts(steps: Any, rows: MovedRows, on: _On) -> Iterator[str]:
+    """Fingers that touch off contacts, contacts of a step without a finger, too few fingers that touch."""
+    stray = rows.touching & ~np.logical_or.reduce(list(on.values()))
+    if stray.any():
+        k, i = np.argwhere(stray)[0]
+        yield f"finger {i + 1} is said to touch off every contact at {rows.times[k]:.6g} s"
+    for s, step in enumerate(steps):
+        for name in step.grasp.names:
+            if not on[str(name)][_during(rows, s)].any(axis=1).all():
+                yield f"during step {s + 1} no finger is at {name}"
+    least = min(rows.positions.shape[2], *(len(step.grasp) for step in steps))
+    few = rows.touching.sum(axis=1) < least
+    if few.any():
+        yield f"fewer than {least} fingers touch at {rows.times[few.argmax()]:.6g} s"
+
+
+def _during(rows: MovedRows, step: int) -> NDArray[np.intp]:
+    """Rows of a step, of those at its start the last and of those at its end the first."""
+    own = np.flatnonzero(rows.steps == step)
+    local = rows.local[own]
+    begin, end = np.flatnonzero(local == local[0])[-1], np.flatnonzero(local == local[-1])[0]
+    return np.asarray(own[begin : end + 1])
+
+
+def _forces(steps: Any, rows: MovedRows, on: _On) -> Iterator[str]:
+    """Forces in the air, such as do not hold the object or are not the plan's, or change in pauses."""
+    pushes = rows.forces.any(axis=2) & ~np.logical_or.reduce(list(on.values()))
+    if pushes.any():
+        k, i = np.argwhere(pushes)[0]
+        yield f"finger {i + 1} has a force in the air at {rows.times[k]:.6g} s"
+    for s, step in enumerate(steps):
+        own = np.flatnonzero(rows.steps == s)
+        local = rows.local[own]
+        forces = np.stack(
+            [(rows.forces[own] * on[str(n)][own][..., None]).sum(axis=1) for n in step.grasp.names], axis=1
+        )
+        moved = np.append(True, np.diff(local) > 0)
+        still = np.flatnonzero(~moved)
+        if (forces[still] != forces[still - 1]).any():
+            yield f"before or after step {s + 1} forces change while the plan's clock stands"
+        verdict = verify_setpoints(step, forces[moved], local[moved], step.orientation(local[moved]))
+        yield from (f"step {s + 1}: {violation}" for violation in verdict.violations)
