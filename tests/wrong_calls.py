@@ -519,7 +519,15 @@ def rows() -> dict[str, Row]:
         "plan_regrasp": Row(
             rg.plan_regrasp,
             {"outline": outline, **asked, **small, "motions": True, "tip_radius": 0.01, "clearance": 0.01},
-            {"speed": "positive", "acceleration": "positive", "capsules": "bars", "attempts": "count"},
+            {
+                "motions": "flag",
+                "tip_radius": "positive",
+                "clearance": "positive",
+                "speed": "positive",
+                "acceleration": "positive",
+                "capsules": "bars",
+                "attempts": "count",
+            },
             free=("options",),
         ),
         "plan_regrasps": Row(rg.plan_regrasps, {"outline": outline, **asked, **small}, free=("options",)),
@@ -646,7 +654,7 @@ def file_rows() -> dict[str, Row]:
             files.write_cut, {"cut": VALUES["RegraspCut"](), "path": os.devnull}, {"cut": "value"}
         ),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
-        "read_motions": Row(files.read_motions, {"plan": removal()}, {"path": "path"}),
+        "read_motions": Row(files.read_motions, {"path": "none.csv", "plan": removal()}),
         "write_plan": Row(files.write_plan, {"plan": removal(), "path": os.devnull}),
         "write_mcap": Row(
             files.write_mcap,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from regrasp.mechanics.loads.load_set import LoadSet
     from regrasp.mesh.mesh import Mesh
     from regrasp.motions.plan import plan_motions
-    from regrasp.motions.verb import plan_regrasp
+    from regrasp.motions.regrasps import plan_regrasp
     from regrasp.outline.outline import Outline
     from regrasp.planning.anywhere.deciding import regrasps_on_outline
     from regrasp.planning.anywhere.results import OutlineRegrasps
@@ -114,7 +114,7 @@ _LATER = {
     "plan_addition": "regrasp.planning.changes.finger_change",
     "plan_exchange": "regrasp.planning.changes.finger_change",
     "plan_motions": "regrasp.motions.plan",
-    "plan_regrasp": "regrasp.motions.verb",
+    "plan_regrasp": "regrasp.motions.regrasps",
     "plan_regrasps": "regrasp.planning.regrasps.verbs",
     "plan_removal": "regrasp.planning.changes.finger_change",
     "plan_rotation": "regrasp.planning.changes.rotation",

@@ -68,9 +68,7 @@ def test_what_is_shut_in_for_good_is_said_at_once() -> None:
 def test_where_none_has_ways_the_first_reason_is_given() -> None:
     outline = star()
     start, goal = ends(outline, 40)
-    said = (
-        "during step 2 fingers 2 and 3 .* are in one another, .*; 2 sequences were tried, and"
-    )
+    said = "during step 2 fingers 2 and 3 .* are in one another, .*; 2 sequences were tried, and"
     with pytest.raises(rg.Infeasible, match=said):
         rg.plan_regrasp(outline, start, goal, LOAD, **WITH, **OPTIONS)
     with pytest.raises(rg.Infeasible, match="; 1 sequences were tried"):

@@ -1,32 +1,147 @@
-"""Whole regrasps whose free fingers have ways."""
+"""The public verb of regrasps: the best sequence, or the best whose free fingers have ways."""
 
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import combinations
-from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from regrasp.errors import Infeasible
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.mesh.mesh import Mesh
-from regrasp.motions.plan import plan_motions
 from regrasp.motions.shut_in import ShutIn
-from regrasp.motions.value import Motions
-from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import RegraspPlan
 
 if TYPE_CHECKING:
+    from regrasp.mesh.mesh import Mesh
+    from regrasp.motions.value import Motions
+    from regrasp.outline.outline import Outline
     from regrasp.planning.regrasps.options import RegraspOptions
 
+MOST_ATTEMPTS = 10_000
+"""Sequences that are tried at the most."""
 _SAME = 1e-6  # of the size of the grasps: points nearer than that are one
 
 
+@overload
+def plan_regrasp(
+    outline: "Outline | Mesh",
+    start: Grasp,
+    goal: Grasp,
+    load: Wrench,
+    *,
+    motions: Literal[False] = False,
+    **options: Unpack["RegraspOptions"],
+) -> RegraspPlan: ...
+
+
+@overload
+def plan_regrasp(
+    outline: "Outline | Mesh",
+    start: Grasp,
+    goal: Grasp,
+    load: Wrench,
+    *,
+    motions: Literal[True],
+    tip_radius: float,
+    clearance: float,
+    speed: float = 0.1,
+    acceleration: float = 1.0,
+    capsules: ArrayLike | None = None,
+    attempts: int = 50,
+    **options: Unpack["RegraspOptions"],
+) -> "Motions": ...
+
+
+def plan_regrasp(
+    outline: "Outline | Mesh",
+    start: Grasp,
+    goal: Grasp,
+    load: Wrench,
+    *,
+    motions: bool = False,
+    tip_radius: float | None = None,
+    clearance: float | None = None,
+    speed: float | None = None,
+    acceleration: float | None = None,
+    capsules: ArrayLike | None = None,
+    attempts: int | None = None,
+    **options: Any,
+) -> "RegraspPlan | Motions":
+    """The regrasp of fewest finger moves, and of these the one of the widest least angle margin.
+
+    Every step is a removal, an exchange of one of two fingers that hold for the third, or an addition, while
+    the object may turn; or it turns the object alone. All three fingers turn it where it has to turn by more
+    than one step may: before one leaves, after the last arrives and between. A finger moves where it goes,
+    without force, to another point; exchanges between the points where the three stand need no move. Of
+    sequences of as many moves and as wide a margin, to 1e-6 rad, that of fewest steps is taken, then of least
+    turning. With ``weights`` the one of least cost.
+
+    outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
+    ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
+    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan is a
+    ``SpaceRegraspPlan``.
+
+    With ``motions`` the best sequence is taken whose free fingers have ways (``plan_motions``). Where a
+    finger of one finds none, those are next that lack the hold meanwhile, or those before it, or after it.
+
+    What is proven: every state, every path between two, and that no regrasp on the sampled points has fewer
+    moves or, with as few, a wider least margin; or costs less. Points between the samples are not looked at.
+    All orientations are, where nothing but the load, friction, distances and ``arcs`` limits the holds;
+    ``peak_ratio`` and force limits leave several arcs of angles, of which one that is shorter than a 24th of
+    the whole may be missed. ``keep``, ``weights`` and regrasps in space look at sampled orientations.
+
+    Args:
+        outline: an ``Outline``, or a ``Mesh`` in space.
+        start: three contacts, in space four, relative to the centre of mass [m].
+        goal: as many, at the end.
+        load: a force through the centre of mass, seen from the object before it turns [N].
+        motions: whether the fingers' ways through the air are planned, too; the best regrasp that has them is
+            then ``plan`` of what is returned.
+        tip_radius: as for ``plan_motions`` [m]; needed with ``motions``, as ``clearance`` is.
+        clearance: as for ``plan_motions`` [m]; fingers that hold together are apart by as much.
+        speed: as for ``plan_motions``, 0.1 if not given [m/s].
+        acceleration: as for ``plan_motions``, 1 if not given [m/s^2].
+        capsules: as for ``plan_motions`` [m].
+        attempts: with ``motions``, how many sequences are tried, 50 if not given.
+        **options: of ``RegraspProblem`` or ``SpaceRegraspProblem``; ``friction`` [-] is required.
+
+    Returns:
+        The plan, or with ``motions`` a ``Motions``, whose ``plan`` it is.
+
+    Raises:
+        Infeasible: Where no sequence of holds leads from one to the other, and says why and what would make
+            one possible; or none of those tried has ways, with ``ShutIn`` of the first in ``certificate``.
+        InvalidInput: For arguments that are not what they must be.
+    """
+    ways = {
+        "tip_radius": tip_radius,
+        "clearance": clearance,
+        "speed": speed,
+        "acceleration": acceleration,
+        "capsules": capsules,
+        "attempts": attempts,
+    }
+    given: dict[str, Any] = {name: value for name, value in ways.items() if value is not None}
+    if not isinstance(motions, bool):
+        raise InvalidInput(f"motions must be True or False, got {shown(motions)}")
+    if not motions:
+        if given:
+            raise InvalidInput(f"{next(iter(given))} is of ways through the air; give motions=True with it")
+        from regrasp.planning.regrasps.verbs import plan_regrasp as planned
+
+        return planned(outline, start, goal, load, **options)
+    missing = [name for name in ("tip_radius", "clearance") if name not in given]
+    if missing:
+        raise InvalidInput(f"motions=True needs {' and '.join(missing)} [m]")
+    return plan_regrasp_motions(outline, start, goal, load, **given, **options)
+
+
 def plan_regrasp_motions(
-    shape: Outline | Mesh,
+    shape: "Outline | Mesh",
     start: Grasp,
     goal: Grasp,
     load: Wrench,
@@ -38,25 +153,26 @@ def plan_regrasp_motions(
     capsules: ArrayLike | None = None,
     attempts: int = 50,
     **options: Unpack["RegraspOptions"],
-) -> Motions:
+) -> "Motions":
     """The best regrasp whose free fingers have ways, and these: ``plan_regrasp`` with ``motions``.
 
     Where a finger of the best sequence finds no way, the best of those sequences is next that lack the hold
     meanwhile, or those before it, or those after it; where it is shut in by the object alone, of those that
     do not touch there. Raises ``Infeasible`` where there is no regrasp, or none of those tried has ways.
     """
-    from regrasp.planning.regrasps.verbs import plan_regrasp
+    from regrasp.motions.plan import plan_motions
+    from regrasp.planning.regrasps.verbs import plan_regrasp as planned
 
     radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
-    most = whole(attempts, "attempts", least=1)
+    most = whole(attempts, "attempts", least=1, most=MOST_ATTEMPTS)
     asked: Any = options | {"min_distance": max(options.get("min_distance", 0.0), 2 * radius + keep)}
-    barred = _Barred(options.get("keep"), _SAME * max(start.size, goal.size))
-    waiting = [_Candidate(plan_regrasp(shape, start, goal, load, **asked), barred)]
+    best = planned(shape, start, goal, load, **asked)
+    waiting = [_Candidate(best, _Barred(options.get("keep"), _SAME * max(start.size, goal.size)))]
     seen: list[RegraspPlan] = []
     first: Infeasible | None = None
     while waiting and len(seen) < most:
-        best = 0 if options.get("weights") else min(range(len(waiting)), key=lambda k: waiting[k].rank)
-        plan, barred = waiting.pop(best)
+        first_in_rank = min(range(len(waiting)), key=lambda k: waiting[k].rank)
+        plan, barred = waiting.pop(0 if options.get("weights") else first_in_rank)
         seen.append(plan)
         try:
             return plan_motions(
@@ -74,7 +190,7 @@ def plan_regrasp_motions(
             first = first or error
             for less in barred.without(error.certificate, plan):
                 with suppress(Infeasible):
-                    other = plan_regrasp(shape, start, goal, load, **asked | {"keep": less})
+                    other = planned(shape, start, goal, load, **asked | {"keep": less})
                     if other not in [*seen, *(candidate.plan for candidate in waiting)]:
                         waiting.append(_Candidate(other, less))
     assert first is not None

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput
 from regrasp.files.plans.motions_table import motion_columns, orientations
 from regrasp.files.plans.setpoint_rows import check_angles, check_quaternions
-from regrasp.files.plans.setpoints import table_of
+from regrasp.files.plans.setpoints import check_plan, table_of
 from regrasp.mechanics.checks import Array, file_path
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
@@ -44,6 +44,7 @@ def read_motions(path: str | Path, plan: Transition | RegraspPlan) -> MotionRows
     neither 0 nor 1. ``verify_motion_rows`` judges the rest.
     """
     path = file_path(path)
+    check_plan(plan)
     steps = plan.steps if isinstance(plan, RegraspPlan) else (plan,)
     fingers = len(plan.fingers[0]) if isinstance(plan, RegraspPlan) else len(steps[0].grasp)
     d, width = steps[0].grasp.dimension, steps[0].start.forces.shape[1]

@@ -34,7 +34,7 @@ def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Row
 
     Raises ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points.
     """
-    _check_plan(plan)
+    check_plan(plan)
     if plan.duration * number(rate, "rate", above=0) > _MOST:
         raise InvalidInput(
             f"rate {rate:g} for {plan.duration:g} s makes {plan.duration * rate:.3g} set-points; "
@@ -76,7 +76,7 @@ def write_setpoints(plan: Transition | RegraspPlan, path: str | Path, rate: floa
     Raises:
         InvalidInput: As ``setpoint_blocks`` does, and where the file cannot be written.
     """
-    _check_plan(plan)
+    check_plan(plan)
     blocks = setpoint_blocks(plan, rate)
     with whole_file(path) as file:
         rows = csv.writer(file, lineterminator="\n")
@@ -103,7 +103,7 @@ def read_setpoints(path: str | Path, plan: Transition | RegraspPlan, rate: float
     to the duration, and angles, steps and finger positions that are not the plan's (``checked``: forces).
     """
     path = file_path(path)
-    _check_plan(plan)
+    check_plan(plan)
     if rate is not None:
         number(rate, "rate", above=0)
     columns = _columns(plan)
@@ -151,7 +151,8 @@ def _shown(columns: list[str]) -> str:
         return one_line(line.getvalue())[:200]
 
 
-def _check_plan(plan: object) -> None:
+def check_plan(plan: object) -> None:
+    """Raise ``InvalidInput`` for what set-points are not of."""
     if not isinstance(plan, (Transition, RegraspPlan)):
         raise InvalidInput(f"set-points are of a Transition or a RegraspPlan, got {shown(plan)}")
 
