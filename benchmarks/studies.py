@@ -41,7 +41,7 @@ def measure(quick: bool) -> Iterator[Row]:
     """All rows; a quick run does a hundredth of the cases."""
     share, rounds = (100, 1) if quick else (1, 3)
     yield from beside_a_loop(1000 // share, rounds)
-    yield from two_workers(200 // share, rounds)
+    yield from two_workers(400 // share, rounds)
     yield from bytes_of_rows(5000 // share)
     yield from handing_out(20_000 // share)
 
@@ -77,21 +77,20 @@ def calibrated() -> int:
 
 
 def two_workers(count: int, rounds: int) -> Iterator[Row]:
-    """Regrasps on two workers beside one, their starts left out of processor time.
+    """Regrasps on two workers beside one, the start of each left out, which a night does not notice.
 
     Where both take the same processor time, two cores that are free halve it.
     """
     grid = {"seed": range(max(count, 4)), "friction": [0.7], "part": ["wrench"]}
     times: dict[int, list[float]] = {1: [], 2: []}
     works: dict[int, list[float]] = {1: [], 2: []}
-    one = {"seed": [0], "friction": [0.7], "part": ["wrench"]}
-    swept(study_functions.regrasp, one, workers=1)
-    start = swept(study_functions.regrasp, one, workers=1)[1]
+    few = {"seed": [0, 1], "friction": [0.7], "part": ["wrench"]}
     for _ in range(rounds):
         for workers in times:
+            began, start, _ = swept(study_functions.regrasp, few, workers=workers)
             took, worked, _ = swept(study_functions.regrasp, grid, workers=workers)
-            times[workers].append(took)
-            works[workers].append(worked - workers * start)
+            times[workers].append(took - began)
+            works[workers].append(worked - start)
     what = f"{count} regrasps on two workers"
     found = Comparison(tuple(works[2]), tuple(works[1]))
     yield Row.of("two_work", f"{what}, processor time", "on one", found, Measure.TIMES, 1.11, BUSY)

@@ -14,7 +14,6 @@ from regrasp.mechanics.cones import Cones
 
 if TYPE_CHECKING:
     from regrasp.mechanics.contact import Contact
-    from regrasp.mechanics.grasp import Grasp
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +72,7 @@ def stacked(contacts: Sequence["Contact"], cones: Cones) -> LimitRows | None:
     )
 
 
-def refuse_limits(grasp: "Grasp | Iterable[Contact]", what: str) -> None:
+def refuse_limits(grasp: "Iterable[Contact]", what: str) -> None:
     """Raise ``InvalidInput`` for contacts with linear limits where these are not kept.
 
     what: what does not keep them, in words.
