@@ -16,10 +16,13 @@ pytest.importorskip("mujoco")
 SHAPE = rg.Outline.ellipse(0.04, 0.02)
 
 
+ENDS = ellipse(0.02, 0.35, 0.7), ellipse(0.2, 0.5, 0.85)
+LOAD = rg.Wrench([0, -3.0])
+
+
 def regrasp() -> rg.RegraspPlan:
-    """Without turning: while the object turns quickly, contacts of the simulation creep."""
-    ends = ellipse(0.02, 0.35, 0.7), ellipse(0.2, 0.5, 0.85)
-    return rg.plan_regrasp(SHAPE, *ends, rg.Wrench([0, -3.0]), friction=0.5, orientations=1)
+    """Without turning."""
+    return rg.plan_regrasp(SHAPE, *ENDS, LOAD, friction=0.5, orientations=1)
 
 
 def test_fingers_go_the_ways_planned_and_the_object_is_held() -> None:
@@ -37,6 +40,17 @@ def test_fingers_go_the_ways_planned_and_the_object_is_held() -> None:
         middle, _ = motion.way.over_time(np.array([0.5]), motion.duration)
         away = np.linalg.norm(inside[:, motion.finger] - middle, axis=1).min()
         assert away < 2e-3
+
+
+def test_a_regrasp_that_turns_holds_on_its_ways() -> None:
+    """Steps of 4 s: the simulation's contacts creep with the square of the angular velocity."""
+    plan = rg.plan_regrasp(SHAPE, *ENDS, LOAD, friction=0.5, min_normal=0.3, step_duration=4.0)
+    assert abs(np.diff(plan.orientations)).max() > 1.0
+    motions = plan_motions(plan, SHAPE, tip_radius=0.003, clearance=0.002)
+    run = simulate(plan, shape=SHAPE, motions=motions)
+    assert run.held
+    assert run.touching.sum(axis=1).min() >= 2
+    assert run.tilt.max() < 0.01
 
 
 def test_motions_of_another_plan_are_refused() -> None:

@@ -15,6 +15,7 @@ from regrasp.mechanics.wrench import torque
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 
+_BLOCK = 4096  # steps whose slip is summed at once
 _QUARTER = np.array([-1.0, 1.0])  # (x, y) turned by a quarter is (-y, x)
 
 
@@ -37,10 +38,15 @@ class Recorder:
         loaded = np.linalg.norm(wanted.forces, axis=2) > IN_USE * PEAK * units.force
         self._slides = loaded & (wanted.at >= 0)
         self._slides[: wanted.gripping] = False
-        self._touched = [-1] * wanted.at.shape[1]
+        self._touched = np.full(wanted.at.shape[1], -1)
         self._six = np.zeros(6)
         self._rows: list[tuple[Any, ...]] = []
+        self._slips: list[Array] = []
         self._geoms = {geom: i for i, geom in enumerate(scene.tips)}
+        self._first = 0  # step of the block's first row
+        self._at_steps: list[int] = []  # of samples in the block
+        model = scene.model
+        self._places, self._speeds = np.empty((_BLOCK, model.nq)), np.empty((_BLOCK, model.nv))
 
     def place(self, data: Any) -> Array:
         """(d,) the object's centre of mass."""
@@ -48,22 +54,32 @@ class Recorder:
         return result
 
     def step(self, mujoco: Any, data: Any, j: int, *, over: bool) -> None:
-        """Sum the slip of a step, and every so often, and when it is over, take a sample."""
-        R = self._rotation(mujoco, data)
-        at = self._wanted.at[j].tolist()
-        for finger, contact in enumerate(at):
-            if contact >= 0 and contact != self._touched[finger]:
-                self._slip[contact] = 0.0
-        self._touched = at
-        moving = np.flatnonzero(self._slides[j])
-        if moving.size:
-            self._slip_of(data, R, moving, self._wanted.at[j][moving])
+        """Keep the motion of a step, and every so often, and when it is over, take a sample."""
+        row = j - self._first
+        self._places[row], self._speeds[row] = data.qpos, data.qvel
         since = j + 1 - self._wanted.gripping
         if since == 0 or (since > 0 and since % self._apart == 0) or over:
-            forces, twists, touching = self._forces(mujoco, data, R, at)
+            R = self._rotation(mujoco, data)
+            forces, twists, touching = self._forces(mujoco, data, R, self._wanted.at[j].tolist())
             tips = data.qpos[self._scene.slides.places].copy()
-            slip = np.linalg.norm(self._slip, axis=1)
-            self._rows.append((since, forces, twists, touching, self.place(data).copy(), R, slip, tips))
+            self._rows.append((since, forces, twists, touching, self.place(data).copy(), R, tips))
+            self._at_steps.append(row)
+        if over or row + 1 == _BLOCK:
+            self._sum_slip(row + 1)
+
+    def _sum_slip(self, count: int) -> None:
+        """Sum the slip over the steps of a block, from zero where a finger touches anew."""
+        rows = slice(self._first, self._first + count)
+        at = self._wanted.at[rows]
+        moved = self._slid(self._places[:count], self._speeds[:count], at, self._slides[rows])
+        summed = self._slip + np.cumsum(moved, axis=0)
+        before = np.vstack([self._touched, at[:-1]])
+        for row, finger in np.argwhere((at >= 0) & (at != before)).tolist():
+            contact = at[row, finger]
+            summed[row:, contact] -= summed[row, contact] - moved[row, contact]
+        self._slips.append(np.linalg.norm(summed[self._at_steps], axis=2))
+        self._slip, self._touched = summed[-1], at[-1]
+        self._first, self._at_steps = self._first + count, []
 
     def _rotation(self, mujoco: Any, data: Any) -> Array:
         if self._d == 2:
@@ -73,30 +89,39 @@ class Recorder:
         mujoco.mju_quat2Mat(flat, data.qpos[3:7])
         return flat.reshape(3, 3)
 
-    def _slip_of(self, data: Any, R: Array, fingers: NDArray[np.intp], contacts: NDArray[np.intp]) -> None:
-        """Add the sliding of a step, whose velocities are those of its middle: q_j+1 = q_j + v_j+1 dt.
+    def _slid(self, q: Array, v: Array, at: NDArray[np.intp], slides: NDArray[np.bool_]) -> Array:
+        """(m, n, d + 1) sliding at contacts in m steps, in the object's frame, and spin of soft fingers.
 
-        With arms of its end a turn by omega would count as sliding by omega^2 |arm| dt / 2 a second.
+        The velocities of a step are those of its middle: q_j+1 = q_j + v_j+1 dt. With arms of its end a turn
+        by omega would count as sliding by omega^2 |arm| dt / 2 a second.
         """
-        d, scene, half = self._d, self._scene, self._units.timestep / 2
-        normals = self._normals[contacts]
-        spin = data.qvel[2:3] if d == 2 else R @ data.qvel[3:6]
-        reach = self._units.tip_radius * (normals @ R.T)  # from the tips' centres to where they touch
-        reach = reach - half * _cross(spin, reach)
-        tips, speeds = data.qpos[scene.slides.places[fingers]], data.qvel[scene.slides.speeds[fingers]]
-        arm = tips + reach - data.qpos[:d] - half * (speeds - data.qvel[:d])
-        relative = speeds - data.qvel[:d] - _cross(spin, arm)
-        if scene.joints is not None:
-            turning = data.qvel[scene.joints.speeds[fingers]]
-            if d == 3:  # in each tip's own frame
-                turning = _rotated(data.qpos[scene.joints.places[fingers]], turning)
-            relative = relative + _cross(turning, reach)
-            if d == 3:
-                spinning = (((turning - spin) @ R) * normals).sum(axis=1)
-                self._slip[contacts, d] += self._arms[contacts] * spinning * self._units.timestep
-        inside = relative @ R
-        inside -= (inside * normals).sum(axis=1, keepdims=True) * normals
-        self._slip[contacts, :d] += inside * self._units.timestep
+        d, scene, dt = self._d, self._scene, self._units.timestep
+        result = np.zeros((len(q), *self._slip.shape))
+        R = _turned(q[:, 2]) if d == 2 else _matrices(q[:, 3:7])
+        for finger, (slide, own) in enumerate(zip(slides.T, at.T, strict=True)):
+            rows = np.flatnonzero(slide)
+            contacts, turned = own[rows], R[rows]
+            normals = self._normals[contacts]
+            spin = v[rows, 2:3] if d == 2 else _times(turned, v[rows, 3:6])
+            reach = self._units.tip_radius * _times(turned, normals)  # from tips' centres to where they touch
+            reach = reach - dt / 2 * _cross(spin, reach)
+            tips, speeds = (
+                q[rows[:, None], scene.slides.places[finger]],
+                v[rows[:, None], scene.slides.speeds[finger]],
+            )
+            arm = tips + reach - q[rows, :d] - dt / 2 * (speeds - v[rows, :d])
+            relative = speeds - v[rows, :d] - _cross(spin, arm)
+            if scene.joints is not None:
+                turning = v[rows[:, None], scene.joints.speeds[finger]]
+                if d == 3:  # in each tip's own frame
+                    turning = _rotated(q[rows[:, None], scene.joints.places[finger]], turning)
+                    spinning = (_times(turned, turning - spin, back=True) * normals).sum(axis=1)
+                    result[rows, contacts, d] = self._arms[contacts] * spinning * dt
+                relative = relative + _cross(turning, reach)
+            inside = _times(turned, relative, back=True)
+            inside -= (inside * normals).sum(axis=1, keepdims=True) * normals
+            result[rows, contacts, :d] = inside * dt
+        return result
 
     def _forces(self, mujoco: Any, data: Any, R: Array, at: list[int]) -> tuple[Array, Array, Array]:
         """(n, d) forces of the fingers on the object, its frame; (n,) torques about normals; what touches."""
@@ -120,9 +145,10 @@ class Recorder:
     ) -> Execution:
         """The samples as a value, in the plan's units."""
         units, wanted = self._units, self._wanted
-        since, forces, twists, touching, places, turned, slip, tips = (
+        since, forces, twists, touching, places, turned, tips = (
             np.array(column) for column in zip(*self._rows, strict=True)
         )
+        slip = np.concatenate(self._slips)
         steps = since + wanted.gripping - 1
         return Execution(
             plan=plan,
@@ -145,6 +171,23 @@ class Recorder:
             stiffness=units.stiffness * units.force / units.length,
             complete=complete,
         )
+
+
+def _times(R: Array, vectors: Array, *, back: bool = False) -> Array:
+    """Vectors (m, d) turned by matrices (m, d, d), or back."""
+    return np.asarray(np.einsum("mji,mj->mi" if back else "mij,mj->mi", R, vectors))
+
+
+def _turned(angles: Array) -> Array:
+    """(m, 2, 2) rotations."""
+    c, s = np.cos(angles), np.sin(angles)
+    return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+
+
+def _matrices(quaternions: Array) -> Array:
+    """(m, 3, 3) rotations of unit quaternions (w, x, y, z)."""
+    axes = (_rotated(quaternions, np.broadcast_to(axis, (len(quaternions), 3))) for axis in np.eye(3))
+    return np.stack(list(axes), axis=-1)
 
 
 def _cross(spin: Array, arm: Array) -> Array:

@@ -213,10 +213,10 @@ class _Ways:
             return _way(a, b, self.tips, self.normals, self.lift, s)
         t = np.zeros_like(s) if self.begins < 0 else self.begins + s * length
         where = self.motions.positions(np.minimum(t, self.motions.duration))[:, finger]
-        near = {name: np.linalg.norm(where - tip, axis=1) for name, tip in self.tips.items()}
-        reach = self.motions.tip_radius
-        at = [next((n for n, away in near.items() if away[m] < reach), "") for m in range(s.size)]
-        return where, at
+        away = np.linalg.norm(where[:, None] - np.array(list(self.tips.values())), axis=2)
+        near, names = away < self.motions.tip_radius, list(self.tips)
+        first = zip(near.argmax(axis=1).tolist(), near.any(axis=1).tolist(), strict=True)
+        return where, [names[n] if there else "" for n, there in first]
 
 
 def _way(
