@@ -1,7 +1,7 @@
 """Where slip of turning objects comes from: ``python benchmarks/execution_turns.py``.
 
 One regrasp that turns, its steps as long as each of ``DURATIONS``, simulated with each of ``TIMESTEPS``. What
-goes with the timestep is of the simulation, and what goes with the square of the angular velocity of the turn.
+goes with the timestep is of the simulation, what goes with the square of the angular velocity of the turn.
 """
 
 import json
