@@ -13,7 +13,7 @@ from regrasp.errors import InvalidInput
 from regrasp.explore.answer import answer
 from regrasp.explore.copies import as_python, as_scenario
 from regrasp.explore.question import Question
-from regrasp.explore.start import of_outline, start_of
+from regrasp.explore.start import of_shape, start_of
 from regrasp.files import parse_scenario, plan_scenario
 from regrasp.outline.parts import PARTS
 
@@ -56,9 +56,9 @@ def test_where_nothing_holds_the_escape_is_a_proof() -> None:
 @pytest.mark.parametrize("part", [*PARTS, None])
 def test_every_beginning_holds_and_stays_where_it_was_put(part: str | None) -> None:
     start = start_of(part)
-    found = answer(start.question, start.outline)
+    found = answer(start.question, start.shape)
     assert found["holds"], found["says"]
-    again = answer(Question.of(start.question.to_dict() | {"contacts": found["contacts"]}), start.outline)
+    again = answer(Question.of(start.question.to_dict() | {"contacts": found["contacts"]}), start.shape)
     for key in ("contacts", "says"):
         assert again[key] == found[key]
 
@@ -70,6 +70,30 @@ def test_everybody_stays() -> None:
     assert found["says"].startswith("Held: the least angle margin is")
 
 
+@pytest.mark.parametrize("part", ["solid-bracket", "solid-nut"])
+def test_solids_are_held_and_copied(part: str) -> None:
+    start = start_of(part)
+    found = answer(start.question, start.shape)
+    assert found["holds"], found["says"]
+    names: dict[str, object] = {}
+    with contextlib.redirect_stdout(io.StringIO()):
+        exec(as_python(start.question, start.shape), names)
+    plan = plan_scenario(parse_scenario(as_scenario(start.question, start.shape)))
+    for made in (names["plan"], plan):
+        np.testing.assert_allclose(
+            made.forces([0, 1.0]), np.array(found["plan"]["forces"])[[0, -1]], rtol=1e-5, atol=1e-6
+        )
+
+
+def test_where_a_solid_escapes_the_screw_is_drawn() -> None:
+    start = start_of("solid-bracket")
+    slippery = tuple(c | {"friction": 0.01} for c in start.question.contacts)
+    found = answer(replace(start.question, contacts=slippery), start.shape)
+    assert not found["holds"]
+    assert np.array(found["escape"]["velocities"]).shape[1] == 3
+    assert len(found["escape"]["axis"][1]) == 3
+
+
 @pytest.mark.parametrize("leaves", ["P3", None])
 @pytest.mark.parametrize("part", ["cam", None])
 def test_copies_say_the_same(part: str | None, leaves: str | None) -> None:
@@ -78,12 +102,12 @@ def test_copies_say_the_same(part: str | None, leaves: str | None) -> None:
     asked = replace(start.question, contacts=tuple(contacts), leaves=leaves and f'{leaves} "é\\')
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
-        exec(as_python(asked, start.outline), {})
+        exec(as_python(asked, start.shape), {})
     assert ("verified" if leaves else "P1") in said.getvalue()
-    plan = plan_scenario(parse_scenario(as_scenario(asked, start.outline)))
+    plan = plan_scenario(parse_scenario(as_scenario(asked, start.shape)))
     assert plan.contact == 'P3 "é\\'
     if leaves:
-        shown = answer(asked, start.outline)["plan"]["forces"]
+        shown = answer(asked, start.shape)["plan"]["forces"]
         np.testing.assert_allclose(
             plan.forces([0, 0.5, 1.0]), np.array(shown)[[0, 20, 40]], rtol=1e-5, atol=1e-6
         )
@@ -98,22 +122,29 @@ def test_a_chosen_squeeze_is_copied() -> None:
     np.testing.assert_allclose(end.forces, answer(asked)["plan"]["forces"][-1], rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", ["paper", "addition", "exchange", "rotation", "regrasp"])
-def test_planar_scenarios_open(name: str) -> None:
-    assert answer(*_asked(str(EXAMPLES / f"{name}.toml")))["contacts"]
-
-
-def _asked(given: str) -> tuple[Question, rg.Outline | None]:
-    start = start_of(given)
-    return start.question, start.outline
+@pytest.mark.parametrize(
+    "name",
+    [
+        "paper",
+        "addition",
+        "exchange",
+        "rotation",
+        "regrasp",
+        "space-removal",
+        "space-regrasp",
+        "space-rotation",
+    ],
+)
+def test_scenarios_open(name: str) -> None:
+    start = start_of(str(EXAMPLES / f"{name}.toml"))
+    assert answer(start.question, start.shape)["contacts"]
 
 
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ("space-removal.toml", "the explorer works in the plane"),
-        ("space-regrasp.toml", "the explorer works in the plane"),
-        ("bracket.stl", "expected a scenario"),
+        ("bracket.step", "expected a scenario"),
+        ("solid-gear", "expected a scenario"),
         ("none.toml", "none.toml"),
     ],
 )
@@ -124,4 +155,4 @@ def test_other_beginnings_are_refused(given: str, words: str) -> None:
 
 def test_an_outline_on_which_nothing_holds_is_opened_all_the_same() -> None:
     sliver = rg.Outline([[0, 0], [100, 0], [100, 1e-3], [0, 1e-3]])
-    assert of_outline(sliver).question.leaves == "P3"
+    assert of_shape(sliver).question.leaves == "P3"

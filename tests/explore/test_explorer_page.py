@@ -4,8 +4,10 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
+import regrasp as rg
 from browser import browser, page_of, until
 from regrasp.explore.server import Server
 from regrasp.explore.start import start_of
@@ -143,4 +145,58 @@ def test_playing_squeezing_copying_and_saving(chromium: Any, served: str) -> Non
     with page.expect_download() as saved:
         page.locator("#save").click()
     assert saved.value.suggested_filename == "regrasp.png"
+    page.close()
+
+
+@pytest.mark.parametrize("served", ["bracket"], indirect=True)
+def test_looks_are_drawn_and_a_map_moves_two_fingers(chromium: Any, served: str) -> None:
+    page = opened(chromium, served, width=400)
+    page.locator("#look-loop").click()
+    assert page.locator("[aria-label='Wrench loop'] .wrench").count() == 3
+    for look, seen in (("tolerances", ".table td"), ("places", ".region.together"), ("map", ".marker")):
+        page.locator(f"#look-{look}").click()
+        page.wait_for_selector(seen, state="attached", timeout=60000)
+    assert page.evaluate("document.documentElement.scrollWidth") == 400
+    box = page.locator(".pixels").bounding_box()
+    at = {"x": 0.25 * box["width"], "y": 0.8 * box["height"]}
+    settled(page, lambda: page.locator(".pixels").click(position=at, force=True))
+    asked = page.evaluate(
+        "document.getElementById('explorer').regrasp.question.contacts.map(c => c.position)"
+    )
+    outline = start_of("bracket").shape
+    assert isinstance(outline, rg.Outline)
+    for share, position in zip((0.25, 0.2), asked, strict=False):
+        s = outline.nearest(np.array(position) + outline.centre_of_mass)
+        assert s / outline.length == pytest.approx(share, abs=0.02)
+    page.locator("[aria-label='Map of two fingers']").focus()
+    settled(page, lambda: page.keyboard.press("ArrowRight"))
+    assert page.problems == []
+    page.close()
+
+
+@pytest.mark.parametrize("served", ["solid-bracket"], indirect=True)
+def test_a_solid_is_turned_and_a_point_is_picked(chromium: Any, served: str) -> None:
+    page = opened(chromium, served)
+    contacts = "document.getElementById('explorer').regrasp.answer().contacts"
+    box = page.locator(".stage").bounding_box()
+    before, seen = page.evaluate(contacts), picture(page)
+    page.mouse.move(box["x"] + 40, box["y"] + 40)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 140, box["y"] + 60, steps=4)
+    page.mouse.up()
+    assert picture(page) != seen, "the view has turned"
+    assert page.evaluate(contacts) == before, "and no finger has moved"
+    page.locator(".stage").focus()
+    for _ in range(6):
+        page.keyboard.press("ArrowUp")  # looked at from above
+    settled(page, lambda: page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]))
+    after = page.evaluate(contacts)
+    assert after[0]["position"] != before[0]["position"], "the chosen finger is where the surface was tapped"
+    assert after[1:] == before[1:]
+    page.wait_for_timeout(100)
+    settled(page, lambda: drag(page, 0, 8, 5))
+    with page.expect_download() as saved:
+        page.locator("#save").click()
+    assert saved.value.suggested_filename == "regrasp.png"
+    assert page.problems == []
     page.close()

@@ -114,7 +114,8 @@ def test_questions_are_bounded(server: Server) -> None:
     [
         ({"load": [0, float("nan"), 0]}, "load must be numbers"),
         ({"load": [0, 1e300, 0]}, "load must be numbers up to 1e"),
-        ({"load": "0"}, "load must be three numbers"),
+        ({"load": "0"}, "load must be three numbers, in space six"),
+        ({"load": [0, 0, 0, 0, 0, 0]}, "position must be 3 numbers"),
         ({"contacts": []}, "contacts must be a list of 2 to 6"),
         ({"contacts": [{"name": "a\nb"}] * 2}, "a name must be"),
         ({"leaves": "P9"}, "leaves must be one of P1, P2, P3"),
@@ -132,3 +133,16 @@ def test_what_is_wrong_is_said(server: Server, change: dict[str, Any], words: st
     assert not answer["holds"]
     assert answer["says"].startswith(words)
     assert "\n" not in answer["says"]
+
+
+@pytest.mark.parametrize(
+    ("look", "words"),
+    [
+        ("everything", "look must be one of tolerances"),
+        (["map"], "look must be one of"),
+        ("map", "needs an outline"),
+    ],
+)
+def test_looks_are_those_known(server: Server, look: Any, words: str) -> None:
+    answer = json.loads(asked(server, "POST", "/answer", json.dumps(question() | {"look": look}))[1])
+    assert answer["says"].startswith(words)

@@ -42,7 +42,7 @@ def test_what_is_wrong_is_answered_and_not_kept(monkeypatch: pytest.MonkeyPatch)
     [
         ((GRASP,), "needs its load, a Wrench; got None"),
         ((None, rg.Wrench([0, 1])), "load and outline go with a Grasp"),
-        ((3,), "a Grasp, an Outline or a name, got 3"),
+        ((3,), "a Grasp, an Outline, a Mesh or a name, got 3"),
     ],
 )
 def test_wrong_calls(arguments: Any, words: str) -> None:

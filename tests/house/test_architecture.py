@@ -96,6 +96,7 @@ FLOORS: dict[str, Set[str]] = {
         "errors",
         "mechanics",
         "outline",
+        "mesh",
         "plans",
         "planning",
         "verification",

@@ -17,8 +17,9 @@ from regrasp.cli.speech import json_option, say
 def explore(given: str | None, port: int, no_browser: bool) -> dict[str, Any]:
     """Drag contacts, load and friction in the browser and see what holds.
 
-    SCENARIO is a TOML file, SHAPE a drawing (SVG, DXF, coordinates) or a part that comes with regrasp:
-    wrench, cam, gear, bracket, bottle, puzzle_piece. Without either it is the paper's example. The page is
+    SCENARIO is a TOML file, SHAPE a drawing (SVG, DXF, coordinates), a mesh (STL, OBJ, PLY) or a part that
+    comes with regrasp: wrench, cam, gear, bracket, bottle, puzzle_piece; in space solid-bracket,
+    solid-wrench, solid-cam, solid-nut, solid-bottle. Without either it is the paper's example. The page is
     served to this machine alone, until Ctrl-C.
     """
     from regrasp.explore.server import Server

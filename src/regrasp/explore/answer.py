@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from regrasp.errors import Infeasible, RegraspError
-from regrasp.explore.question import Question
+from regrasp.explore.plain import plain
+from regrasp.explore.question import Question, Shape
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
+from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
-from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_removal
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -22,12 +23,12 @@ INSTANTS = 41
 _ALONG_LOCUS = 41
 
 
-def answer(question: Question, outline: Outline | None = None) -> dict[str, Any]:
+def answer(question: Question, shape: Shape | None = None) -> dict[str, Any]:
     """Forces over time with their margins and proof, or why there are none.
 
     Args:
         question: what is asked.
-        outline: contacts move to its nearest points, and take its normals.
+        shape: contacts move to its nearest points, and take its normals.
 
     Returns:
         Plain data: ``contacts`` as they are used, ``holds``, ``says``, and ``locus``, ``plan``, ``state`` and
@@ -36,7 +37,7 @@ def answer(question: Question, outline: Outline | None = None) -> dict[str, Any]
     began = perf_counter()
     found: dict[str, Any] = {"holds": False}
     try:
-        asked = question.on(outline)
+        asked = question.on(shape)
         found["contacts"] = list(asked.contacts)
         _answer(asked, found)
     except Infeasible as error:
@@ -57,7 +58,7 @@ def _answer(asked: Question, found: dict[str, Any]) -> None:
         return
     rest = grasp.without(asked.leaves)
     end = None
-    if len(rest) == 2:
+    if len(rest) == 2 and asked.dimension == 2:
         locus = EquilibriumLocus(rest, load)
         if not locus.is_empty:
             best = choose_state(rest, load, asked.objective)
@@ -89,20 +90,39 @@ def _planned(plan: Transition, proven: bool) -> str:
 
 
 def _largest(forces: Array) -> float:
-    return float(np.hypot(*np.moveaxis(forces, -1, 0)).max())
+    return float(np.linalg.norm(forces, axis=-1).max())
 
 
 def _state(state: GraspState) -> dict[str, Any]:
-    return {"forces": _plain(state.forces), "margins": _plain(np.degrees(state.margins.angle))}
+    found = {"forces": plain(_pure(state.forces)), "margins": plain(np.degrees(state.margins.angle))}
+    if state.grasp.dimension == 2:
+        found |= {"wrenches": plain(state.wrenches), "cones": plain(_cones(state.grasp))}
+    return found
+
+
+def _pure(forces: Array) -> Array:
+    """Forces of soft fingers without their torques about the normal."""
+    return forces[..., :3]
+
+
+def _cones(grasp: Grasp) -> Array:
+    """(n, 2, 3) wrenches of unit length along both edges of each planar cone."""
+    normals, slopes = grasp.normals[:, None], np.array([-1.0, 1.0])[:, None] * grasp.frictions[:, None, None]
+    edges = normals + slopes * np.stack([-grasp.normals[:, 1], grasp.normals[:, 0]], axis=-1)[:, None]
+    edges /= np.linalg.norm(edges, axis=-1, keepdims=True)
+    x, y = grasp.positions.T
+    torque = x[:, None] * edges[..., 1] - y[:, None] * edges[..., 0]
+    return np.concatenate([edges, torque[..., None]], axis=-1)
 
 
 def _plan(plan: Transition) -> dict[str, Any]:
     times = np.linspace(0, plan.duration, INSTANTS)
-    return {
-        "times": _plain(times),
-        "clock": _plain(plan.scaling(times)),
-        "forces": _plain(plan.forces(times)),
-        "margins": _plain(np.degrees(plan.margins(times).angle)),
+    planar = {} if plan.grasp.dimension == 3 else {"wrenches": plain(plan.wrenches(times))}
+    return planar | {
+        "times": plain(times),
+        "clock": plain(plan.scaling(times)),
+        "forces": plain(_pure(plan.forces(times))),
+        "margins": plain(np.degrees(plan.margins(times).angle)),
         "leaving": list(plan.leaving),
     }
 
@@ -117,34 +137,24 @@ def _locus(locus: EquilibriumLocus, best: float, chosen: float) -> dict[str, Any
         margins = np.degrees(np.fmin(*locus.margins(along).angle.T))
     return {
         "names": list(locus.grasp.names),
-        "interval": _plain(np.array([start, stop])),
+        "interval": plain(np.array([start, stop])),
         "bounded": [isfinite(low), isfinite(high)],
-        "squeezes": _plain(along),
-        "margins": _plain(np.maximum(margins, 0.0)),
+        "squeezes": plain(along),
+        "margins": plain(np.maximum(margins, 0.0)),
         "best": best,
         "chosen": chosen,
-        "ends": _plain(locus.forces(np.array([start, stop]))),
+        "ends": plain(locus.forces(np.array([start, stop]))),
+        "wrenches": [plain(locus.state(float(x)).wrenches) for x in (start, stop)],
     }
 
 
 def _escape(twist: EscapeTwist) -> dict[str, Any]:
     return {
         "names": list(twist.grasp.names),
-        "centre": None if twist.centre is None else _plain(twist.centre),
-        "twist": _plain(twist.twist / twist.amount),
-        "velocities": _plain(twist.velocities / twist.amount),
+        "centre": None if twist.centre is None else plain(twist.centre),
+        "axis": None if twist.axis is None else [plain(part) for part in twist.axis],
+        "twist": plain(twist.twist / twist.amount),
+        "velocities": plain(twist.velocities / twist.amount),
         "helpless": list(twist.helpless),
         "proof": twist.is_proof,
     }
-
-
-def _plain(values: Array) -> Any:
-    """Nested lists of seven digits, null where a number is none."""
-    rounded: Any = np.vectorize(lambda v: float(f"{v:.7g}"), otypes=[float])(values)
-    return _finite(rounded.tolist())
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_finite(entry) for entry in value]
-    return value if isfinite(value) else None

@@ -2,30 +2,31 @@
 
 import json
 
-from regrasp.explore.question import Question
-from regrasp.outline.outline import Outline
+from regrasp.explore.question import Question, Shape
+
+_MAYBE = ("max_force", "torsion")
 
 
-def as_python(question: Question, outline: Outline | None = None) -> str:
+def as_python(question: Question, shape: Shape | None = None) -> str:
     """A program that plans and verifies what the page shows.
 
     Args:
         question: what is asked.
-        outline: contacts stand on its nearest points.
+        shape: contacts stand on its nearest points.
     """
-    asked = question.on(outline)
+    asked = question.on(shape)
     lines = ["import regrasp as rg", "", "grasp = rg.Grasp(", "    ["]
     for c in asked.contacts:
-        limit = f", max_force={c['max_force']!r}" if "max_force" in c else ""
+        limit = "".join(f", {key}={c[key]!r}" for key in _MAYBE if key in c)
         given = f"{c['position']!r}, normal={c['normal']!r}, friction={c['friction']!r}{limit}"
         lines.append(f"        rg.Contact({given}, name={c['name']!r}),")
-    fx, fy, torque = asked.load
-    lines += ["    ]", ")", f"load = rg.Wrench([{fx!r}, {fy!r}], torque={torque!r})"]
+    force, torque = _load(asked)
+    lines += ["    ]", ")", f"load = rg.Wrench({force}, torque={torque})"]
     if asked.leaves is None:
         lines += [f"state = rg.choose_state(grasp, load, {asked.objective!r})", "print(state)"]
         return "\n".join(lines) + "\n"
     end = ""
-    if asked.squeeze is not None and len(asked.contacts) == 3:
+    if asked.squeeze is not None and len(asked.contacts) == 3 and asked.dimension == 2:
         lines += [
             f"locus = rg.EquilibriumLocus(grasp.without({asked.leaves!r}), load)",
             f"end = locus.state({asked.squeeze!r})",
@@ -40,25 +41,30 @@ def as_python(question: Question, outline: Outline | None = None) -> str:
     return "\n".join(lines) + "\n"
 
 
-def as_scenario(question: Question, outline: Outline | None = None) -> str:
+def as_scenario(question: Question, shape: Shape | None = None) -> str:
     """A scenario for ``regrasp plan``; where nobody leaves, the last finger does.
 
     Args:
         question: what is asked.
-        outline: contacts stand on its nearest points.
+        shape: contacts stand on its nearest points.
     """
-    asked = question.on(outline)
-    fx, fy, torque = asked.load
-    lines = ['title = "From the explorer"', "", "[load]", f"force = [{fx!r}, {fy!r}]", f"torque = {torque!r}"]
+    asked = question.on(shape)
+    force, torque = _load(asked)
+    lines = ['title = "From the explorer"', "", "[load]", f"force = {force}", f"torque = {torque}"]
     for c in asked.contacts:
         lines += ["", "[[contacts]]", f"name = {_quoted(c['name'])}"]
         lines += [f"{key} = {c[key]!r}" for key in ("position", "normal", "friction")]
-        if "max_force" in c:
-            lines.append(f"max_force = {c['max_force']!r}")
+        lines += [f"{key} = {c[key]!r}" for key in _MAYBE if key in c]
     leaves = asked.contacts[-1]["name"] if asked.leaves is None else asked.leaves
     lines += ["", "[task]", 'kind = "removal"', f"contact = {_quoted(leaves)}"]
     lines += [f'objective = "{asked.objective}"', f"duration = {asked.duration!r}"]
     return "\n".join(lines) + "\n"
+
+
+def _load(asked: Question) -> tuple[str, str]:
+    """Force and torque as text, which Python and TOML write alike."""
+    force, torque = list(asked.load[: asked.dimension]), list(asked.load[asked.dimension :])
+    return repr(force), repr(torque if asked.dimension == 3 else torque[0])
 
 
 def _quoted(text: str) -> str:

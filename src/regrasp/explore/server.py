@@ -46,7 +46,7 @@ open_explorer(explorer, begin, async (asked) => {
   return await (await fetch("/answer", sent)).json();
 });
 """
-MODULES = ("scene", "charts", "explore")
+MODULES = ("scene", "charts", "turning", "handles", "plane", "solid", "loop", "placement", "explore")
 
 
 class Server(ThreadingHTTPServer):

@@ -5,11 +5,13 @@ from typing import Any
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.explore.dialogue import reply
-from regrasp.explore.question import Question
+from regrasp.explore.placing import question_of
+from regrasp.explore.question import Question, Shape
 from regrasp.explore.server import MODULES
-from regrasp.explore.start import Start, of_outline, question_of, start_of
+from regrasp.explore.start import Start, of_shape, start_of
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.web.modules import module, style
 
@@ -59,7 +61,7 @@ class Explorer(anywidget.AnyWidget):
     @property
     def grasp(self) -> Grasp:
         """The contacts as they are now."""
-        return self._question.on(self._start.outline).grasp
+        return self._question.on(self._start.shape).grasp
 
     @property
     def load(self) -> Wrench:
@@ -76,28 +78,30 @@ class Explorer(anywidget.AnyWidget):
 
 
 def explorer(
-    given: Grasp | Outline | str | None = None, load: Wrench | None = None, *, outline: Outline | None = None
+    given: Grasp | Shape | str | None = None, load: Wrench | None = None, *, outline: Shape | None = None
 ) -> Explorer:
     """A widget to drag contacts, load and friction in, and see what holds.
 
     Args:
-        given: a planar grasp; an outline, on which three fingers are put; or, as for ``regrasp explore``, a
-            scenario, a drawing or the name of a part; the paper's example without any.
+        given: a grasp; an outline or a mesh, on which fingers are put; or, as for ``regrasp explore``, a
+            scenario, a drawing, a mesh or the name of a part; the paper's example without any.
         load: of a grasp, the external wrench on the object, object frame [N, N m].
-        outline: of a grasp, what its contacts stay on.
+        outline: of a grasp, the outline or mesh its contacts stay on.
 
     Raises:
-        InvalidInput: For anything else, and for grasps in space.
+        InvalidInput: For anything else.
         ImportError: Without anywidget, the extra ``regrasp[widget]``.
     """
     if isinstance(given, Grasp):
         if not isinstance(load, Wrench):
             raise InvalidInput(f"the explorer of a grasp needs its load, a Wrench; got {shown(load)}")
+        if load.dimension != given.dimension:
+            raise InvalidInput(f"load must have dimension {given.dimension}, got {load.dimension}")
         return Explorer(Start("grasp", question_of(given, load), outline))
     if load is not None or outline is not None:
         raise InvalidInput("load and outline go with a Grasp; set the load in the explorer")
-    if isinstance(given, Outline):
-        return Explorer(of_outline(given))
+    if isinstance(given, Outline | Mesh):
+        return Explorer(of_shape(given))
     if given is not None and not isinstance(given, str):
-        raise InvalidInput(f"the explorer takes a Grasp, an Outline or a name, got {shown(given)}")
+        raise InvalidInput(f"the explorer takes a Grasp, an Outline, a Mesh or a name, got {shown(given)}")
     return Explorer(start_of(given))

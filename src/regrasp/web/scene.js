@@ -6,9 +6,9 @@ export const INK = "#222222", GREY = "#767676", PALE = "#ececec", MOTION = "#2E7
 const SPACE = "http://www.w3.org/2000/svg";
 
 export const colour = (i) => COLOURS[i % COLOURS.length];
-export const add = (a, b, k = 1) => [a[0] + k * b[0], a[1] + k * b[1]];
-export const size = (a) => Math.hypot(a[0], a[1]);
-export const unit = (a) => { const l = size(a) || 1; return [a[0] / l, a[1] / l]; };
+export const add = (a, b, k = 1) => a.map((v, i) => v + k * b[i]);
+export const size = (a) => Math.hypot(...a);
+export const unit = (a) => { const l = size(a) || 1; return a.map((v) => v / l); };
 export const turned = (a, angle) => {
   const c = Math.cos(angle), s = Math.sin(angle);
   return [c * a[0] - s * a[1], s * a[0] + c * a[1]];
@@ -107,8 +107,13 @@ export function arrow(parent, view, from, to, look = {}) {
 
 // Words beside points that keep clear of each other: each tries places ever farther from its point.
 export class Labels {
-  constructor(parent, view) { this.parent = parent; this.view = view; this.taken = []; }
+  constructor(parent, view) { this.parent = parent; this.view = view; this.taken = []; this.drawn = []; }
   block(at, radius) { const [x, y] = this.view.at(at); this.taken.push([x - radius, y - radius, x + radius, y + radius]); }
+  // A line is crossed by words only where there is no other place.
+  line(from, to) {
+    const [a, b] = [this.view.at(from), this.view.at(to)], count = Math.ceil(size(add(b, a, -1)) / 9);
+    for (let k = 0; k <= count; k++) { const [x, y] = add(a, add(b, a, -1), k / (count || 1)); this.drawn.push([x - 3, y - 3, x + 3, y + 3]); }
+  }
   add(text, at, towards, look = {}) {
     const [x, y] = this.view.at(at), u = unit([towards[0], -towards[1]]);
     const wide = 7.4 * text.length + 4, high = 16;
@@ -118,8 +123,8 @@ export class Labels {
         const d = turned(u, angle), cx = x + d[0] * (gap + wide / 2 - 6), cy = y + d[1] * gap;
         const box = [cx - wide / 2, cy - high / 2, cx + wide / 2, cy + high / 2];
         const outside = Math.max(0, -box[0], -box[1], box[2] - this.view.width, box[3] - this.view.height);
-        const hit = this.taken.filter((t) => t[0] < box[2] && box[0] < t[2] && t[1] < box[3] && box[1] < t[3]).length;
-        const cost = 100 * hit + 10 * outside + gap / 10 + Math.abs(angle);
+        const hits = (boxes) => boxes.filter((t) => t[0] < box[2] && box[0] < t[2] && t[1] < box[3] && box[1] < t[3]).length;
+        const cost = 100 * hits(this.taken) + 4 * hits(this.drawn) + 10 * outside + gap / 10 + Math.abs(angle);
         if (!best || cost < best.cost) best = { cost, cx, cy, box };
       }
     }
