@@ -52,12 +52,17 @@ class GraspTask(Strict):
 
     kind: Literal["grasp"]
     fingers: int = Field(ge=2, le=4, description="how many")
-    objective: Literal["sum_normal", "peak_normal", "peak", "effort", "friction_use", "angle", "answered"] = (
-        Field("sum_normal", description="what the grasp is chosen for")
-    )
+    objective: Literal[
+        "sum_normal", "peak_normal", "peak", "effort", "friction_use", "angle", "answered", "wrench_ball"
+    ] = Field("sum_normal", description="what the grasp is chosen for; for wrench_ball the load is zero")
     max_force: Positive | None = Field(
-        None, description="limit on every force; friction_use, angle and answered need it [N]"
+        None,
+        description="limit on every force [N], for wrench_ball on its normal part; friction_use, angle, "
+        "answered and wrench_ball need it",
     )
+    length: Positive | None = Field(None, description="[m], by which wrench_ball divides torques")
+    min_normal: _NotNegative = Field(0.0, description="[N], with which every finger pushes at the least")
+    removable: bool = Field(False, description="whether one finger at least must be free to leave")
     tolerance: Annotated[float, Field(gt=0, lt=1)] = Field(1e-3, description="gap at which the search ends")
     min_distance: Positive | None = Field(None, description="[m], between two fingers")
     from_corners: _NotNegative | None = Field(
@@ -69,8 +74,12 @@ class GraspTask(Strict):
     )
     tip_radius: _NotNegative = Field(0.0, description="[m], of round fingertips")
     load_offset: _NotNegative = Field(0.0, description="[m], by which loads may act beside their lines")
-    most_boxes: int = Field(
-        200_000, ge=64, le=10_000_000, description="boxes of places after which the search ends"
+    most_boxes: int | None = Field(
+        None,
+        ge=64,
+        le=10_000_000,
+        description="boxes of places after which the search ends; 200,000, or 20,000 with constraints that "
+        "bounds know nothing of",
     )
 
 
@@ -94,6 +103,9 @@ def chosen_by(scenario: GraspScenario) -> ChosenGrasp:
         friction=scenario.friction,
         objective=task.objective,
         max_force=task.max_force,
+        length=task.length,
+        min_normal=task.min_normal,
+        removable=task.removable,
         disturbance=None if disturbance is None else disturbance.around(scenario.load.wrench),
         arcs=task.arcs,
         tip_radius=task.tip_radius,

@@ -10,10 +10,12 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
+from regrasp.planning.placement.ball_level import BallLevel
 from regrasp.planning.placement.chosen import ChosenGrasp
+from regrasp.planning.placement.climbing import run_level
 from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.laws import LEVELS, law_of
-from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level, run_level
+from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level
 from regrasp.planning.placement.loads import check_planar, inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
@@ -36,6 +38,7 @@ def choose_grasp(
     objective: str | Objective = "sum_normal",
     max_force: float | None = None,
     disturbance: LoadSet | None = None,
+    length: float | None = None,
     min_normal: float = 0.0,
     keep: Filter | None = None,
     removable: bool = False,
@@ -61,9 +64,11 @@ def choose_grasp(
             forces for each load, has to hold; the value is that of the worst load [N, N m].
         friction: coefficient of all fingers [-].
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
-            ``friction_use`` and ``angle``, as of ``choose_state``; or ``answered``, the largest factor by
-            which a ``disturbance`` may be scaled and forces still exist.
-        max_force: limit on every force; the last three need it [N].
+            ``friction_use`` and ``angle``, as of ``choose_state``; ``answered``, the largest factor by which
+            a ``disturbance`` may be scaled and forces still exist; or ``wrench_ball``, Ferrari and Canny's
+            measure, the radius of the largest ball of loads that fingers of limited normal force hold, for
+            which ``load`` is zero.
+        max_force: limit on every force, of ``wrench_ball`` on its normal part; the last four need it [N].
         min_normal: with which every finger pushes at the least, under every load [N].
         keep: which two fingers may hold together, as of ``plan_regrasp``: a function of points (k, 2) of the
             one and (k, 2) of the other, relative to the centre of mass [m], and the object's angle, here 0,
@@ -71,6 +76,8 @@ def choose_grasp(
         removable: whether one finger at least must be free to leave: the others hold all the loads, too, with
             forces of at most ``max_force``.
         disturbance: a hull of deviations, added to the load, for ``answered``.
+        length: by which torques are divided, for ``wrench_ball`` [m]; the farthest reach of the outline from
+            its centre of mass if not given.
         arcs: the only stretches where fingers may be: pairs of arc lengths, counter-clockwise from the first
             to the second [m]; the whole outline if not given.
         tip_radius: of round fingertips, which do not reach into corners and slots where they would meet
@@ -112,11 +119,13 @@ def choose_grasp(
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
-    level = _level(goal, mu, load, max_force, disturbance)
+    level = _level(goal, mu, load, max_force, disturbance, _length(goal, length, shape))
     stretches = None if arcs is None else _pairs(arcs)
     radius = number(tip_radius, "tip_radius", least=0)
     sides = sides_of(shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius)
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
+    if isinstance(level, BallLevel):
+        inner = outer = level.loads(level.max_force)
     distance = DISTINCT * sides.size if apart is None else apart
     search = Search(sides, fingers, mu, inner, law, distance, _NARROW * tolerance)
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.any)
@@ -144,7 +153,12 @@ def _pairs(arcs: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
 
 
 def _level(
-    goal: str, friction: float, load: Wrench | LoadSet, max_force: float | None, disturbance: LoadSet | None
+    goal: str,
+    friction: float,
+    load: Wrench | LoadSet,
+    max_force: float | None,
+    disturbance: LoadSet | None,
+    length: float,
 ) -> Level | None:
     """The level that is sought, None for a norm. ``InvalidInput`` for limits that it does not go with."""
     if (disturbance is not None) != (goal == "answered"):
@@ -156,6 +170,13 @@ def _level(
             f"objective {goal!r} needs max_force: without a limit it is best at infinite force; got None"
         )
     limit = number(max_force, "max_force", above=0)
+    if goal == "wrench_ball":
+        if not isinstance(load, Wrench) or load.vector.any():
+            raise InvalidInput(
+                f"objective 'wrench_ball' is about loads in every direction: load must be zero, got "
+                f"{shown(load)}"
+            )
+        return BallLevel(limit, friction, length)
     if disturbance is None:
         if friction == 0:
             raise InvalidInput(f"objective {goal!r} needs friction above 0")
@@ -168,6 +189,13 @@ def _level(
             "objective 'answered' takes one load, a Wrench, on top of which the disturbance comes"
         )
     return AnsweredLevel(limit, load.vector, _deviations(disturbance))
+
+
+def _length(goal: str, length: float | None, shape: Outline) -> float:
+    if length is not None and goal != "wrench_ball":
+        raise InvalidInput("length is for objective 'wrench_ball', by which it divides torques")
+    reach = float(np.hypot(*shape.polygon().T).max())
+    return reach if length is None else number(length, "length", above=0)
 
 
 def _check_constraints(constraints: Constraints, goal: str, fingers: int) -> None:

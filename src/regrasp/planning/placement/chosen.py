@@ -49,6 +49,7 @@ class ChosenGrasp(ArrayValue):
         certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
         max_force: limit on every force that was given [N]; None where none was.
         min_normal: with which every finger pushes at the least [N].
+        length: by which torques are divided, of ``wrench_ball`` [m].
         deviations: (m, 3) of ``answered``, whose multiple by ``value`` is held on top of the load [N, N m].
     """
 
@@ -64,6 +65,7 @@ class ChosenGrasp(ArrayValue):
     max_force: float | None = None
     min_normal: float = 0.0
     deviations: Array | None = None
+    length: float | None = None
 
     @property
     def gap(self) -> float:
@@ -92,6 +94,7 @@ class ChosenGrasp(ArrayValue):
             "max_force": self.max_force,
             "min_normal": self.min_normal,
             "deviations": None if self.deviations is None else self.deviations.tolist(),
+            "length": self.length,
         }
 
     @classmethod
@@ -105,7 +108,7 @@ class ChosenGrasp(ArrayValue):
             InvalidInput: For other keys and for entries that are not what they must be.
         """
         keys = ("shape", "objective", "grasp", "states", "value", "bound", "places", "others", "certificate")
-        given = entries(data, "a chosen grasp", keys, ("max_force", "min_normal", "deviations"))
+        given = entries(data, "a chosen grasp", keys, ("max_force", "min_normal", "deviations", "length"))
         limit, deviations = given.get("max_force"), given.get("deviations")
         grasp = Grasp.from_dict(given["grasp"])
         others = [
@@ -133,6 +136,7 @@ class ChosenGrasp(ArrayValue):
             None if limit is None else number(limit, "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
             None if deviations is None else array(deviations, "deviations", (None, 3)),
+            None if given.get("length") is None else number(given["length"], "length", above=0),
         )
 
     def __str__(self) -> str:

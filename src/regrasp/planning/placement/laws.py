@@ -33,9 +33,10 @@ LAWS: Mapping[str, Law] = MappingProxyType(
         "friction_use": Law("force", "largest"),
         "angle": Law("force", "largest"),
         "answered": Law("force", "largest"),
+        "wrench_ball": Law("normal", "largest"),
     }
 )
-LEVELS = ("friction_use", "angle", "answered")
+LEVELS = ("friction_use", "angle", "answered", "wrench_ball")
 
 
 def law_of(objective: str | Objective) -> tuple[str, Law]:

@@ -6,20 +6,28 @@ placements that are found raise the level.
 """
 
 from abc import ABC, abstractmethod
-from math import atan, inf, tan
+from contextlib import suppress
+from math import atan, inf, isnan, tan
 
 import numpy as np
 
+from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
-from regrasp.planning.placement.search import Progress, Search
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.placement.search import Search
+from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.criteria import ChosenState
 
-_STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
 _STEP = 1e-6  # of a level that is zero
-_SETTLING = 10
-_SLIDES, _SLOW, _SHORTEST = 8, 1e-4, 1e-4  # rounds, least gain of one, shortest step as a part of an edge
 _SURE = 1e-6  # of the limit, more than norms are uncertain by
 _HALVINGS = 50
 _EXACT = 1e-10  # relative, of the level of a placement
+AT_THE_EDGE = (1e-8, 1e-6, 1e-4)
+"""Parts of a load given back so that forces for it exist for solvers, too."""
+
+Shown = tuple[list[ChosenState], float]
+"""States and the value that they show."""
 
 
 class Level(ABC):
@@ -41,6 +49,31 @@ class Level(ABC):
     @abstractmethod
     def top(self, search: Search) -> float:
         """A level that no placement reaches, or the largest there is."""
+
+    @abstractmethod
+    def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
+        """States of a grasp that show the value at a level, near what was found; None for none.
+
+        loads: (L, 3) of the task.
+        """
+
+    def value(self, level: float) -> float:
+        """The objective at a level."""
+        return level
+
+    def reached(self, search: Search, known: float, places: np.ndarray, u: Array) -> float:
+        """The best level at which a placement has forces below the limit, at least ``known``."""
+        lo, hi = known, self.top(search)
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (lo + hi)
+            self.put(search, middle)
+            if search.norm_at(places, u) <= self.max_force * (1 - _SURE):
+                lo = middle
+            else:
+                hi = middle
+            if hi - lo <= _EXACT * max(abs(lo), abs(hi)):
+                break
+        return lo
 
 
 class FrictionLevel(Level):
@@ -68,6 +101,17 @@ class FrictionLevel(Level):
     def top(self, search: Search) -> float:
         """No friction left."""
         return atan(self.friction) if self.angle else 0.0
+
+    def value(self, level: float) -> float:
+        """The use of friction [-] or the angle margin [rad]."""
+        return min(level, atan(self.friction)) if self.angle else max(-level, 0.0)
+
+    def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
+        """The states of the loads."""
+        limit = self.max_force
+        states = [choose_state(grasp, Wrench.from_vector(w), objective, max_force=limit) for w in loads]
+        values = [state.value for state in states if not isnan(state.value)]  # none where no force is
+        return states, (min(values) if self.angle else max(values))
 
 
 class AnsweredLevel(Level):
@@ -98,103 +142,11 @@ class AnsweredLevel(Level):
             factors = (reach + np.abs(self.center)) / np.abs(self.deviations)
         return 2.0 * float(factors.min(axis=1).min(initial=inf))
 
-
-def run_level(
-    search: Search, level: Level, tolerance: float, most: int, progress: Progress | None
-) -> tuple[float | None, float]:
-    """The best level found, None where no placement was, and a level that no placement is beyond.
-
-    ``search`` is left at that level, which its boxes exclude where it is ``closed``; where it was cut short
-    it is the largest there is.
-    """
-    best: float | None = None
-    aim = level.start
-    fixed = level.max_force * (1 + _STRICT)
-    level.put(search, aim)
-    try:
-        while search.goes_on(fixed, 0.0, most) or search.best <= level.max_force:
-            if search.best <= level.max_force:
-                reached, places, u = _improved(search, level, aim, *search.found)
-                best = reached if best is None else max(best, reached)
-                aim = level.beyond(best, tolerance)
-                level.put(search, aim)
-                search.forget(reached, places, u)
-                if aim >= level.top(search):
-                    break
-            if progress is not None:
-                progress(aim, inf if best is None else best)
-    except KeyboardInterrupt:
-        if best is None:
-            raise
-        search.closed = False
-    if best is None:
-        search.closed = search.closed and search.excludes(search.left, fixed)
-        return best, aim
-    return best, _settled(search, level, aim, fixed)
-
-
-def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
-    """A level at which boxes that are left, too small to be split or not looked at, are excluded, too."""
-    left, lo, hi = search.left, aim, level.top(search)
-    if aim >= hi:
-        return aim
-    level.put(search, aim)
-    search.closed = search.excludes(left, fixed)
-    if search.closed:
-        return aim
-    for _ in range(_SETTLING):
-        middle = 0.5 * (lo + hi)
-        level.put(search, middle)
-        if search.excludes(left, fixed):
-            hi = middle
-        else:
-            lo = middle
-    level.put(search, hi)
-    search.closed = search.excludes(left, fixed)
-    return hi
-
-
-def _improved(
-    search: Search, level: Level, known: float, places: np.ndarray, u: Array
-) -> tuple[float, np.ndarray, Array]:
-    """The best level of a placement and of those that fingers find by sliding along the boundary."""
-    reached = _reached(search, level, known, places, u)
-    for _ in range(_SLIDES):
-        level.put(search, reached)
-        places, u = _slid(search, places, u)
-        further = _reached(search, level, reached, places, u)
-        gained, reached = further - reached, further
-        if gained <= _SLOW * abs(reached):
-            break
-    return reached, places, u
-
-
-def _slid(search: Search, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
-    """Places of less norm, one finger at a time, by steps that are halved where none helps."""
-    norm, step = search.norm_at(places, u), 0.125
-    while step > _SHORTEST:
-        helped = False
-        for i in range(len(u)):
-            for way in (-step, step):
-                on, there = places.copy(), u.copy()
-                on[i], there[i] = search.sides.moved(int(places[i]), float(u[i]), way)
-                found = search.norm_at(on, there) if search.are_apart(on, there) else inf
-                if found < norm:
-                    norm, places, u, helped = found, on, there, True
-        step *= 1.0 if helped else 0.5
-    return places, u
-
-
-def _reached(search: Search, level: Level, known: float, places: np.ndarray, u: Array) -> float:
-    """The best level at which a placement has forces below the limit, at least ``known``."""
-    lo, hi = known, level.top(search)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (lo + hi)
-        level.put(search, middle)
-        if search.norm_at(places, u) <= level.max_force * (1 - _SURE):
-            lo = middle
-        else:
-            hi = middle
-        if hi - lo <= _EXACT * max(abs(lo), abs(hi)):
-            break
-    return lo
+    def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
+        """The states of the deviations at the level, or a little before it."""
+        for back in AT_THE_EDGE:
+            factor = level * (1 - back)
+            given = map(Wrench.from_vector, self.loads(factor)[1:])
+            with suppress(Infeasible):
+                return [choose_state(grasp, w, "peak", max_force=self.max_force) for w in given], factor
+        return None

@@ -1,9 +1,8 @@
 """From what a search found to a grasp with forces, or to words why there is none."""
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
-from math import atan, inf, isnan
+from math import inf
 from typing import TypeVar
 
 import numpy as np
@@ -15,9 +14,10 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
+from regrasp.planning.placement.ball_level import BallLevel
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
 from regrasp.planning.placement.laws import Law
-from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level
+from regrasp.planning.placement.levels import AnsweredLevel, Level, Shown
 from regrasp.planning.placement.proof import PlacementProof
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides
@@ -29,7 +29,6 @@ _ATTEMPTS = 20  # placements whose forces are computed, the best first, until on
 _AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found is at the edge of what holds
 _DIFFERENT = 0.05  # of the length
 _OTHERS = 4
-_BACK = (1e-8, 1e-6, 1e-4)  # of a factor answered, so that forces exist for solvers, too
 
 
 @dataclass(frozen=True)
@@ -93,19 +92,8 @@ def chosen_at_level(
             proof,
         )
 
-    def judged(grasp: Grasp, negative: float) -> tuple[list[ChosenState], float] | None:
-        if isinstance(level, FrictionLevel):
-            loads = map(Wrench.from_vector, asked.loads)
-            states = [choose_state(grasp, load, asked.objective, max_force=limit) for load in loads]
-            values = [state.value for state in states if not isnan(state.value)]  # none where no force is
-            return states, (min(values) if level.angle else max(values))
-        assert isinstance(level, AnsweredLevel)
-        for back in _BACK:
-            factor = -negative * (1 - back)
-            loads = map(Wrench.from_vector, level.loads(factor)[1:])
-            with suppress(Infeasible):
-                return [choose_state(grasp, load, "peak", max_force=limit) for load in loads], factor
-        return None
+    def judged(grasp: Grasp, negative: float) -> Shown | None:
+        return level.shown(grasp, asked.objective, asked.loads, -negative)
 
     found = _first(search, asked, judged)
     if found is None:
@@ -114,11 +102,8 @@ def chosen_at_level(
             "forces inside the cones and the limit"
         )
     grasp, places, u, (states, value) = found
-    if isinstance(level, FrictionLevel):
-        bound = _of_coefficient(level, beyond)
-        search.friction = level.coefficient(beyond)
-    else:
-        bound = beyond
+    level.put(search, beyond)
+    bound = level.value(beyond)
     bound = max(bound, value) if asked.objective != "friction_use" else min(bound, value)
     trivial = not search.closed or bound == 0.0
     return ChosenGrasp(
@@ -126,14 +111,8 @@ def chosen_at_level(
         _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda negative: abs(negative)),
         proof_of(search, asked, 0.0 if trivial else limit), max_force=limit,
         deviations=read_only(np.array(level.deviations)) if isinstance(level, AnsweredLevel) else None,
+        length=level.length if isinstance(level, BallLevel) else None,
     )  # fmt: skip
-
-
-def _of_coefficient(level: FrictionLevel, beyond: float) -> float:
-    """The value of an objective at a level: the use of friction [-] or the angle margin [rad]."""
-    if level.angle:
-        return min(beyond, atan(level.friction))
-    return max(-beyond, 0.0)
 
 
 def _first(

@@ -1,7 +1,7 @@
 """The verdict on a grasp chosen from a shape: its states, where it touches, and the proof of its bound."""
 
 from fractions import Fraction
-from math import atan, inf, isfinite
+from math import atan, hypot, inf, isfinite
 from typing import Protocol
 
 import numpy as np
@@ -10,6 +10,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
+from regrasp.verification.placed.balls import makes_ball
 from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.protocol import Proof
 from regrasp.verification.placed.touching import Touching
@@ -66,6 +67,10 @@ class Chosen(Protocol):
         """With which every finger pushes at the least [N]."""
 
     @property
+    def length(self) -> float | None:
+        """By which torques are divided, of ``wrench_ball`` [m]."""
+
+    @property
     def deviations(self) -> Array | None:
         """(m, 3) of ``answered`` [N, N m]."""
 
@@ -80,8 +85,10 @@ _MEANINGS = {
     "friction_use": ("force", "largest", 1),
     "angle": ("force", "largest", 1),
     "answered": ("force", "largest", 1),
+    "wrench_ball": ("normal", "largest", 1),
 }
-_LEVELS = ("friction_use", "angle", "answered")
+_LEVELS = ("friction_use", "angle", "answered", "wrench_ball")
+_ANY_LOAD = ("answered", "wrench_ball")  # their proofs have loads that no state holds
 _CLOSE = 1e-9  # of a value, the same in another order of the sums
 
 
@@ -139,7 +146,7 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     """That a state shows the value."""
     size, norm, power = _MEANINGS[chosen.objective]
     found, value = _norm(state, size, norm), chosen.value
-    limit = inf if chosen.max_force is None else chosen.max_force
+    limit = inf if chosen.max_force is None or chosen.objective == "wrench_ball" else chosen.max_force
     if np.hypot(*state.forces.T).max() > limit * (1 + _CLOSE):
         return [f"state {i}: a force is above the limit {limit:.12g}"]
     if not ((state.forces * state.grasp.normals).sum(axis=1) >= chosen.min_normal * (1 - _CLOSE)).all():
@@ -162,7 +169,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     """That the bound is what the proof proves."""
     _, _, power = _MEANINGS[chosen.objective]
     value, bound = chosen.value, chosen.bound
-    largest = chosen.objective in ("angle", "answered")
+    largest = chosen.objective in ("angle", *_ANY_LOAD)
     if not (bound >= value if largest else bound <= value):
         return [f"bound {bound:.12g} is {'below' if largest else 'above'} the value {value:.12g}"]
     if not isfinite(value) or not isfinite(bound):
@@ -179,18 +186,33 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         shown = np.array([state.load.vector for state in chosen.states])
         if chosen.deviations is None or not _scaled(chosen, shown, value):
             return ["the states do not hold the deviations times the value"]
+    if chosen.objective == "wrench_ball" and (broken := _check_ball(chosen)):
+        return broken
     if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
         return _check_trivial(chosen, proof)
     mu = min(c.friction for c in chosen.grasp)
-    if chosen.objective != "answered" and mu != max(c.friction for c in chosen.grasp):
+    if chosen.objective not in _ANY_LOAD and mu != max(c.friction for c in chosen.grasp):
         return ["a level of friction is that of one coefficient, the contacts have several"]
     if chosen.objective == "friction_use":
         proven = Fraction(bound) * Fraction(mu) <= Fraction(proof.friction) * (1 + RESOLUTION)
     elif chosen.objective == "angle":
         proven = bound >= (atan(mu) - atan(proof.friction)) * (1 - _CLOSE)
-    else:
+    elif chosen.objective == "answered":
         proven = _scaled(chosen, np.asarray(proof.loads)[1:], bound)
+    else:  # no placement holds all loads of the proof, which are members of the ball
+        sizes = np.linalg.norm(np.asarray(proof.loads) / [1.0, 1.0, chosen.length or 0.0], axis=1)
+        proven = bool((sizes <= bound * (1 + _CLOSE)).all())
     return [] if proven else [f"bound {bound:.12g} is better than what the proof says"]
+
+
+def _check_ball(chosen: Chosen) -> list[str]:
+    """That the fingers make every wrench of the ball."""
+    length, limit = chosen.length, chosen.max_force
+    if length is None or limit is None or not 0 < length < inf:
+        return ["a ball of loads needs a length that torques are divided by, and a limit"]
+    if chosen.value < 0 or not makes_ball(chosen.grasp, limit, length, Fraction(chosen.value)):
+        return [f"wrench_ball: the fingers do not make all wrenches up to the value {chosen.value:.12g}"]
+    return []
 
 
 def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
@@ -200,6 +222,8 @@ def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
         proven = chosen.bound <= 0
     elif chosen.objective == "angle":
         proven = chosen.bound >= atan(mu)
+    elif chosen.objective == "wrench_ball":
+        proven = chosen.bound >= len(chosen.grasp) * float(chosen.max_force or 0.0) * hypot(1.0, mu)
     else:  # k forces make no larger wrench than k times the limit, at the largest lever
         levers = np.array([1.0, 1.0, Touching(proof).reach])
         most = len(chosen.grasp) * float(chosen.max_force or 0.0) * levers
@@ -246,7 +270,7 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
         for j in range(i):
             if np.hypot(*(positions[i] - positions[j])) < proof.min_distance - slack:
                 broken.append("two contacts are nearer than the least distance")
-    if chosen.objective != "answered" and not _all_shown(chosen, np.asarray(proof.loads)):
+    if chosen.objective not in _ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
     return broken
 

@@ -1,0 +1,104 @@
+"""Climbing to the best level: placements found raise it, and boxes are excluded until none is left."""
+
+from math import inf
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.levels import Level
+from regrasp.planning.placement.search import Progress, Search
+
+_STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
+_SETTLING, _NEARER = 24, 2
+_SLIDES, _SLOW, _SHORTEST = 8, 1e-4, 1e-4  # rounds, least gain of one, shortest step as a part of an edge
+
+
+def run_level(
+    search: Search, level: Level, tolerance: float, most: int, progress: Progress | None
+) -> tuple[float | None, float]:
+    """The best level found, None where no placement was, and a level that no placement is beyond.
+
+    ``search`` is left at that level, which its boxes exclude where it is ``closed``; where it was cut short
+    it is the largest there is.
+    """
+    best: float | None = None
+    aim = level.start
+    fixed = level.max_force * (1 + _STRICT)
+    level.put(search, aim)
+    try:
+        while search.goes_on(fixed, 0.0, most) or search.best <= level.max_force:
+            if search.best <= level.max_force:
+                reached, places, u = _improved(search, level, aim, *search.found)
+                best = reached if best is None else max(best, reached)
+                aim = level.beyond(best, tolerance)
+                level.put(search, aim)
+                search.forget(reached, places, u)
+                if aim >= level.top(search):
+                    break
+            if progress is not None:
+                progress(aim, inf if best is None else best)
+    except KeyboardInterrupt:
+        if best is None:
+            raise
+        search.closed = False
+    if best is None:
+        search.closed = search.closed and search.excludes(search.left, fixed)
+        return best, aim
+    return best, _settled(search, level, aim, fixed)
+
+
+def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
+    """A level at which boxes that are left, too small to be split or not looked at, are excluded, too."""
+    left, lo, hi = search.left, aim, level.top(search)
+    if aim >= hi:
+        return aim
+    level.put(search, aim)
+    search.closed = search.excludes(left, fixed)
+    if search.closed:
+        return aim
+    # first how far to go, by steps that double, then how much less is enough
+    for step in 0.5 ** np.arange(_SETTLING, 0, -1.0):
+        level.put(search, aim + step * (hi - aim))
+        if search.excludes(left, fixed):
+            lo, hi = aim + 0.5 * step * (hi - aim), aim + step * (hi - aim)
+            break
+    for _ in range(_NEARER):
+        middle = 0.5 * (lo + hi)
+        level.put(search, middle)
+        lo, hi = (lo, middle) if search.excludes(left, fixed) else (middle, hi)
+    level.put(search, hi)
+    search.closed = search.excludes(left, fixed)
+    return hi
+
+
+def _improved(
+    search: Search, level: Level, known: float, places: np.ndarray, u: Array
+) -> tuple[float, np.ndarray, Array]:
+    """The best level of a placement and of those that fingers find by sliding along the boundary."""
+    reached = level.reached(search, known, places, u)
+    for _ in range(_SLIDES):
+        level.put(search, reached)
+        there, at = _slid(search, places, u)
+        further = level.reached(search, reached, there, at)
+        if further <= reached:
+            break
+        gained, reached, places, u = further - reached, further, there, at
+        if gained <= _SLOW * abs(reached):
+            break
+    return reached, places, u
+
+
+def _slid(search: Search, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
+    """Places of less norm, one finger at a time, by steps that are halved where none helps."""
+    norm, step = search.norm_at(places, u), 0.125
+    while step > _SHORTEST:
+        helped = False
+        for i in range(len(u)):
+            for way in (-step, step):
+                on, there = places.copy(), u.copy()
+                on[i], there[i] = search.sides.moved(int(places[i]), float(u[i]), way)
+                found = search.norm_at(on, there) if search.are_apart(on, there) else inf
+                if found < norm:
+                    norm, places, u, helped = found, on, there, True
+        step *= 1.0 if helped else 0.5
+    return places, u
