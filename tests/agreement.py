@@ -29,13 +29,13 @@ class Agreement:
 
 # Active-set and interior-point methods, first-order methods, and cvxpy, whose default is one of the latter.
 AGREEMENT = {
-    "daqp": Agreement(1e-8, 200, 0.0),
-    "quadprog": Agreement(1e-8, 200, 0.0),
-    "highs": Agreement(1e-8, 200, 0.01),
-    "piqp": Agreement(1e-6, 200, 0.0),
+    "daqp": Agreement(1e-8, 90, 0.0),
+    "quadprog": Agreement(1e-8, 90, 0.0),
+    "highs": Agreement(1e-8, 90, 0.01),
+    "piqp": Agreement(1e-6, 90, 0.0),
     "proxqp": Agreement(1e-6, 20, 0.2),
-    "qpalm": Agreement(1e-6, 60, 0.05),
-    "osqp": Agreement(1e-5, 20, 0.3),
+    "qpalm": Agreement(1e-6, 40, 0.05),
+    "osqp": Agreement(1e-5, 10, 0.3),
     "scs": Agreement(1e-5, 20, 0.1),
     "cvxpy": Agreement(1e-6, 40, 0.1, None),
     "cvxpy:CLARABEL": Agreement(1e-6, 40, 0.0, None),

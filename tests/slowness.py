@@ -13,7 +13,7 @@ import pytest
 from places import TESTS
 
 LIST = TESTS / "slow.txt"
-ALLOWED = 0.5
+ALLOWED = 0.25
 """Seconds."""
 
 

@@ -646,7 +646,7 @@ def file_rows() -> dict[str, Row]:
         "plan_scenario_motions": Row(files.plan_scenario_motions, {"scenario": moving}),
         "write_motions": Row(
             files.write_motions,
-            {"motions": files.plan_scenario_motions(moving), "path": os.devnull},
+            {"motions": files.plan_scenario_motions(moving), "path": os.devnull, "rate": 10.0},
             {"motions": "value"},
         ),
         "read_cut": Row(files.read_cut, {}, {"path": "path"}),
@@ -750,7 +750,7 @@ KINDS |= {
 }  # fmt: skip
 
 
-LONG = ("x" * 100_000, "two\nlines " * 10_000, list(range(10_000)), ["word"] * 10_000, {"k" * 9_999: 10**999})
+LONG = ("x" * 10_000, "two\nlines " * 1_000, list(range(1_000)), ["word"] * 1_000, {"k" * 9_999: 10**999})
 """What a message must not repeat in full."""
 
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from functools import cache
 from hashlib import sha256
 
 import numpy as np
@@ -18,9 +19,13 @@ from regrasp.programs import Block, Cone, Program, Status, solve
 pytestmark = pytest.mark.oracle
 
 MOST = 400  # unknowns of what is solved again
-SMALL = [p for family in FAMILIES.values() for p in family.problems() if p.program.q.size <= MOST]
-CONIC = [p for p in SMALL if not p.is_qp]
-QUADRATIC = [p for p in SMALL if p.is_qp]
+
+
+@cache
+def small(is_qp):
+    """Conic or quadratic problems of a moderate size."""
+    every = (p for family in FAMILIES.values() for p in family.problems())
+    return [p for p in every if p.is_qp == is_qp and p.program.q.size <= MOST]
 
 
 def solved_again(problem, program):
@@ -34,9 +39,9 @@ def solved_again(problem, program):
         assert answer.objective == pytest.approx(known.optimum, rel=1e-6, abs=1e-6), problem.name
 
 
-@pytest.mark.parametrize("family", sorted({p.family for p in CONIC}))
-def test_cbf_is_read_back_to_the_same_optimum(family, tmp_path):
-    for problem in (p for p in CONIC if p.family == family):
+def test_cbf_is_read_back_to_the_same_optimum(tmp_path):
+    assert len({problem.family for problem in small(is_qp=False)}) > 3
+    for problem in small(is_qp=False):
         write_cbf(problem.program, tmp_path / "a.cbf", problem.name)
         back = read_cbf(tmp_path / "a.cbf")
         assert back.q.size == problem.program.q.size + (problem.program.P.nnz > 0)
@@ -45,7 +50,7 @@ def test_cbf_is_read_back_to_the_same_optimum(family, tmp_path):
 
 
 def test_a_linear_objective_comes_back_to_the_last_digit(tmp_path):
-    linear = [p for p in CONIC if p.program.P.nnz == 0]
+    linear = [p for p in small(is_qp=False) if p.program.P.nnz == 0]
     assert len(linear) > 20
     for problem in linear:
         write_cbf(problem.program, tmp_path / "a.cbf")
@@ -55,11 +60,10 @@ def test_a_linear_objective_comes_back_to_the_last_digit(tmp_path):
         assert (back.q == problem.program.q).all()
 
 
-@pytest.mark.parametrize("name", sorted({p.family for p in QUADRATIC}))
-def test_npz_is_read_back_to_the_same_program(name, tmp_path):
-    for problem in FAMILIES[name].problems():
-        if not problem.is_qp:
-            continue
+def test_npz_is_read_back_to_the_same_program(tmp_path):
+    families = {problem.family for problem in small(is_qp=True)}
+    assert len(families) > 5
+    for problem in (p for name in families for p in FAMILIES[name].problems() if p.is_qp):
         program = problem.program
         write_npz(program, tmp_path / "a.npz")
         back = read_npz(tmp_path / "a.npz")
@@ -73,7 +77,7 @@ def test_npz_is_read_back_to_the_same_program(name, tmp_path):
 
 
 def test_npz_is_solved_to_the_same_optimum(tmp_path):
-    for problem in QUADRATIC[::7]:
+    for problem in small(is_qp=True)[::7]:
         if problem.family == "scaled":
             continue  # in kilometres and micronewtons the reference solver is unsound
         write_npz(problem.program, tmp_path / "a.npz")
@@ -168,7 +172,7 @@ def test_the_reader_is_strict(old, new, said, tmp_path):
 
 def test_what_is_not_a_quadratic_program_is_refused(tmp_path):
     with pytest.raises(InvalidInput, match="write it as CBF"):
-        write_npz(CONIC[0].program, tmp_path / "a.npz")
+        write_npz(small(is_qp=False)[0].program, tmp_path / "a.npz")
     (tmp_path / "b.npz").write_text("no archive")
     with pytest.raises(InvalidInput, match="expected a NumPy archive of plain arrays"):
         read_npz(tmp_path / "b.npz")
@@ -220,7 +224,7 @@ def test_qpbenchmark_runs_the_test_set(tmp_path):
     assert isinstance(tests, qpbenchmark.TestSet)
     wanted = {
         p.name: p
-        for p in QUADRATIC
+        for p in small(is_qp=True)
         if p.family in chosen and p.known.verdict is Verdict.SOLVABLE and p.program.q.size <= 12
     }
     assert {p.name for p in tests} == wanted.keys()

@@ -1,6 +1,7 @@
 """The families are the same at every call, and what they say is known is true."""
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,14 +14,16 @@ from regrasp.programs import Status, solve
 pytestmark = pytest.mark.oracle
 
 MOST = 3000  # unknowns; the largest paths are left to the benchmark itself
-PROBLEMS = {
-    name: [p for p in family.problems() if p.program.q.size <= MOST] for name, family in FAMILIES.items()
-}
+
+
+@cache
+def problems(family):
+    return [p for p in FAMILIES[family].problems() if p.program.q.size <= MOST]
 
 
 @pytest.mark.parametrize("family", FAMILIES.values(), ids=lambda family: family.name)
 def test_problems_are_reproducible_and_named_once(family):
-    first, again = PROBLEMS[family.name], family.problems()
+    first, again = problems(family.name), family.problems()
     for one, other in zip(first, (p for p in again if p.program.q.size <= MOST), strict=True):
         assert one.name == other.name
         assert one.known == other.known
@@ -36,7 +39,7 @@ def test_problems_are_reproducible_and_named_once(family):
 
 @pytest.mark.parametrize("name", FAMILIES)
 def test_known_answers_agree_with_a_solver(name):
-    for problem in PROBLEMS[name]:
+    for problem in problems(name):
         if "1000m" in problem.name:
             continue  # in kilometres and micronewtons the reference solver is unsound, and our audit says so
         answer = solve(problem.program, "clarabel", throw=False)
@@ -50,7 +53,7 @@ def test_known_answers_agree_with_a_solver(name):
 
 def test_scaled_problems_are_the_same_in_other_units():
     by_grasp = {}
-    for problem in PROBLEMS["scaled"]:
+    for problem in problems("scaled"):
         number = problem.name.split("/")[2].split("-")[0]
         newton = float(re.search(r"m-(.*)N$", problem.name).group(1))
         by_grasp.setdefault(number, []).append(problem.known.optimum / newton**2)
@@ -75,19 +78,20 @@ def test_nearly_infeasible_verdicts_are_those_of_exact_arithmetic():
                 0.0,
             )
             kind = "held" if sign > 0 else "lost"
-            problem = next(p for p in PROBLEMS["nearly-infeasible"] if p.name.endswith(f"{kind}/{room:.0e}"))
+            problem = next(p for p in problems("nearly-infeasible") if p.name.endswith(f"{kind}/{room:.0e}"))
             assert problem.known.verdict is verdict
             assert exact.empty == (sign < 0)
 
 
 def test_truth_is_known_for_every_problem_but_says_from_where():
-    truths = {p.known.truth for problems in PROBLEMS.values() for p in problems}
+    every = [p for name in FAMILIES for p in problems(name)]
+    truths = {p.known.truth for p in every}
     assert {Truth.CLOSED_FORM, Truth.PUBLISHED, Truth.PROOF, Truth.REFERENCE} == truths
-    assert all(np.isfinite(p.known.accuracy) for problems in PROBLEMS.values() for p in problems)
+    assert all(np.isfinite(p.known.accuracy) for p in every)
 
 
 def test_warm_problems_follow_one_another_with_another_right_side_only():
-    for problem in PROBLEMS["warm"]:
+    for problem in problems("warm"):
         if problem.follows is None:
             before = problem
             continue

@@ -1,10 +1,8 @@
 """What compiles says so, and nothing does after ``regrasp warm-up``."""
 
 import logging
-import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -12,19 +10,9 @@ from regrasp import compilation
 
 pytestmark = pytest.mark.contract
 
-USED = """
+USES = """
 import numpy as np
 import regrasp as rg
-from numba.core import event
-
-class Compiled(event.Listener):
-    names = []
-    def on_start(self, started):
-        self.names.append(started.data["dispatcher"].py_func.__qualname__)
-    def on_end(self, ended):
-        pass
-
-event.register("numba:compile", Compiled())
 n = 500
 r1, r2 = np.full((n, 2), -1.0), np.full((n, 2), 1.0)
 rg.best_squeezes(r1, -r1, 0.5, r2, -r2, 0.5, [0.1, -1.0], objective="force", max_force=9.0)
@@ -38,17 +26,47 @@ rg.plan_regrasp(outline, start, goal, rg.Wrench([0, -2.0]), friction=0.7, candid
 square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 rg.choose_grasp(square, 3, rg.LoadSet.turned(rg.Wrench([0, -1.0])), friction=1, objective="effort")
 rg.choose_grasp(square, 4, rg.Wrench([0, -1.0]), friction=0.5, objective="angle", max_force=5, tolerance=0.1)
-print(Compiled.names)
 """
 
+ASKED_FOR = (
+    """
+import gc
+from numba.core.dispatcher import Dispatcher
+from regrasp.cli.warming import warm_up
 
-def test_after_a_warm_up_nothing_compiles(tmp_path: Path) -> None:
-    warm = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    run = [sys.executable, "-m", "regrasp", "warm-up", "--json"]
-    done = subprocess.run(run, env=warm, capture_output=True, text=True, check=True)
-    assert "seconds" in done.stdout
-    used = subprocess.run([sys.executable, "-c", USED], env=warm, capture_output=True, text=True, check=True)
-    assert used.stdout == "[]\n"
+def asked_for():
+    every = [d for d in gc.get_objects() if isinstance(d, Dispatcher)]
+    return {(d.py_func.__module__, d.py_func.__qualname__, str(s)) for d in every for s in d.signatures}
+
+warm_up.callback()
+warmed = asked_for()
+assert len(warmed) > 10, warmed
+"""
+    f"{USES}\nprint(sorted(asked_for() - warmed))"
+)
+
+COMPILED = (
+    """
+from numba.core import event
+
+class Compiled(event.Listener):
+    names = []
+    def on_start(self, started):
+        self.names.append(started.data["dispatcher"].py_func.__qualname__)
+    def on_end(self, ended):
+        pass
+
+event.register("numba:compile", Compiled())
+"""
+    f"{USES}\nprint(Compiled.names)"
+)
+
+
+def test_after_a_warm_up_nothing_compiles() -> None:
+    """What is used is what a warm-up asked for, and a later process finds all of that kept."""
+    for code in (ASKED_FOR, COMPILED):
+        ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+        assert ran.stdout.splitlines()[-1:] == ["[]"], ran.stderr
 
 
 def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(

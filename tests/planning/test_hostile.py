@@ -1,4 +1,4 @@
-"""Five hundred of the hostile problems of ``benchmarks/million.py``: nothing wrong, nothing that hangs."""
+"""Hundreds of the hostile problems of ``benchmarks/million.py``: nothing wrong, nothing that hangs."""
 
 import sys
 from collections import Counter
@@ -22,14 +22,14 @@ FIRST = 5_000_000
 @pytest.mark.parametrize("part", range(5))
 def test_no_answer_is_wrong(part: int) -> None:
     words: Counter[str] = Counter()
-    for seed in range(FIRST + 100 * part, FIRST + 100 * part + 100):
+    for seed in range(FIRST + 50 * part, FIRST + 50 * part + 50):
         for verb, word in million.answers(seed):
             assert not word.startswith(million.WRONG), (seed, verb, word)
             assert not word.startswith("invalid"), (seed, verb, word)
             words[word] += 1
     assert words["refused though held"] == 0
-    assert words["solver failed"] <= 4
-    assert min(words["held"], words["verified"], words["proven"]) > 20
+    assert words["solver failed"] <= 2
+    assert min(words["held"], words["verified"], words["proven"]) > 10
 
 
 def test_chunks_are_kept_and_told(tmp_path, monkeypatch) -> None:

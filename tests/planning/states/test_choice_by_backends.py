@@ -15,7 +15,7 @@ pytestmark = pytest.mark.oracle
 # The independent model is compiled anew for each grasp, and bisects for levels.
 MODELLED = {objective: 20 if objective in LEVELS else 100 for objective in OBJECTIVES}
 
-# Searches for levels are tried on every third grasp.
+# Searches for levels are tried on every ninth grasp: they take ten times as long as the others together.
 CONVEX = [objective for objective in OBJECTIVES if objective not in LEVELS]
 
 
@@ -86,7 +86,7 @@ def test_every_back_end_agrees_with_clarabel(backend, reference):
     held = lost = refused = 0
     worst = 0.0
     for k, case in enumerate(random_cases(asked.grasps, seed=13)):
-        for objective in OBJECTIVES if k % 3 == 0 else CONVEX:
+        for objective in OBJECTIVES if k % 9 == 0 else CONVEX:
             expected = reference(k, case, objective, asked.facets)
             try:
                 found = chosen(case, objective, backend, asked.facets)
