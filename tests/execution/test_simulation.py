@@ -93,6 +93,18 @@ def test_a_whole_regrasp_holds_and_every_finger_is_where_it_should_be() -> None:
     assert away == pytest.approx(0.04 / 16, rel=0.02)  # a tip's radius from the contact
 
 
+def test_a_whole_regrasp_in_space_holds_on_three_fingers() -> None:
+    solid, first = bracket()
+    tips = ((0.01, 0.02, -0.0105), (-0.0156, 0.02, 0.025), (0.02, -0.02, -0.0105), (-0.0156, -0.02, 0.005))
+    last = rg.Grasp(solid.contact_at(solid.centre_of_mass + tip, friction=0.8) for tip in tips)
+    options = {"friction": 0.8, "candidates": 12, "orientations": 1}
+    regrasp = rg.plan_regrasp(solid, first, last, rg.Wrench([0, 0, -1.82]), **options)
+    assert len(regrasp.moves) == 4
+    execution = simulate(regrasp, shape=solid)
+    assert execution.held
+    assert execution.touching.sum(axis=1).min() >= 3
+
+
 def test_tips_that_roll_wander_and_those_that_turn_along_do_not() -> None:
     along, rolling = run("turn"), simulate(turned(), rolling=True)
     assert rolling.error > 10 * along.error
