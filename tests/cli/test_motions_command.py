@@ -24,6 +24,17 @@ def test_ways_are_planned_verified_and_written(tmp_path: Path) -> None:
     assert "2 or more touch at every instant" in done.stdout
     written = sorted(p.name for p in (tmp_path / "out").iterdir())
     assert written == ["motions.csv", "plan.json", "plan.mcap", "setpoints.csv"]
+    table = tmp_path / "out" / "motions.csv"
+    done = run("verify", "out", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "set-points of positions and forces verified: tips of radius" in done.stdout
+    header, *rows = table.read_text(encoding="utf-8").splitlines()
+    column = header.split(",").index("F1_touching")
+    cells = [[*row.split(",")[:column], "0", *row.split(",")[column + 1 :]] for row in rows]
+    table.write_text("\n".join([header, *map(",".join, cells)]), encoding="utf-8")
+    done = run("verify", "out", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "during step 1 no finger is at" in done.stderr
 
 
 def test_without_the_table_one_line_says_what_is_missing(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
 if TYPE_CHECKING:
     from regrasp.files.scenarios.scenario import PlannedScenario
     from regrasp.mesh.mesh import Mesh
+    from regrasp.motions.value import Motions
     from regrasp.outline.outline import Outline
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.transition import Transition
@@ -147,7 +148,7 @@ def _work(
         if copy is not None:
             (folder / name).write_text(copy, encoding="utf-8")
         if draw:
-            _draw(planned, shape, folder)
+            _draw(planned, shape, folder, ways)
         written = sorted(file.name for file in folder.iterdir())
     say("")
     for file in written:
@@ -176,7 +177,12 @@ def _page(planned: Any, shape: Any, title: str | None, verdict: str, folder: Pat
         raise click.UsageError(f"--html: {error}") from None
 
 
-def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", folder: Path) -> None:
+def _draw(
+    planned: "Transition | RegraspPlan",
+    shape: "Outline | Mesh | None",
+    folder: Path,
+    ways: "Motions | None" = None,
+) -> None:
     """Draw every figure into ``folder``; takes a few seconds, so a terminal sees how far it is."""
     with progress_bar() as progress:
         task = progress.add_task("drawing figures", total=None)
@@ -195,6 +201,10 @@ def _draw(planned: "Transition | RegraspPlan", shape: "Outline | Mesh | None", f
                 progress.update(task, total=len(planned.steps), completed=k)
         else:
             drawn = overview.figures(planned, **solid)
+        if ways is not None:
+            from regrasp.plots import plot_motions
+
+            drawn["motions"] = plot_motions(ways, shape).figure
         progress.update(task, description="saving figures", total=len(drawn), completed=0)
         for stem, figure in drawn.items():
             save_png(figure, folder / f"{stem}.png")

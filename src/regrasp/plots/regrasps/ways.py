@@ -80,6 +80,7 @@ def _plane(motions: Motions, shape: Outline, ax: Any, units: Units) -> Any:
                 ax.plot(*np.array([at, at + capsule]).T, color=colour, linewidth=2.5, alpha=0.35, zorder=1)
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
+    ax.locator_params(axis="x", nbins=5)  # numbers side by side have no room for more
     label_axis(ax.xaxis, "$x$", units.length, size / 2)
     label_axis(ax.yaxis, "$y$", units.length, size / 2)
     return ax
