@@ -201,7 +201,7 @@ def _draw(
                 progress.update(task, total=len(planned.steps), completed=k)
         else:
             drawn = overview.figures(planned, **solid)
-        if ways is not None:
+        if ways is not None and shape is not None:
             from regrasp.plots import plot_motions
 
             drawn["motions"] = plot_motions(ways, shape).figure
