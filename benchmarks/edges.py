@@ -67,6 +67,8 @@ def outcome(at: object, grasp: rg.Grasp, load: np.ndarray, inside: bool, objecti
         return "proven"
     except rg.SolverFailed:
         return "solver failed"
+    except Exception as error:
+        return f"exception: {type(error).__name__}: {error!s:.80}"
     faults = state_faults(*data, grasp.max_forces, load, state.forces)
     return f"wrong: {faults[0]}" if faults else "held"
 
@@ -78,13 +80,18 @@ def run(count: int, folder: Path) -> None:
         path = folder / f"{first:08d}.json"
         if path.exists():
             continue
-        counts = Counter(
-            f"{d}|{distance:g}|{word}"
-            for seed in range(first, min(first + CHUNK, count))
-            for d, distance, word in verdicts(seed)
-        )
+        counts: Counter[str] = Counter()
+        faults: list[list] = []
+        for seed in range(first, min(first + CHUNK, count)):
+            for d, distance, word in verdicts(seed):
+                counts[f"{d}|{distance:g}|{word.split(':')[0]}"] += 1
+                if word.split(":")[0] not in ("held", "proven", "at its limit"):
+                    faults.append([seed, distance, word])
         part = path.with_suffix(".part")
-        part.write_text(json.dumps({"counts": counts, "grasps": min(CHUNK, count - first)}), encoding="utf-8")
+        part.write_text(
+            json.dumps({"counts": counts, "faults": faults, "grasps": min(CHUNK, count - first)}),
+            encoding="utf-8",
+        )
         part.replace(path)
 
 

@@ -101,11 +101,13 @@ def _root_above(value: Fraction) -> Fraction:
     return Fraction(isqrt((value.numerator << shift) // value.denominator) + 1, 1 << (shift // 2))
 
 
-def is_held(positions: Array, normals: Array, frictions: Array, load: Array) -> bool:
+def is_held(
+    positions: Array, normals: Array, frictions: Array, load: Array, *, most: int | None = NEVER
+) -> bool:
     """Whether planar forces hold a load, exactly: whether -w is a sum of edges of cones.
 
-    Of ``NEVER`` loads at most: rounding of a contact that stands still holds any load by forces of 1e16
-    times it.
+    Of ``most`` loads at most: rounding of a contact that stands still holds any load by forces of 1e16
+    times it. None is without limit.
     """
     edges = []
     for r, n, mu in zip(positions.tolist(), normals.tolist(), frictions.tolist(), strict=True):
@@ -116,7 +118,11 @@ def is_held(positions: Array, normals: Array, frictions: Array, load: Array) -> 
     target = [-x for x in exact(load.tolist())]
     size = max(abs(x) for x in target[:2]) or abs(target[2]) / max(abs(Fraction(x)) for x in positions.flat)
     spare = [Fraction(0), Fraction(0), Fraction(0), Fraction(1)]
-    return not any(target) or _in_cone([*edges, spare], [*target, NEVER * size])
+    if not any(target):
+        return True
+    if most is None:
+        return _in_cone([edge[:3] for edge in edges], target)
+    return _in_cone([*edges, spare], [*target, most * size])
 
 
 def _in_cone(edges: list[Vector], target: Vector) -> bool:

@@ -136,3 +136,16 @@ def test_what_cannot_be_balanced_is_refused() -> None:
 def test_no_force_where_no_load_asks_for_any() -> None:
     grasp = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.3), rg.Contact([1, 0], [-1, 0], 0.3)])
     assert not rg.GraspState(grasp, rg.Wrench([0, 0]), np.zeros((2, 2))).balanced().forces.any()
+
+
+def test_forces_near_none_are_none() -> None:
+    """What is left of given forces where no load asks for any, and the cones let none cancel."""
+    rng, none = np.random.default_rng(4), 0
+    for _ in range(40):
+        r, n = rng.normal(size=(3, 2)), rng.normal(size=(3, 2))
+        grasp = rg.Grasp(rg.Contact(*c, 0.4) for c in zip(r, n, strict=True))
+        found = rg.GraspState(grasp, rg.Wrench([0, 0]), rng.normal(size=(3, 2))).balanced()
+        size = abs(found.forces).max()
+        assert size == 0 or size > 1e-12
+        none += size == 0
+    assert 5 < none < 40

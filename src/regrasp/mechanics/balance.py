@@ -36,6 +36,10 @@ _ROUNDING = 1e-11
 _FLAT = 1e-13
 # A force below this fraction of the largest is a solver's noise at a finger that carries none.
 _IDLE = 1e-8
+# Without a load, forces below this fraction of those given are the rounding of none.
+_DUST = 2.0**-40
+# A direction in which G is less than this fraction of its largest singular value hardly is one.
+_NEARLY_FLAT = 1e-6
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -115,9 +119,11 @@ def nearest_equilibrium(
     residual = g @ f.ravel() + w
     for _ in range(_STEPS):
         if abs(residual).max() <= _ENOUGH * max(heaviest, float(abs(f).max())):
-            return f
+            return f if heaviest or abs(f).max() > _DUST * scale else np.zeros_like(f)
         if abs(residual).max() <= _ENOUGH * scale:  # as near as beside such large forces; go on from here
-            return nearest_equilibrium(f, matrix, load, normals, frictions, limits, length)
+            found = nearest_equilibrium(f, matrix, load, normals, frictions, limits, length)
+            is_dust = found is not None and not heaviest and abs(found).max() <= _DUST * scale
+            return np.zeros_like(f) if is_dust else found
         curvature = np.add.reduce(parts @ derivative @ parts.transpose(0, 2, 1))
         # A contact that pushes nothing adds no curvature; the shift keeps the step finite there.
         step = stride * np.linalg.solve(curvature + (1e-12 * n + damping) * np.eye(w.size), residual)
@@ -143,6 +149,36 @@ def nearest_equilibrium(
             if abs(y).max() > _UNBOUNDED * scale:
                 return None
     return None
+
+
+def nearest_nearly_flat(
+    grasp: Grasp, load: Array, forces: Array, frictions: Array, limits: Array
+) -> Array | None:
+    """``nearest_equilibrium`` where G is nearly singular, as of contacts next to one another; None elsewhere.
+
+    G G' squares what is small and loses it. With G = U S V' the rows of V' f = -S^-1 U' w are as steep as
+    one another. What a nearly flat direction lacks is made up by large changes, or left if it is rounding:
+    as many of them are used as it takes. load: (3,) or (6,), torques divided by the size.
+    """
+    out, sizes, into = kept(grasp, None, _directions)
+    steep = int(np.count_nonzero(sizes > _NEARLY_FLAT * sizes[0]))
+    heaviest, normals = float(abs(load).max()), grasp.cones.normals
+    for used in range(steep, len(sizes) + 1 if steep < len(out) else 0):
+        wanted = (out[:, :used].T @ load) / sizes[:used]
+        f = nearest_equilibrium(forces, into[:used], wanted, normals, frictions, limits, 1.0)
+        if f is None:
+            continue
+        off = float(abs(grasp.scaled_matrix @ f.ravel() + load).max())
+        if off <= _ENOUGH * max(heaviest, float(abs(f).max())):
+            return f
+    return None
+
+
+def _directions(grasp: Grasp, _: None) -> tuple[Array, Array, Array]:
+    """The singular value decomposition of G (3 or 6, n w), without what is rounding."""
+    out, sizes, into = np.linalg.svd(grasp.scaled_matrix, full_matrices=False)
+    real = sizes > 2.0**-50 * sizes[0]
+    return out[:, real], sizes[real], into[real]
 
 
 def _dual(f: Array, wanted: Array, residual: Array, y: Array) -> float:

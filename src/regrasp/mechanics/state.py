@@ -179,7 +179,7 @@ class GraspState(ArrayValue):
             reserve: fraction of every friction coefficient that is kept back [-].
 
         Raises:
-            Infeasible: When this grasp has no such state.
+            Infeasible: When none is found; it proves nothing. ``choose_state`` finds some state, or a proof.
         """
         if self.is_balanced(reserve=reserve):  # checks it
             return self
@@ -196,7 +196,8 @@ class GraspState(ArrayValue):
         if forces is None:
             raise Infeasible(
                 f"no forces of {', '.join(grasp.names)} inside their friction cones and force limits "
-                f"balance {shown(self.load)}"
+                f"that balance {shown(self.load)} were found near these, which is no proof that there are "
+                f"none; choose_state finds some forces, or proves that there are none"
             )
         if grasp.limit_rows is not None and not grasp.limit_rows.kept(forces):
             i = int(grasp.limit_rows.spare(forces).argmin())

@@ -134,3 +134,20 @@ def test_a_pair_near_one_point_under_a_load_just_off_it() -> None:
         assert "at its limit" in str(error.value) or error.value.certificate.is_proof
         middle = rg.Wrench([0, -1], -gap / 2)
         assert rg.choose_state(grasp, middle, "effort").value == pytest.approx(5 / 9, abs=1e-2)
+
+
+@pytest.mark.parametrize("fingers", [2, 3, 4])
+def test_in_space_a_hair_apart_they_hold_what_they_make(fingers: int) -> None:
+    """Loads that forces well inside the cones make, of contacts two of which leave G nearly singular."""
+    rng = np.random.default_rng(40 + fingers)
+    for _ in range(12):
+        r = rng.normal(size=(fingers, 3))
+        r[1] = r[0] + 10.0 ** rng.uniform(-11, -7) * rng.normal(size=3)
+        n = rng.normal(size=(fingers, 3))
+        n /= np.linalg.norm(n, axis=1)[:, None]
+        f = n * rng.uniform(0.5, 2, (fingers, 1)) + 0.1 * rng.normal(size=(fingers, 3))
+        load = -np.r_[f.sum(axis=0), np.cross(r, f).sum(axis=0)]
+        grasp = rg.Grasp(rg.Contact(*c, 1.5) for c in zip(r, n, strict=True))
+        state = rg.choose_state(grasp, rg.Wrench.from_vector(load), str(rng.choice(OBJECTIVES)))
+        limits = np.full(fingers, np.inf)
+        assert state_faults(r, n, grasp.frictions, limits, load, state.forces) == []

@@ -32,9 +32,11 @@ _WORK = 1e-9
 
 def infeasible(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """The error that says why no state exists: the cones, the force limits, the reserve or the limit."""
-    reason = verdict(grasp, load, criteria)
-    if reason is not None:
-        return reason
+    return verdict(grasp, load, criteria) or unproven(grasp, load, criteria)
+
+
+def unproven(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
+    """The error where no state was found, and nothing proves that there is none."""
     return Infeasible(
         f"no forces of {', '.join(grasp.names)} that balance {shown(load)} were found "
         f"with {criteria.reserve:g} "

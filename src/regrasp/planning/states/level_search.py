@@ -28,6 +28,8 @@ _FIRST = 0.05
 _STEPS = 12
 # The level from which on a motion is a proof is found to this.
 _NARROW = 1e-10
+# No level is so far from another: a slope that says so is rounding.
+_FARTHEST = 1e3
 # Where the level is not known well yet, this part of what it is too high by is enough.
 _ROUGHLY = 0.05
 
@@ -118,7 +120,8 @@ def _by_newton(
         if step is None:
             break
         fall = narrowing.falls(level)[list(cones)] @ (step.weights * step.normals)
-        best = float(level + step.depth / fall) if fall > 0 else level
+        change = step.depth / float(fall) if fall > 0 else 0.0
+        best = level + min(max(change, -_FARTHEST), _FARTHEST)
         found = used.shifted(step.forces, mu, bound) if step.depth > -FEASIBLE else None
         if found is not None:
             forces, is_widest = _whole(grasp, cones, found), is_near

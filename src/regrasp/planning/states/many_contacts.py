@@ -14,7 +14,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.escape import infeasible, verdict
+from regrasp.planning.states.escape import infeasible, unproven, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
@@ -58,9 +58,9 @@ def solved_forces(
             anyway = _by_newton(grasp, load, criteria, backend, facets)
             if anyway is not None:
                 return anyway
-        if reason is None:
-            raise
-        raise reason from None
+        if reason is None and (backend != "clarabel" or facets is not None):
+            raise  # another back end may know better
+        raise reason or unproven(grasp, load, criteria) from None
 
 
 def _pressed(
@@ -169,8 +169,10 @@ def _by_newton(
         return None
     frictions, limits = criteria.frictions(grasp), criteria.limits(grasp)
     chooser = Chooser(grasp, load, backend, facets, limits)
-    forces = chooser.nearest(np.zeros((len(grasp), grasp.width)), frictions, limits)
+    none = np.zeros((len(grasp), grasp.width))
+    forces = chooser.nearest(none, frictions, limits)
     is_least = forces is not None and criteria.objective is EFFORT
+    forces = chooser.settled(none, frictions, limits) if forces is None else forces
     if forces is None and grasp.dimension == 2:
         vertex = vertex_forces(grasp, load, frictions)
         near = vertex is not None and abs(vertex).max() <= NEVER * chooser.load_size

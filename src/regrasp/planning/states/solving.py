@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput, SolverFailed, shown
-from regrasp.mechanics.balance import nearest_equilibrium, shifted
+from regrasp.mechanics.balance import nearest_equilibrium, nearest_nearly_flat, shifted
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
@@ -31,8 +31,9 @@ LOOSE = 1e6
 FEASIBLE = 1e-7
 # An answer that exact equilibrium moves by more than this fraction of the forces is not the best one.
 _MOVED = 1e-5
-# Forces this many times the unit are better measured by a unit of their own.
+# Forces this many times the unit are better measured by one of their own; if a solver diverged, by none.
 _FAR = 4.0
+_DIVERGED = 1e12
 
 
 def force_unit(grasp: Grasp, load: Wrench) -> float:
@@ -126,7 +127,7 @@ class Chooser:
             return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
         except SolverFailed as failed:
             size = float(abs(self.wanted(failed.solution)).max())
-            if not _FAR * self.unit < size < inf:
+            if not _FAR * self.unit < size < _DIVERGED * self.unit:
                 raise
             self.unit = size
         return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
@@ -240,6 +241,9 @@ class Chooser:
         found = self.shifted(wanted, frictions, limits)
         if found is None and np.isfinite(wanted).all():
             found = self.nearest(wanted, frictions, limits)
+            if found is None:
+                mu, most = np.array(frictions), np.array(limits)
+                found = nearest_nearly_flat(self.grasp, self.vector, wanted, mu, most)
         if found is None or self.least is None:
             return found
         if not presses(found, self.grasp, self.least):

@@ -67,7 +67,10 @@ class Squeezer(Chooser):
 
     def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:
         """Whether every force in the cones works along a motion."""
-        cones = self.grasp.cones
+        cones, largest = self.grasp.cones, float(abs(twist).max())
+        if not 0 < largest < inf:
+            return False
+        twist = twist / largest  # of a solver that diverged it may be of any size
         moved = (cones.matrix.T @ twist).reshape(len(self.grasp), -1)
         normal = (moved * cones.normals).sum(axis=1)
         across = np.linalg.norm(moved - normal[:, None] * cones.normals, axis=1)
