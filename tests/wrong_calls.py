@@ -321,6 +321,7 @@ def rows() -> dict[str, Row]:
                 "fingers": "count",
                 "from_corners": "not negative",
                 "load_offset": "not negative",
+                "length": "positive",
                 "min_distance": "positive",
                 "disturbance": "value",
                 "arcs": "table",
