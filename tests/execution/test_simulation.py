@@ -105,6 +105,17 @@ def test_a_whole_regrasp_in_space_holds_on_three_fingers() -> None:
     assert execution.touching.sum(axis=1).min() >= 3
 
 
+def test_fingers_that_push_with_a_share_of_the_load_do_not_drop_it() -> None:
+    outline = rg.Outline.ellipse(0.04, 0.02)
+    ends = ellipse(0.02, 0.35, 0.7), ellipse(0.2, 0.5, 0.85)
+    for least, falls in ((0.0, True), (None, False)):
+        regrasp = rg.plan_regrasp(outline, *ends, rg.Wrench([0, -3.0]), friction=0.5, min_normal=least)
+        execution = simulate(regrasp, shape=outline)
+        assert execution.dropped == falls
+    assert execution.slip.max() < 1e-4
+    assert execution.error < 2e-3
+
+
 def test_tips_that_roll_wander_and_those_that_turn_along_do_not() -> None:
     along, rolling = run("turn"), simulate(turned(), rolling=True)
     assert rolling.error > 10 * along.error

@@ -622,7 +622,8 @@ def test_parts_of_scenarios_are_the_parts_there_are() -> None:
 START_POINT = "[-0.01, -0.007]"
 TASK_KEYS = (
     "kind, objective, states, least_margin_degrees, min_distance, max_force, peak_ratio, reserve, "
-    "step_duration, rate, orientations, goal_degrees, candidates, max_turn_degrees, one_finger, arcs, weights"
+    "step_duration, rate, orientations, goal_degrees, candidates, max_turn_degrees, one_finger, min_normal, "
+    "arcs, weights"
 )
 
 

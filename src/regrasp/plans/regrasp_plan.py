@@ -11,6 +11,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
 from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.document import Documented
+from regrasp.plans.regrasp_notes import notes_on
 from regrasp.plans.transition import Transition
 
 
@@ -56,6 +57,11 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
     def friction_needed(self) -> float:
         """The least coefficient of all contacts under which all forces stay in their cones [-]."""
         return max(step.friction_needed for step in self.steps)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where a finger that holds hardly pushes, or one squeezes far above the load, in words."""
+        return tuple(notes_on(self.steps))
 
     def orientation(self, t: ArrayLike) -> Array:
         """The object's angle [rad] at times in [0, duration] [s], of the shape of t.
@@ -125,7 +131,7 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
             turn = self._turn_in_words(step, a, b)
             held = ", ".join(step.grasp.names)
             lines.append(f"{k:2}. {step.in_words} with {held}{turn}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
 
     __repr__ = __str__
 

@@ -80,13 +80,63 @@ def test_least_normals_too_large_are_refused():
         rg.plan_regrasp(
             ELLIPSE, START, GOAL, WEIGHT, friction=0.5, orientations=1, min_normal=50.0, max_force=9.0
         )
-    with pytest.raises(rg.InvalidInput, match="states='joint' takes no min_normal"):
-        rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, min_normal=0.1, states="joint")
     with pytest.raises(rg.InvalidInput, match="min_normal must be at least 0"):
         rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, min_normal=-1.0)
     asked = rg.Criteria("angle", min_normal=0.3)
     plan = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, objective=asked)
     assert max(plan.steps[0].record.least_normals) == 0.3
+
+
+def test_a_share_of_the_load_unless_it_takes_more_moves(monkeypatch):
+    weak = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, min_normal=0.0)
+    assert "less than 1% of the load" in weak.notes[0]
+    assert str(weak).endswith(f"note: {weak.notes[0]}")
+    usual = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5)
+    assert not usual.notes
+    assert len(usual.moves) == len(weak.moves)
+    assert weak.margin - 0.01 <= usual.margin <= weak.margin
+    for kind in ({"one_finger": True}, {"objective": rg.Criteria()}):
+        assert rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, **kind).notes
+    # a share that takes more moves, or that nothing has, is not asked for
+    careful = {"friction": 0.5, "least_margin": 0.3}
+    weak = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **careful, min_normal=0.0)
+    strong = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **careful, min_normal=6.0)
+    assert len(strong.moves) > len(weak.moves)
+    for share in (2.0, 1e3):
+        monkeypatch.setattr("regrasp.planning.regrasps.planar.LEAST_SHARE", share)
+        assert rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **careful) == weak
+
+
+def test_states_chosen_together_push_too():
+    plan = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, friction=0.5, states="joint", min_normal=0.7)
+    assert rg.verify(plan).ok
+    for step in plan.steps:
+        stay = [step.grasp.index(n) for n in step.grasp.names if n not in (*step.leaving, *step.arriving)]
+        for state in (step.start, step.end):
+            assert (state.forces * step.grasp.normals).sum(axis=1)[stay].min() >= 0.7 - 1e-9
+
+
+def test_a_squeeze_far_above_the_load_is_noted():
+    pinched = rg.Outline([[0, 0], [3, 0], [3, 0.3], [0, 0.3]])
+    ends = [
+        rg.Grasp(pinched.contact_at(s, friction=0.5) for s in places)
+        for places in ((0.4, 2.6, 4.8), (0.9, 2.2, 4.3))
+    ]
+    plan = rg.plan_regrasp(pinched, *ends, rg.Wrench([0, -3.0]), friction=0.5, orientations=1)
+    most = max(np.linalg.norm(step.start.forces, axis=1).max() for step in plan.steps)
+    assert any("times the load" in note for note in plan.notes) == (most > 30)
+
+
+def test_one_finger_counts_no_cone_of_a_finger_without_force():
+    a = 2.2928918565775236
+    turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
+    point, normal = turn @ [0.0, -1.0], turn @ [0.0, 1.0]
+    rng = np.random.default_rng(0)
+    contacts = [rg.Contact(point, normal, 0.5)]
+    contacts += [rg.Contact([x, y], [-x, -y], 0.5) for x, y in rng.normal(size=(40, 2))]
+    graph = HoldGraph(tuple(named(contacts, "c")), WEIGHT, np.array([a]), one_finger=True)
+    assert graph.row(0, 0)[1:] == pytest.approx(np.arctan(0.5), abs=1e-6)
+    assert graph.widest().margins[:40] == pytest.approx(np.arctan(0.5), abs=1e-6)
 
 
 def test_fingers_side_by_side_press_by_no_squeeze():

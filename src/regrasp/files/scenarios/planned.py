@@ -127,6 +127,7 @@ def regrasp_by(scenario: RegraspScenario | SpaceRegraspScenario, verb: Callable[
             "arcs": None if task.arcs is None else [arc or None for arc in task.arcs],
             "max_turn": MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
             "one_finger": task.one_finger,
+            "min_normal": task.min_normal,
             **_taken(task, _REGRASP_OPTIONS),
         }
     else:

@@ -166,6 +166,12 @@ class RegraspTask(CommonTask):
         None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"
     )
     one_finger: bool = Field(False, description="whether one finger of a hold may carry the whole load")
+    min_normal: float | None = Field(
+        None,
+        ge=0,
+        description="least normal force of fingers that hold [N]; if absent a hundredth of the load "
+        "where that needs no more moves",
+    )
     arcs: Annotated[list[list[Vector]], Field(min_length=3, max_length=3)] | None = Field(
         None,
         description="[m], for each finger the arcs it may touch, counter-clockwise from one arc length to "

@@ -123,27 +123,18 @@ class HoldGraph(ArrayValue):
                 f"{self.most_bytes / 2**30:.3g}; take fewer, allow more by most_bytes, or ask for widest()"
             )
         result = np.full((len(self.angles), self.pairs[0].size), NO_HOLD, dtype=np.float32)
+        hold_margins(*self.pairs, self.loads, self._candidates, result)
+        result[:, ~self._apart] = NO_HOLD
         if self.min_normal:
-            self._pressed(result)
+            holding = np.nonzero(result >= 0)
+            result[holding] = self._by_states(*holding)
         else:
-            hold_margins(*self.pairs, self.loads, self._candidates, result)
-            result[:, ~self._apart] = NO_HOLD
             for o, places in self._alone.items():
                 result[o, places] = self._shared(o, places)
         if self.keep is not None:
             for o, row in enumerate(result):
                 row[~self._kept(o)] = NO_HOLD
         return result
-
-    def _pressed(self, result: NDArray[np.float32]) -> None:
-        """Writes margins (O, P) of pairs both of which push with the least normal force."""
-        from regrasp.planning.holds.turning.margins import Candidates
-
-        some = np.flatnonzero(self._apart)
-        first, second = (ends[some].astype(np.int64) for ends in self.pairs)
-        pair = Candidates(self.contacts, self.load, self.peak_ratio, self.one_finger, self.min_normal)
-        for row, angle in zip(result, self.angles.tolist(), strict=True):
-            row[some] = pair.margins((first, second), np.full(some.size, angle))
 
     def widest(self) -> WidestHolds:
         """The widest hold of every pair over all angles, in memory that does not grow with the angles."""
@@ -189,12 +180,12 @@ class HoldGraph(ArrayValue):
 
     @cached_property
     def _alone(self) -> dict[int, NDArray[np.int64]]:
-        """Pairs with a contact that the load passes through, by orientation, where both have to push."""
-        from regrasp.planning.holds.single_fingers import held_alone
+        """Pairs with a contact that the load passes through, by orientation: it might carry all of it."""
+        from regrasp.planning.holds.turning.margins import passes_through
 
         found: dict[int, NDArray[np.int64]] = {}
-        for o, load in enumerate(self.loads if not self.one_finger else ()):
-            through = held_alone(self._points, load)
+        for o, load in enumerate(self.loads):
+            through = np.flatnonzero(passes_through(self._points, load))
             if not through.size:
                 continue
             first, second = self.pairs
@@ -204,11 +195,16 @@ class HoldGraph(ArrayValue):
         return found
 
     def _shared(self, o: int, places: NDArray[np.int64]) -> NDArray[np.float32]:
-        """(m,) margins of pairs at an orientation, with both fingers at work."""
-        from regrasp.planning.holds.single_fingers import shared_margins
+        """(m,) margins of pairs at an orientation, of which one finger might carry the load alone."""
+        return self._by_states(np.full(places.size, o), places)
 
-        first, second = (ends[places] for ends in self.pairs)
-        return shared_margins(self.contacts, first, second, self.loads[o], self.peak_ratio).astype(np.float32)
+    def _by_states(self, o: NDArray[np.int64], places: NDArray[np.int64]) -> NDArray[np.float32]:
+        """(m,) margins of pairs, each at an orientation, by the states that have them."""
+        from regrasp.planning.holds.turning.margins import Candidates
+
+        first, second = (ends[places].astype(np.int64) for ends in self.pairs)
+        pair = Candidates(self.contacts, self.load, self.peak_ratio, self.one_finger, self.min_normal)
+        return pair.margins((first, second), self.angles[o]).astype(np.float32)
 
     @cached_property
     def _points(self) -> Array:

@@ -3,6 +3,7 @@
 The unknowns are the forces of every state, block after block, and t:
 
     equilibrium, cones less t, limits     of every state, as in ``state_program`` for ``force``
+    least normal forces                   of every finger of a state
     margin    maximise t
     change    minimise the sum of |f_k+1 - f_k|^2 over states that follow one another, with t given;
               a contact that one of the two does not have counts with zero there
@@ -19,6 +20,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives import FORCE
+from regrasp.planning.states.pressing import pressing
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import SLACK, Chooser
 from regrasp.programs import Program, Status, solve
@@ -32,7 +34,8 @@ class SequenceState:
     """One state of a sequence: its grasp and load, who its contacts are, and what they may use.
 
     places: (n,) one name for each contact, by which it is known in the other states. frictions, limits [N],
-    counts: (n,); a contact that does not count may be idle, and its margin is left out of the worst.
+    counts: (n,); a contact that does not count may be idle, and its margin is left out of the worst. least:
+    normal force of every contact at the least [N].
     """
 
     grasp: Grasp
@@ -41,6 +44,12 @@ class SequenceState:
     frictions: list[float]
     limits: list[float]
     counts: tuple[bool, ...]
+    least: float = 0.0
+
+    @property
+    def normals(self) -> Array:
+        """(n,) least normal forces [N]."""
+        return np.full(len(self.grasp), self.least)
 
     @property
     def weights(self) -> Array:
@@ -56,7 +65,14 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
     if len(states) < 2:
         raise InvalidInput(f"a sequence has two states or more, got {len(states)}")
     parts = [
-        state_program(s.grasp, s.load, FORCE, s.frictions, s.limits, unit, weights=s.weights) for s in states
+        pressing(
+            state_program(s.grasp, s.load, FORCE, s.frictions, s.limits, unit, weights=s.weights),
+            s.grasp,
+            s.normals,
+            unit,
+            unit,
+        )
+        for s in states
     ]
     forces = sparse.block_diag([part.A[:, :-1] for part in parts], format="csc")
     distances = sparse.vstack([part.A[:, -1] for part in parts], format="csc")
@@ -103,7 +119,8 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
         size = shape[0] * shape[1]
         wanted = answer.value[begin : begin + size].reshape(shape) * unit
         begin += size
-        chooser = Chooser(state.grasp, state.load, backend, None, state.limits)
+        least = state.normals if state.least else None
+        chooser = Chooser(state.grasp, state.load, backend, None, state.limits, least)
         forces = chooser.settled(wanted, state.frictions, state.limits)
         if forces is None:
             raise SolverFailed(f"{backend} answered forces far from equilibrium", answer.program, answer)

@@ -39,7 +39,7 @@ class RegraspOptions(LimitOptions, total=False):
     arcs: Arcs | None
     one_finger: bool
     weights: RegraspWeights | None
-    min_normal: float
+    min_normal: float | None
     step_duration: float
     goal_rotation: ArrayLike | None
     facets: int
@@ -63,14 +63,13 @@ def settled(problem: Any) -> Criteria:
     given = {name: getattr(problem, name) for name in entries}
     defaults = {name: option.default for name, (_, option) in entries.items()}
     changed = {k: v for k, v in given.items() if not isinstance(v, float | None) or v != defaults[k]}
-    if number(getattr(problem, "min_normal", 0.0), "min_normal", least=0):
-        changed["min_normal"] = problem.min_normal
+    asked = getattr(problem, "min_normal", None)
+    if asked is not None and number(asked, "min_normal", least=0):
+        changed["min_normal"] = asked
     criteria = criteria_of(problem.objective, changed)
     if not hasattr(problem, "min_normal"):
         criteria.refuse_pressing("a regrasp in space")
-    elif criteria.presses and problem.states == "joint":
-        raise InvalidInput("states='joint' takes no min_normal; leave one of them out")
-    else:
+    elif asked is not None or isinstance(problem.objective, Criteria):
         object.__setattr__(problem, "min_normal", criteria.least_normal)
     for name in ("objective", *entries):
         object.__setattr__(problem, name, getattr(criteria, name))

@@ -39,6 +39,7 @@ from regrasp.planning.regrasps.turning import turning_sequences
 from regrasp.planning.regrasps.why_not import unheld_end, why_not
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import Objective
+from regrasp.plans.regrasp_notes import LEAST_SHARE, hardly_pushes
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.timing import TimeScaling
 
@@ -81,7 +82,8 @@ class RegraspProblem(ArrayValue):
         weights: look for the least cost in place of the fewest moves and the widest margin.
         max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
         min_normal: with which every finger of a state pushes at the least, those that leave and arrive during
-            a step apart [N].
+            a step apart [N]; 0 for none. If not given, and no ``Criteria`` are, 1 % of the load's force, or
+            none where that takes more moves or leaves no sequence.
         peak_ratio: as for ``choose_state`` [-].
         reserve: as for ``choose_state`` [-].
         step_duration: [s] of each step.
@@ -111,7 +113,7 @@ class RegraspProblem(ArrayValue):
     peak_ratio: float = PEAK_RATIO
     reserve: float = RESERVE
     step_duration: float = 1.0
-    min_normal: float = 0.0
+    min_normal: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.outline, Outline):
@@ -179,7 +181,7 @@ class RegraspProblem(ArrayValue):
         kept = tuple(c.changed(friction=kept_friction(c.friction, self.reserve)) for c in contacts)
         return HoldGraph(
             kept, self.load, self.angles, self.peak_ratio, self.min_distance, self.keep,
-            one_finger=self.one_finger, min_normal=self.min_normal,
+            one_finger=self.one_finger, min_normal=self.min_normal or 0.0,
         )  # fmt: skip
 
     @cached_property
@@ -250,6 +252,27 @@ class RegraspProblem(ArrayValue):
         whole(extra, "extra", least=0, most=MOST_EXTRA)
         if extra and self.weights is not None:
             raise InvalidInput("extra trades moves against margin; leave it out, or weights")
+        try:
+            found = self._planned(extra)
+        except _NoSequence:
+            raise why_not(self) from None
+        if (
+            self.min_normal is None
+            and not self.one_finger
+            and any(hardly_pushes(plan.steps) for plan in found)
+        ):
+            return self._pushing(extra, len(found[0].moves)) or found
+        return found
+
+    def _pushing(self, extra: int, moves: int) -> list[RegraspPlan]:
+        """Plans in which all fingers push with a share of the load; none where that takes more moves."""
+        try:
+            found = replace(self, min_normal=LEAST_SHARE * float(np.hypot(*self.load.force)))._planned(extra)
+        except Infeasible:
+            return []
+        return found if len(found[0].moves) <= moves or self.weights is not None else []
+
+    def _planned(self, extra: int) -> list[RegraspPlan]:
         if self.is_exact:
             exact = self.turning_sequences(extra)
             if not exact or not any(c.max_force for c in self.contacts):
@@ -264,29 +287,26 @@ class RegraspProblem(ArrayValue):
 
     def _turning_plans(self, found: list[TurningSequence]) -> list[RegraspPlan]:
         if not found:
-            raise why_not(self)
+            raise _NoSequence
         try:
             return [self._plan(each.sequence, self.max_turn, np.array(each.angles)) for each in found]
         except Infeasible:
-            raise unheld_end(self) or why_not(self) from None
+            raise _NoSequence from None
 
     def _sampled_plans(self, extra: int) -> list[RegraspPlan]:
         turn, found = self.max_turn, self.sequences(extra)
         if not found:
-            raise why_not(self)
+            raise _NoSequence
         reach = REACH
         while True:
             try:
                 return [self._plan(sequence, turn) for sequence in found]
             except Infeasible as error:
-                unheld = unheld_end(self)
-                if unheld is not None:
-                    raise unheld from None
                 turn = turn / 2 if reach == turn else turn
                 reach = turn
                 found = self._sampled(extra, turn, reach)
                 if not found:
-                    raise Infeasible(
+                    raise unheld_end(self) or Infeasible(
                         f"the force limits leave no room for forces to grow while the object turns: {error}; "
                         f"allow more force, or more orientations for smaller turns",
                         error.certificate,
@@ -327,6 +347,13 @@ class RegraspProblem(ArrayValue):
         if self.states == "joint":
             states = spread_states(states, self.criteria, self.least_margin)
         return regrasp_of(states, self.contacts, TimeScaling.spline(self.step_duration), self.criteria)
+
+
+class _NoSequence(Infeasible):
+    """There is none; why is a matter of its own, and takes longer."""
+
+    def __init__(self) -> None:
+        super().__init__("no sequence of holds leads from the start to the goal")
 
 
 def _order(sequence: Sequence) -> tuple[float, ...]:

@@ -153,6 +153,7 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
                 frictions(s, len(s.places) < len(states[0].places)),
                 list(s.limits),
                 _in_use(s.forces),
+                criteria.least_normal,
             )
             for s in states
         ],

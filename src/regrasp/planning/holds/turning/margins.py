@@ -1,4 +1,10 @@
-"""Margins of pairs of contacts, each at an angle of the object of its own."""
+"""Margins of pairs of contacts, each at an angle of the object of its own.
+
+Where the load's line passes through a contact, its finger can hold the object by itself, and the widest angle
+margin is often the one of which the other finger has no part: a finger without force has no angle. Such a
+state is no hold of two fingers, unless one may hold alone. In its place stands the state of the widest force
+margin, in which both push; where even that leaves one of them without force there is no hold.
+"""
 
 from math import inf
 
@@ -10,12 +16,20 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.batch import best_squeezes
 
-# As for holds at given orientations (``single_fingers``).
+# A load that passes a contact nearer than this fraction of its distance from the centre passes through it;
+# a force below this fraction of the other one is none.
 _THROUGH, _IDLE = 1e-11, 2.0**-39
 _SPARE = 1e-9  # of limits and margins [rad] after a squeeze was moved
 
 Pairs = tuple[NDArray[np.int64], NDArray[np.int64]]
 """Places (m,) of the first and the second contacts."""
+
+
+def passes_through(points: Array, loads: Array) -> NDArray[np.bool_]:
+    """(m,) whether forces through the origin, (2,) or (m, 2), pass through points (m, 2)."""
+    across = abs(points[:, 0] * loads[..., 1] - points[:, 1] * loads[..., 0])
+    limits: NDArray[np.bool_] = across <= _THROUGH * np.hypot(*points.T) * np.hypot(*loads.T)
+    return limits
 
 
 class Candidates:
@@ -54,9 +68,7 @@ class Candidates:
             return result
         through = np.zeros(angles.shape, dtype=np.bool_)
         for places in pairs:
-            points = self.points[places]
-            across = abs(points[:, 0] * loads[:, 1] - points[:, 1] * loads[:, 0])
-            through |= across <= _THROUGH * np.hypot(*points.T) * np.hypot(*loads.T)
+            through |= passes_through(self.points[places], loads)
         if through.any():  # one finger could carry the load alone: both are to push
             some = (pairs[0][through], pairs[1][through])
             shared = np.full(int(through.sum()), -1.0)
