@@ -12,9 +12,21 @@ from scipy import sparse
 
 from processes import is_running
 from regrasp.errors import InvalidInput, SolverFailed
-from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
+from regrasp.programs import (
+    Block,
+    Cone,
+    Program,
+    Solution,
+    Status,
+    available_backends,
+    qp_backend,
+    solve,
+)
 from regrasp.programs import backends as table
+from regrasp.programs.answer import Answer
+from regrasp.programs.calls import deadline
 from regrasp.programs.facts import BACKENDS, Backend
+from regrasp.programs.solution import failed as failed_answer
 
 pytestmark = pytest.mark.contract
 
@@ -136,6 +148,75 @@ def test_limits_reach_solvers_that_have_an_option(monkeypatch):
     with pytest.raises(SolverFailed, match="clarabel: STOPPED"):
         solve(p, "clarabel", time_limit=1e-9)
     assert solve(p, "clarabel", time_limit=60.0).status is Status.SOLVED
+
+
+class Clock:
+    """A clock that stands still but for what is told to take time, and what limits it was asked with."""
+
+    def __init__(self, monkeypatch) -> None:
+        self.now, self.limits = 0.0, []
+        monkeypatch.setattr(deadline, "monotonic", lambda: self.now)
+
+    def ask(self, limit) -> None:
+        self.now += 1.0
+        self.limits.append(limit)
+
+
+def test_a_limit_is_for_all_back_ends_together(monkeypatch):
+    clock = Clock(monkeypatch)
+
+    def solver(program, name, **options):
+        clock.ask(options[BACKENDS[name].time_limit])
+        return failed_answer(program, name, "too hard")
+
+    monkeypatch.setattr(table, "_AUTO", ("clarabel", "daqp", "osqp", "scs"))
+    monkeypatch.setattr(table, "import_module", lambda _: types.SimpleNamespace(solve=solver))
+    far = Program(
+        sparse.csc_matrix([[2.0]]), np.ones(1), sparse.csc_matrix([[1.0], [1.0]]), np.array([1.0, 1e9]),
+        (Block(Cone.NONNEGATIVE, 1, 2),),
+    )  # fmt: skip
+    for limit, asked in ((2.5, 3), (3.0, 3), (3.5, 4), (5.5, 6)):  # without the far bound the first once more
+        clock.limits.clear()
+        with pytest.raises(SolverFailed):
+            solve(far, time_limit=limit)
+        assert clock.limits == [limit - k for k in range(asked)]
+
+
+def test_a_limit_is_for_the_question_of_a_point_too(monkeypatch):
+    clock = Clock(monkeypatch)
+
+    def solver(program, name, **options):
+        clock.ask(options["time_limit"])
+        falls = np.array([1.0]), np.full(2, np.nan)
+        return Solution(program, name, Status.UNBOUNDED, *falls, 1, 0.0, 0.0, "falls")
+
+    monkeypatch.setattr(table, "import_module", lambda _: types.SimpleNamespace(solve=solver))
+    falling = Program(
+        sparse.csc_matrix((1, 1)), -np.ones(1), sparse.csc_matrix([[-1.0], [-1.0]]), np.array([-1.0, 0.0]),
+        (Block(Cone.NONNEGATIVE, 1, 2),),
+    )  # fmt: skip
+    for limit, limits in ((1.0, [1.0]), (1.5, [1.5, 0.5])):
+        clock.limits.clear()
+        answer = solve(falling, "clarabel", throw=False, time_limit=limit)
+        assert answer.status is Status.UNBOUNDED_OR_INFEASIBLE
+        assert clock.limits == limits
+
+
+def test_a_limit_is_for_all_proximal_steps_together(monkeypatch):
+    clock = Clock(monkeypatch)
+
+    class Session:
+        def __init__(self, data, **options) -> None:
+            clock.ask(options["time_limit"])
+
+        def solve(self):
+            return Answer("found", np.array([-clock.now]), np.zeros(0))
+
+    steps = types.SimpleNamespace(layout=lambda program: program, Session=Session)
+    monkeypatch.setattr(qp_backend, "import_module", lambda _: steps)
+    none = sparse.csc_matrix((1, 1)), np.ones(1), sparse.csc_matrix((0, 1)), np.zeros(0), ()
+    solve(Program(*none), "daqp", throw=False, time_limit=100.0)
+    assert clock.limits == [100.0 - k for k in range(27)]
 
 
 @pytest.mark.parametrize("limit", [0, -1.0, np.inf, np.nan])

@@ -81,6 +81,49 @@ def test_fingers_that_meet_jump_or_let_go_are_seen() -> None:
     assert "moves otherwise than its velocity says" in str(verify_motions(slow, star()))
 
 
+@pytest.mark.parametrize("number", [np.nan, np.inf, -0.003, 0.0, "3 mm"])
+def test_ways_of_others_have_sizes_that_are_numbers(number: object) -> None:
+    """Distances less a radius that is none are never less than the clearance."""
+    for name in ("tip_radius", "clearance"):
+        with pytest.raises(rg.InvalidInput, match=f"^{name} of motions must be"):
+            verify_motions(replace(planar(), **{name: number}), star())
+    capsules = [[0.0, 0.0], [number, 0.0]]
+    if number not in (0.0, -0.003):
+        with pytest.raises(rg.InvalidInput, match=r"^capsule 2 of motions must be"):
+            verify_motions(replace(planar(), capsules=capsules), star())
+
+
+class Begins(Motions):
+    """Ways whose first steps begin otherwise than said."""
+
+    begins: tuple[float, ...] = ()
+
+    @property
+    def starts(self):  # type: ignore[no-untyped-def, override]
+        theirs = super().starts
+        return np.r_[self.begins, theirs[len(self.begins) :]]
+
+
+def test_steps_follow_one_another_within_the_ways() -> None:
+    motions = planar()
+    fields = {name: getattr(motions, name) for name in motions.__dataclass_fields__}
+    first, second, *_, end = motions.starts
+    over = first + motions.steps[0].duration
+    for begins, found in (
+        ((first, second), False),
+        ((-1e-11 * end, second), True),
+        ((first, over - 1e-11 * end), True),
+        ((first, over - 1e-13 * end), False),
+        ((first, over), False),
+        ((np.nan, second), True),
+        ((end + 1, end + 3), True),
+    ):
+        wrong = Begins(**fields)
+        object.__setattr__(wrong, "begins", begins)
+        said = str(verify_motions(wrong, star()))
+        assert ("s, not after" in said) == found
+
+
 def test_a_jump_is_refused() -> None:
     motions = planar()
     with pytest.raises(rg.InvalidInput, match="ways move or jump by more than a tenth of the clearance"):

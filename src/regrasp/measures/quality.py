@@ -9,7 +9,7 @@ from regrasp.measures.geometry_measures import geometry_measures
 from regrasp.measures.limit_measures import FACETS, limit_measures, task_measure
 from regrasp.measures.matrix_measures import hand_measures, matrix_measures
 from regrasp.measures.measure import Quality
-from regrasp.measures.wrench_ball import GAP, normal_limits
+from regrasp.measures.wrench_ball import GAP, length_of, normal_limits
 from regrasp.mechanics.checks import ArrayLike, array, items, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -55,7 +55,9 @@ def quality(
     """
     grasp = taken(grasp)
     limits = normal_limits(limit, len(grasp), total=False)
-    length = (grasp.size or 1.0) if length is None else number(length, "length", above=0)
+    if grasp.out_of_range:
+        raise InvalidInput(grasp.out_of_range)
+    length = length_of(grasp, length)
     if not (isinstance(gap, float) and gap == inf):
         number(gap, "gap", above=0)
     whole(facets, "facets", least=3, most=MOST_FACETS)

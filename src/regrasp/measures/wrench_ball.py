@@ -7,9 +7,10 @@ from typing import Literal
 
 import numpy as np
 
+from regrasp.errors import InvalidInput, shown
 from regrasp.measures.closure import closure, taken
 from regrasp.measures.wrench_sets import WrenchSet
-from regrasp.mechanics.checks import Array, ArrayLike, array, choice, number, numbers_in, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, choice, not_huge, number, numbers_in, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -24,6 +25,7 @@ _STARTS, _STEPS = 60, 200
 _CONES = 4_000_000  # some seconds
 _LOOSER = (0.05, 0.2, 0.5)
 _ROUNDING = 1e-12
+_FARTHEST = 1e50  # facets have normals of products, whose squares are numbers
 _FLAT = 1e-9
 _SURELY = 1e-6  # of the fingers' wrenches: an upper bound that no search stops at without closure
 
@@ -112,7 +114,9 @@ def wrench_ball(
     grasp = taken(grasp)
     total = choice(norm, "norm", NORMS) == "L1"
     limits = normal_limits(limit, len(grasp), total=total)
-    length = (grasp.size or 1.0) if length is None else number(length, "length", above=0)
+    if grasp.out_of_range:
+        raise InvalidInput(grasp.out_of_range)
+    length = length_of(grasp, length)
     if not (isinstance(gap, float) and gap == inf):
         number(gap, "gap", above=0)
     found = radius(grasp, WrenchSet.of(grasp, limits, total, length), length, gap)
@@ -164,13 +168,25 @@ def _searched(wrenches: WrenchSet, metric: Array, gap: float) -> tuple[float, fl
     return unit * lower, unit * float(upper), -u
 
 
+def length_of(grasp: Grasp, length: float | None) -> float:
+    """What torques are divided by: ``length``, checked, or the grasp's size [m]."""
+    if length is None:
+        return grasp.size or 1.0
+    given = number(length, "length", above=0)
+    if not 1 / _FARTHEST <= given <= _FARTHEST:
+        raise InvalidInput(
+            f"length must be between {1 / _FARTHEST:g} and {_FARTHEST:g} m, got {shown(length)}"
+        )
+    return given
+
+
 def normal_limits(limit: ArrayLike, count: int, *, total: bool) -> Array:
     """(n,) checked limits of normal forces [N]; of a ``total`` the same number for all."""
     if numbers_in(limit, "limit must be a number or one for each finger").ndim == 0:
-        return np.full(count, number(limit, "limit", above=0))
+        return np.full(count, not_huge(number(limit, "limit", above=0), "limit", _FARTHEST))
     if total:
         number(limit, "limit of an L1 ball")  # raises: a sum has one limit
     given = array(limit, "limit", (count,))
     for value in given.tolist():
         number(value, "limit", above=0)
-    return given.copy()
+    return not_huge(given, "limit", _FARTHEST).copy()

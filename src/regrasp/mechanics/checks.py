@@ -6,7 +6,7 @@ from errno import ENAMETOOLONG
 from inspect import signature
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,9 @@ else:
     )
 
 
+LARGEST = 1e100
+"""What forces, and whatever else is squared, may be at most where something is worked out from them."""
+_Numbers = TypeVar("_Numbers", float, Array)
 _FEW = 12
 _NO_NUMBERS = (str, bytes, bytearray, bool, np.bool_, np.str_, np.datetime64, np.timedelta64)
 
@@ -138,6 +141,14 @@ def limits(value: ArrayLike, what: str, count: int) -> Array:
     if not (given > 0).all():
         raise InvalidInput(f"{what} must be greater than 0, got {shown(value)}")
     return np.broadcast_to(given, (count,))
+
+
+def not_huge(values: _Numbers, what: str, most: float = LARGEST) -> _Numbers:
+    """The numbers, unless they are so large that sums of their squares or products are none."""
+    size = abs(values) if isinstance(values, float) else float(np.abs(values).max(initial=0.0))
+    if size > most:
+        raise InvalidInput(f"{what} must be at most {most:g} in size, got {shown(size)}")
+    return values
 
 
 def instance(value: Any, what: str, kind: type, hint: str = "") -> None:

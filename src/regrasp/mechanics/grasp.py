@@ -18,6 +18,7 @@ from regrasp.mechanics.plain import entries, listed
 from regrasp.mechanics.value import ArrayValue, one_line
 from regrasp.mechanics.wrench import torque
 
+_MOST = 1e50
 # Contacts nearer than this fraction of the largest coordinate are one point in double precision.
 COINCIDENT = 1e-12
 
@@ -78,6 +79,22 @@ class Grasp(ArrayValue):
         """
         contacts = listed(entries(data, "a grasp", ("contacts",))["contacts"], "contacts of a grasp")
         return cls(map(Contact.from_dict, contacts))
+
+    @cached_property
+    def out_of_range(self) -> str:
+        """What is too large or too small for its products to be numbers, in words; empty where nothing is.
+
+        Values may be of any size, and proofs are exact; what is worked out from them may not.
+        """
+        reach = float(np.abs(self.positions).max())
+        sizes = [("positions must reach", reach)]
+        for c in self.contacts:
+            label = f"{shown(c.name)} must be"
+            sizes += [(f"friction of {label}", c.friction), (f"torsion of {label}", c.torsion or 0.0)]
+        for what, size in sizes:
+            if size and not 1 / _MOST <= size <= _MOST:
+                return f"{what} 0 or between {1 / _MOST:g} and {_MOST:g}, got {size:g}"
+        return ""
 
     # -- lookup ---------------------------------------------------------------------------------------
 

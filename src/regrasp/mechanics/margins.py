@@ -67,7 +67,7 @@ def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
 
     angle = np.arctan(frictions) - np.arctan2(tangential, normal)
     # The nearest boundary point lies on the nearer edge, or at the apex for a force that points well out.
-    edge = (frictions * normal - tangential) / np.sqrt(1 + frictions**2)
+    edge = (frictions * normal - tangential) / np.hypot(1.0, frictions)
     force = np.where(angle >= -pi / 2, edge, -magnitude)
     available = np.maximum(frictions * normal, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,7 +1,7 @@
 """Forces of a grasp under a load."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import dist, hypot
 from operator import mul
@@ -12,7 +12,7 @@ import numpy as np
 from regrasp.display import table
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.balance import EQUILIBRIUM, nearest_equilibrium
-from regrasp.mechanics.checks import Array, ArrayLike, array, read_only
+from regrasp.mechanics.checks import LARGEST, Array, ArrayLike, array, not_huge, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import COLUMNS, IDLE, Margins, margins
 from regrasp.mechanics.plain import entries
@@ -45,7 +45,7 @@ class GraspState(ArrayValue):
     def __init__(self, grasp: Grasp, load: Wrench, forces: ArrayLike) -> None:
         if not isinstance(grasp, Grasp):
             raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
-        check_load(grasp, load)
+        _check_dimension(grasp, load)
         object.__setattr__(self, "grasp", grasp)
         object.__setattr__(self, "load", load)
         given = array(forces, "forces", (len(grasp), grasp.width))
@@ -87,18 +87,23 @@ class GraspState(ArrayValue):
     @cached_property
     def imbalance(self) -> Array:
         """G f + w_ext, (3,) or (6,) [N, N m]; zero in equilibrium."""
-        return read_only(self.grasp.matrix @ self.forces.ravel() + self.load.vector)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return read_only(self.grasp.matrix @ self.forces.ravel() + self.load.vector)
 
     @property
     def residual(self) -> float:
         """Norm of G f + w_ext, force and torque in the units given."""
-        return float(np.linalg.norm(self.imbalance))
+        return hypot(*self.imbalance.tolist())
 
     @cached_property
     def margins(self) -> Margins:
         """Margins of each contact, arrays of shape (n,)."""
-        cones = self.grasp.cones
-        return margins(cones.measured(self.forces), cones.normals, self.grasp.frictions)
+        unit = float(np.abs(self.forces).max())
+        unit = unit if unit > LARGEST else 1.0
+        with np.errstate(over="ignore", invalid="ignore"):
+            cones = self.grasp.cones
+            found = margins(cones.measured(self.forces / unit), cones.normals, self.grasp.frictions)
+        return found if unit == 1 else replace(found, force=read_only(unit * found.force))
 
     @property
     def magnitudes(self) -> Array:
@@ -155,7 +160,7 @@ class GraspState(ArrayValue):
         magnitudes = [hypot(*f) for f in rows]
         largest = max(*magnitudes, hypot(*load[:d]))
         torques = max(largest * self.grasp.size, hypot(*load[d:]))
-        if hypot(*total[:d]) > EQUILIBRIUM * largest or hypot(*total[d:]) > EQUILIBRIUM * torques:
+        if not (hypot(*total[:d]) <= EQUILIBRIUM * largest and hypot(*total[d:]) <= EQUILIBRIUM * torques):
             return False
         for contact, f, magnitude in zip(contacts, rows, magnitudes, strict=True):
             n = contact.plain[d : 2 * d]
@@ -183,6 +188,8 @@ class GraspState(ArrayValue):
         """
         if self.is_balanced(reserve=reserve):  # checks it
             return self
+        not_huge(self.forces, "forces to be balanced")
+        not_huge(self.load.vector, "load")
         grasp = self.grasp
         forces = nearest_equilibrium(
             grasp.cones.measured(self.forces),
@@ -232,7 +239,14 @@ class GraspState(ArrayValue):
 
 
 def check_load(grasp: Grasp, load: Wrench) -> None:
-    """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension."""
+    """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension that can be worked with."""
+    _check_dimension(grasp, load)
+    if grasp.out_of_range:
+        raise InvalidInput(grasp.out_of_range)
+    not_huge(max(load.plain, key=abs), "load")
+
+
+def _check_dimension(grasp: Grasp, load: Wrench) -> None:
     if not isinstance(grasp, Grasp):
         raise InvalidInput(f"grasp must be a Grasp, got {shown(grasp)}")
     if not isinstance(load, Wrench):

@@ -105,7 +105,8 @@ class Wrench(ArrayValue):
             raise InvalidInput(f"a wrench combines with a wrench, got {shown(other)}")
         if other.dimension != self.dimension:
             raise InvalidInput("a planar wrench and a wrench in space cannot be combined")
-        return Wrench.from_vector(combine(self.vector, other.vector))
+        with np.errstate(over="ignore"):  # what is not finite is refused
+            return Wrench.from_vector(combine(self.vector, other.vector))
 
     def __add__(self, other: object) -> "Wrench":
         return self._with(other, np.add)
@@ -117,7 +118,8 @@ class Wrench(ArrayValue):
         return Wrench.from_vector(-self.vector)
 
     def __mul__(self, factor: float) -> "Wrench":
-        return Wrench.from_vector(number(factor, "factor") * self.vector)
+        with np.errstate(over="ignore"):
+            return Wrench.from_vector(number(factor, "factor") * self.vector)
 
     __rmul__ = __mul__
 
@@ -125,7 +127,8 @@ class Wrench(ArrayValue):
         by = number(divisor, "divisor")
         if by == 0:
             raise InvalidInput("a wrench cannot be divided by 0")
-        return Wrench.from_vector(self.vector / by)
+        with np.errstate(over="ignore"):
+            return Wrench.from_vector(self.vector / by)
 
     def to_dict(self) -> dict[str, Any]:
         """The wrench as plain data, which JSON can hold; ``from_dict`` gives back the equal wrench."""

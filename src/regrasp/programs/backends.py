@@ -9,6 +9,7 @@ from math import inf
 from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
+from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS, Backend
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.verdict import judged
@@ -62,7 +63,9 @@ def solve(
             whose answer is sound (a warning is logged for each that was not).
         throw: raise ``SolverFailed`` for an answer that is neither sound nor a proven impossibility; without
             it such an answer is returned with its status.
-        time_limit: [s] for the solver; one that has no such option is run in a process of its own and ended.
+        time_limit: [s] for all that solvers do, whichever are asked in turn; one that has no such option is
+            run in a process of its own and ended. The start of such a process, about a second, and our audit
+            come on top.
         isolated: run the solver in a process of its own in any case, so that its crash is an error like
             others; that takes a second to start.
         **options: passed to the back end as they are.
@@ -78,8 +81,14 @@ def solve(
         )
     if program.why_not_convex:
         raise InvalidInput(f"{program.why_not_convex}; the objective must be convex")
+    return _solved(program, backend, throw, Deadline(time_limit), isolated, options)
+
+
+def _solved(
+    program: Program, backend: str, throw: bool, limit: Deadline, isolated: bool, options: dict[str, Any]
+) -> Solution:
     if backend == "auto":
-        return _first_sound(program, throw, time_limit, isolated, options)
+        return _first_sound(program, throw, limit, isolated, options)
     entry = _entry(backend)
     if program.has_second_order and not entry.second_order:
         takers = ", ".join(name for name in available_backends() if BACKENDS[name].second_order)
@@ -90,11 +99,11 @@ def solve(
         )
 
     def feasibility(given: Program) -> Solution:
-        return solve(given.without_objective(), backend, throw=False, time_limit=time_limit)
+        if limit.is_over:
+            return failed(given, backend, "no time is left to look for a point")
+        return _solved(given.without_objective(), backend, False, limit, isolated, {})
 
-    solution = judged(
-        _asked(program, backend, entry, time_limit, isolated, options), entry.tolerance, feasibility
-    )
+    solution = judged(_asked(program, backend, entry, limit, isolated, options), entry.tolerance, feasibility)
     if throw and solution.status not in _CLAIMS:
         raise SolverFailed(f"{program}: {solution}; {solution.status.advice}", program, solution)
     return solution
@@ -104,11 +113,12 @@ def _asked(
     program: Program,
     backend: str,
     entry: Backend,
-    time_limit: float | None,
+    limit: Deadline,
     isolated: bool,
     options: dict[str, Any],
 ) -> Solution:
     """The back end's answer, not audited; an error of the solver's own is an answer, too."""
+    time_limit = limit.left
     if time_limit is not None and entry.time_limit and not backend.startswith("cvxpy"):
         options = {entry.time_limit: time_limit, **options}
         time_limit = None
@@ -156,12 +166,8 @@ def _entry(backend: str) -> Backend:
     return entry
 
 
-def _anyhow(program: Program) -> Solution:
-    return solve(program.without_objective(), throw=False)
-
-
 def _first_sound(
-    program: Program, throw: bool, time_limit: float | None, isolated: bool, options: dict[str, Any]
+    program: Program, throw: bool, limit: Deadline, isolated: bool, options: dict[str, Any]
 ) -> Solution:
     if options:
         raise InvalidInput("options belong to one solver; name the back end they are for instead of 'auto'")
@@ -169,17 +175,23 @@ def _first_sound(
     for name in _AUTO:
         if name not in available_backends() or (program.has_second_order and not BACKENDS[name].second_order):
             continue
-        solution = solve(program, name, throw=False, time_limit=time_limit, isolated=isolated)
+        if solution is not None and limit.is_over:
+            break
+        solution = _solved(program, name, False, limit, isolated, {})
         if solution.status in _CLAIMS:
             return solution
         _log.warning("%s; trying the next back end", solution)
     if solution is None:
         raise SolverUnavailable(f"none of {', '.join(_AUTO)} is installed")
-    looser = without_loose_rows(program)
+    looser = None if limit.is_over else without_loose_rows(program)
     if looser is not None:
         rest, kept = looser
-        found = _first_sound(rest, False, time_limit, isolated, options)
-        whole = judged(with_loose_rows(found, program, kept), _WHOLE, _anyhow)
+
+        def anyhow(given: Program) -> Solution:
+            return _first_sound(given.without_objective(), False, limit, isolated, {})
+
+        found = _first_sound(rest, False, limit, isolated, options)
+        whole = judged(with_loose_rows(found, program, kept), _WHOLE, anyhow)
         if found.status in _CLAIMS and whole.status in _CLAIMS:
             return whole
     if throw:

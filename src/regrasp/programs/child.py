@@ -63,7 +63,7 @@ def solved_apart(
             answer = pickle.loads(ours.recv_bytes())
     except (EOFError, OSError):
         if late.is_set():
-            no = f"no answer within {time_limit:g} s"
+            no = f"no answer within {time_limit:.3g} s"
             return failed(
                 program, backend, no if answering else f"its process did not start within {_START:g} s"
             )

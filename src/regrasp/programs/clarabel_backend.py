@@ -1,6 +1,6 @@
 """Clarabel, called directly. Imported when used."""
 
-from functools import cache
+from functools import cache, lru_cache
 from time import perf_counter
 from typing import Any
 
@@ -44,7 +44,7 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     )
 
 
-@cache
+@lru_cache(64)
 def _settings(**options: Any) -> Any:
     settings = clarabel.DefaultSettings()
     settings.verbose = False

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from regrasp.programs.answer import Answer, Claim
+from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.proofs import unboundedness_residual
 from regrasp.programs.program import Array, Program
@@ -33,9 +34,12 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     facts = BACKENDS[name]
     call = import_module(facts.module)
     started = perf_counter()
+    most = options.get(facts.time_limit) or None
+    limit = Deadline(most)
 
     def ask(given: Program) -> Answer:
-        answer: Answer = call.Session(call.layout(given), **{**facts.options, **options}).solve()
+        left = {} if most is None else {facts.time_limit: limit.left}
+        answer: Answer = call.Session(call.layout(given), **{**facts.options, **options, **left}).solve()
         return answer
 
     answer = _by_steps(program, ask) if facts.strictly_convex else ask(program)

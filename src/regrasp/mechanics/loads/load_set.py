@@ -8,7 +8,7 @@ from math import cos, pi, sin
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, array, number, numbers_in, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, array, not_huge, number, numbers_in, read_only
 from regrasp.mechanics.loads.caps import around_cap
 from regrasp.mechanics.loads.nearest import nearest_mean
 from regrasp.mechanics.value import ArrayValue, numbers
@@ -16,6 +16,8 @@ from regrasp.mechanics.wrench import Wrench
 
 # A member may lie this fraction of the set's size outside: rounding of whoever computed it.
 _ROUNDING = 1e-9
+# The work of loads up to ``LARGEST`` has a square.
+_FASTEST = 1e50
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,8 +49,9 @@ class LoadSet(ArrayValue, ABC):
         about = given[0] if center is None else _wrench(center, "center")
         if any(load.dimension != about.dimension for load in given):
             raise InvalidInput("loads of a hull must all be planar or all in space, like its center")
+        points = not_huge(read_only(np.array([load.vector for load in given])), "loads")
         middle = sum(given[1:], start=given[0]) / len(given) if center is None else about
-        return _Hull(middle, 1.0, read_only(np.array([load.vector for load in given])))
+        return _Hull(middle, 1.0, points)
 
     @staticmethod
     def ball(center: Wrench, *, force: float = 0.0, torque: float = 0.0) -> "LoadSet":
@@ -62,7 +65,7 @@ class LoadSet(ArrayValue, ABC):
         middle = _wrench(center, "center")
         d, size = middle.dimension, middle.vector.size
         radii = [number(force, "force", least=0)] * d + [number(torque, "torque", least=0)] * (size - d)
-        return _Ellipsoid(middle, 1.0, read_only(np.diag(radii)))
+        return _Ellipsoid(middle, 1.0, not_huge(read_only(np.diag(radii)), "radii of a ball"))
 
     @staticmethod
     def ellipsoid(center: Wrench, axes: ArrayLike) -> "LoadSet":
@@ -73,7 +76,7 @@ class LoadSet(ArrayValue, ABC):
             axes: A, (3, k) or (6, k), of half axes, [N] and [N m].
         """
         middle = _wrench(center, "center")
-        return _Ellipsoid(middle, 1.0, array(axes, "axes", (middle.vector.size, None)))
+        return _Ellipsoid(middle, 1.0, not_huge(array(axes, "axes", (middle.vector.size, None)), "axes"))
 
     @staticmethod
     def tilted(load: Wrench, angle: float) -> "LoadSet":
@@ -132,7 +135,9 @@ class LoadSet(ArrayValue, ABC):
         Args:
             factor: at least 0 [-].
         """
-        return replace(self, factor=self.factor * number(factor, "factor", least=0))
+        whole = not_huge(self.factor * number(factor, "factor", least=0), "factor")
+        not_huge(whole * self._size(slice(None)), "deviations of a scaled set")
+        return replace(self, factor=whole)
 
     def support(self, twist: ArrayLike) -> Array:
         """Max over the set of twist . load: the most work of a member along twists (..., 3) or (..., 6).
@@ -187,7 +192,7 @@ class LoadSet(ArrayValue, ABC):
             raise InvalidInput(
                 f"twist must have {self.center.vector.size} finite numbers, got {shown(twist)}"
             )
-        return y
+        return not_huge(y, "twist", _FASTEST)
 
     @abstractmethod
     def _moved(self, center: Wrench) -> "LoadSet": ...
@@ -373,4 +378,5 @@ class _Moved(LoadSet):
 def _wrench(value: Wrench, what: str) -> Wrench:
     if not isinstance(value, Wrench):
         raise InvalidInput(f"{what} must be a Wrench, got {shown(value)}")
+    not_huge(value.vector, what)
     return value

@@ -15,7 +15,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
+from regrasp.mechanics.checks import Array, ArrayLike, not_huge, numbers_in
 from regrasp.mechanics.grasp import Grasp
 
 Stiffness = float | tuple["Stiffness", ...]
@@ -36,6 +36,7 @@ def checked_stiffness(given: ArrayLike | Stiffness | None) -> Stiffness:
         )
     if values.ndim < 3 and (values < 0).any():
         raise InvalidInput(f"stiffness must be at least 0, got {shown(given)}")
+    not_huge(values, "stiffness")
     if not values.any():
         raise InvalidInput(f"stiffness must not be zero everywhere, got {shown(given)}")
     if values.ndim == 0:

@@ -13,7 +13,7 @@ Springs K times s are stable for s above the largest eigenvalue of -diag(0, B) b
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, array, finite, number
+from regrasp.mechanics.checks import Array, ArrayLike, array, finite, not_huge, number
 from regrasp.mechanics.robust.stiffness import checked_stiffness, stiffness_matrices
 from regrasp.planning.robustness.views import Subject, View, views_of
 
@@ -47,7 +47,7 @@ def least_stiffness(
     Raises:
         InvalidInput: For bad input, and where the stiffness leaves the object free to move.
     """
-    number(tip_radius, "tip_radius", least=0)
+    not_huge(number(tip_radius, "tip_radius", least=0), "tip_radius")
     springs = checked_stiffness(stiffness)
     views = views_of(state_or_plan, springs, None)
     place = None if load_at is None else array(load_at, "load_at", (views[0].grasp.dimension,))

@@ -11,7 +11,7 @@ import numpy as np
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, ArrayLike, finite, instance, number, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, finite, instance, not_huge, number, read_only
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness
 from regrasp.mechanics.value import ArrayValue
@@ -194,7 +194,7 @@ def tolerances(
     springs: Stiffness = checked_stiffness(stiffness)
     if disturbance is not None:
         instance(disturbance, "disturbance", LoadSet)
-    number(tip_radius, "tip_radius", least=0)
+    not_huge(number(tip_radius, "tip_radius", least=0), "tip_radius")
     views = tuple(views_of(state_or_plan, springs, max_force))
     names = names_of(views)
     grasp = views[0].grasp

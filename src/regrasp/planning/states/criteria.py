@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, instance, items, number, read_only, whole
+from regrasp.mechanics.checks import LARGEST, Array, ArrayLike, instance, items, number, read_only, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
@@ -21,9 +21,6 @@ from regrasp.planning.states.withstanding.demand import Demand
 
 PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least peak force that holds the load."""
-
-
-_LARGEST = 1e100  # whose square is a number
 
 
 @dataclass(frozen=True)
@@ -239,8 +236,8 @@ class Criteria:
 
 
 def _refuse_larger(value: float, what: str) -> None:
-    if value > _LARGEST:
-        raise InvalidInput(f"{what} must be at most {_LARGEST:g} N, got {shown(value)}")
+    if value > LARGEST:
+        raise InvalidInput(f"{what} must be at most {LARGEST:g} N, got {shown(value)}")
 
 
 def _least_normal(given: float | Sequence[float] | Array | None) -> float | tuple[float, ...]:
@@ -251,6 +248,8 @@ def _least_normal(given: float | Sequence[float] | Array | None) -> float | tupl
     if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str | bytes) or np.ndim(given) == 0:
         return number(given, "min_normal", least=0)
     several = [number(value, "each min_normal", least=0) for value in given]
+    for value in several:
+        _refuse_larger(value, "each min_normal")
     if not several:
         raise InvalidInput("min_normal must be a number or one for each contact [N], got none")
     return tuple(several)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, items, number, point
 from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.ways.distances import points_of_axis, to_axis, to_boundary, to_faces
 
@@ -20,6 +20,7 @@ _PART = 10  # of the clearance: how far fingers move between samples
 _MOST = 1_000_000  # samples
 _SAME = 1e-6  # of the clearance: places that are one
 _NEAR = 1e-3  # of the clearance: what polygons may be off
+_ROUNDING = 1e-12  # of the duration
 _JUMP = 0.01  # of the clearance: how far positions may be from what velocities say between samples
 
 
@@ -93,6 +94,7 @@ def verify_motions(motions: Moving, shape: Any) -> MotionsVerification:
         raise InvalidInput(f"verify_motions needs motions, got {shown(motions)}")
     if not hasattr(shape, "polygon") and not hasattr(shape, "surface"):
         raise InvalidInput(f"verify_motions needs an Outline or a Mesh, got {shown(shape)}")
+    _check_numbers(motions)
     t, at = _sampled(motions)
     touching, keep = motions.touching(t), motions.clearance
     reach, slack = motions.tip_radius, _NEAR * keep
@@ -123,6 +125,14 @@ def verify_motions(motions: Moving, shape: Any) -> MotionsVerification:
     return MotionsVerification(
         tuple(violations), to_object, to_fingers, int(touching.sum(axis=1).min()), t.size
     )
+
+
+def _check_numbers(motions: Moving) -> None:
+    """Raise ``InvalidInput`` for what no distance can be compared with, or is measured from."""
+    for what in ("tip_radius", "clearance", "duration"):
+        number(getattr(motions, what), f"{what} of motions", above=0)
+    for i, axis in enumerate(items(motions.capsules, "capsules of motions")):
+        point(axis, f"capsule {i + 1} of motions")
 
 
 def _sampled(motions: Moving) -> tuple[Array, Array]:
@@ -160,8 +170,14 @@ def _contacts(motions: Moving, t: Array, at: Array, touching: NDArray[np.bool_])
     if stray.any():
         k, i = np.argwhere(stray)[0]
         yield f"finger {i + 1} is said to touch off every contact at {t[k]:.6g} s"
+    over, whole = 0.0, float(t[-1])
+    room = _ROUNDING * whole
     for k, step in enumerate(motions.steps):
-        during = (t >= motions.starts[k]) & (t <= motions.starts[k] + step.duration)
+        begin, end = motions.starts[k], motions.starts[k] + step.duration
+        if not over - room <= begin < end <= whole + room:  # which no number fails, too
+            between = f"after {over:.6g} and until {whole:.6g} s"
+            yield f"step {k + 1} lasts from {begin:.6g} to {end:.6g} s, not {between}"
+        over, during = end, (t >= begin) & (t <= end)
         for name in step.grasp.names:
             if not on[str(name)][during].any(axis=1).all():
                 yield f"during step {k + 1} no finger is at {name}"

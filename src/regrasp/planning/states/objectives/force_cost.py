@@ -5,12 +5,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, array, numbers_in
+from regrasp.mechanics.checks import LARGEST, Array, ArrayLike, array, numbers_in
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.planning.states.objectives.objective import ConvexObjective
-
-_LARGEST = 1e100  # whose square is a number
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +43,9 @@ class ForceCost(ConvexObjective):
         if (given < 0).any() or not given.any():
             raise InvalidInput(f"weights must be at least 0, and one of them above it, got {shown(weights)}")
         heaviest = float(given.max())
-        if not 1 / _LARGEST <= heaviest <= _LARGEST:
+        if not 1 / LARGEST <= heaviest <= LARGEST:
             raise InvalidInput(
-                f"the largest weight must be from {1 / _LARGEST:g} to {_LARGEST:g}, got {shown(weights)}; "
+                f"the largest weight must be from {1 / LARGEST:g} to {LARGEST:g}, got {shown(weights)}; "
                 f"only their ratios to one another and to prices count"
             )
         if not isinstance(name, str) or name in OBJECTIVES:
@@ -58,11 +56,11 @@ class ForceCost(ConvexObjective):
         object.__setattr__(self, "weights", given)
         for key, value in (("towards", towards), ("prices", prices)):
             object.__setattr__(self, key, None if value is None else array(value, key, (None, None)))
-        if self.towards is not None and abs(self.towards).max(initial=0.0) > _LARGEST:
-            raise InvalidInput(f"towards must be at most {_LARGEST:g} N in size, got {shown(towards)}")
-        if self.prices is not None and abs(self.prices).max(initial=0.0) / _LARGEST > heaviest:
+        if self.towards is not None and abs(self.towards).max(initial=0.0) > LARGEST:
+            raise InvalidInput(f"towards must be at most {LARGEST:g} N in size, got {shown(towards)}")
+        if self.prices is not None and abs(self.prices).max(initial=0.0) / LARGEST > heaviest:
             raise InvalidInput(
-                f"prices must be at most {_LARGEST:g} times the largest weight of {heaviest:g}, beside "
+                f"prices must be at most {LARGEST:g} times the largest weight of {heaviest:g}, beside "
                 f"which forces cost nothing, got {shown(prices)}"
             )
 

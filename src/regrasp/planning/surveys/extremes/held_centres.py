@@ -7,7 +7,7 @@ Robotics 24, 2008).
 """
 
 from dataclasses import dataclass, field
-from math import inf
+from math import hypot, inf
 
 import numpy as np
 
@@ -125,7 +125,7 @@ def held_centres(
         raise InvalidInput("weight must have a force: a torque alone does not depend on the centre of mass")
     number(gap, "gap", above=0)
     most = number(reach, "reach", above=0) * (grasp.size or 1.0)
-    unit = float(np.linalg.norm(weight.force))
+    unit = hypot(*weight.force)  # of a force whose squares vanish, too
     axes = tangents_of((weight.force / unit)[None])[0]
     limits = [f / unit for f in Criteria("effort", max_force, reserve=0.0).limits(grasp)]
     base = weight.vector / unit
