@@ -2,7 +2,7 @@
 
     python examples/studies.py regrasps -o DIR    margin and moves of regrasps, over friction and part
     python examples/studies.py removals -o DIR    how often a finger can leave, over friction
-    python examples/studies.py solvers -o DIR     back ends beside each other on random states
+    python examples/studies.py solvers -o DIR     back ends at several accuracies on random states
 
 Rows and figure are in DIR. A run that was ended goes on with the same line; ``--cases`` says how many.
 """
@@ -10,12 +10,19 @@ Rows and figure are in DIR. A run that was ended goes on with the same line; ``-
 import argparse
 from functools import cache
 from pathlib import Path
+from time import process_time
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import regrasp as rg
+from regrasp.bench.families.grasps import planar
+from regrasp.bench.families.states import state_problem
+from regrasp.bench.judging.judgement import judged
+from regrasp.bench.problems.answer import understood
+from regrasp.bench.problems.settings import options, right_within
+from regrasp.bench.running.solvers import chosen_solvers
 from regrasp.outline import parts
 from regrasp.plots.look.style import PALETTE, new_figure, tidy
 
@@ -113,50 +120,57 @@ def removals(folder: Path, cases: int) -> plt.Figure:
     return ax.figure
 
 
-# -- back ends on random states --------------------------------------------------------------------------
+# -- back ends at several accuracies on random states -----------------------------------------------------
 
 BACK_ENDS = ("clarabel", "daqp", "quadprog", "highs", "piqp", "proxqp", "osqp", "scs")
+ASKED = {"low": 1e-3, "mid": 1e-6, "high": 1e-9}
 
 
-def state(method: str, fingers: int, seed: int) -> dict[str, float]:
-    """Least effort of a random grasp by a back end, and the processor time it takes when asked again."""
-    from time import process_time
+@cache
+def solver(method: str) -> Any:
+    """How a back end is called bare, without the polish and audit of ``choose_state``."""
+    return chosen_solvers([method])[0].load()
 
-    angles = np.random.default_rng(seed).uniform(0, 2 * np.pi, fingers)
-    grasp = rg.Grasp(rg.Contact([np.cos(a), np.sin(a)], [-np.cos(a), -np.sin(a)], 0.6) for a in angles)
-    rg.choose_state(grasp, WEIGHT, "effort", method=method)
-    began = process_time()
-    found = rg.choose_state(grasp, WEIGHT, "effort", method=method)
-    return {"effort": found.value, "took": process_time() - began}
+
+def state(method: str, settings: str, fingers: int, seed: int) -> dict[str, Any]:
+    """Least effort of a random grasp by a back end at an accuracy: how far off it is, and the time."""
+    grasp, load = planar(np.random.default_rng([seed, fingers]), fingers)
+    problem = state_problem("states", "state", grasp, load, "effort")
+    call, given = solver(method), options(method, settings)
+    for _ in range(2):
+        data = call.layout(problem.program)
+        began = process_time()
+        answer = call.solve(data, **given)
+        took = process_time() - began
+    found = judged(problem, understood(answer, problem.program), right_within(settings))
+    return {"off": found.distance, "breaks": found.primal_residual, "right": found.correct, "took": took}
 
 
 def solvers(folder: Path, cases: int) -> plt.Figure:
-    """Time by number of fingers; how far efforts are from the least that any back end found is printed."""
+    """How far from the optimum, over the accuracy that was asked for, and the time that it takes."""
     sizes = [3, 5, 10, 20]
-    seeds = range(max(1, cases // (len(BACK_ENDS) * len(sizes))))
-    rg.sweep(
-        "studies:state", {"method": BACK_ENDS, "fingers": sizes, "seed": seeds}, out=folder, time_limit=60
-    )
+    seeds = range(max(1, cases // (len(BACK_ENDS) * len(ASKED) * len(sizes))))
+    grid = {"method": BACK_ENDS, "settings": [*ASKED], "fingers": sizes, "seed": seeds}
+    rg.sweep("studies:state", grid, out=folder, time_limit=60)
     data: Any = rg.read_study(folder)
-    data = data[data["verdict"] == "answered"]
-    least = data.groupby(["fingers", "seed"])["effort"].transform("min")
-    data = data.assign(off=data["effort"] / least - 1)
-    print(f"largest excess of effort over the least that was found: {data['off'].max():.1e}")
-    ax = (figure := new_figure(4.6, 2.8)).subplots()
-    for method, colour, marker in zip(BACK_ENDS, PALETTE * 2, "osd^vPx*", strict=False):
-        times = 1e3 * data[data["method"] == method].groupby("fingers")["took"].median()
-        ax.plot(times, color=colour, marker=marker, markersize=4, label=method)
-    ax.set(xlabel="fingers", ylabel="median processor time [ms]", xscale="log", yscale="log")
-    ax.set_xticks(sizes, map(str, sizes))
-    ax.set_yticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_minor_locator(plt.NullLocator())
-    tidy(ax)
-    figure.legend(loc="outside right center", frameon=False, fontsize=7)
+    data = data.assign(asked=data["settings"].map(ASKED), off=data["off"].clip(lower=1e-16))
+    print(data.groupby(["method", "settings"])["right"].mean().unstack()[[*ASKED]])
+    figure = new_figure(6.4, 2.8)
+    panels = (("off", "distance from the optimum [-]", 1.0), ("took", "processor time [ms]", 1e3))
+    for ax, (column, label, unit) in zip(figure.subplots(1, 2), panels, strict=True):
+        for method, colour, marker in zip(BACK_ENDS, PALETTE * 2, "osd^vPx*", strict=False):
+            medians = unit * data[data["method"] == method].groupby("asked")[column].median()
+            ax.plot(medians, color=colour, marker=marker, markersize=4, label=method)
+        ax.set(xlabel="accuracy asked for [-]", ylabel=label, xscale="log", yscale="log")
+        ax.set_xticks([*ASKED.values()])
+        ax.invert_xaxis()
+        tidy(ax)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside right center", frameon=False, fontsize=7)
     return figure
 
 
-STUDIES = {"regrasps": (regrasps, 1000), "removals": (removals, 100_000), "solvers": (solvers, 640)}
+STUDIES = {"regrasps": (regrasps, 1000), "removals": (removals, 100_000), "solvers": (solvers, 960)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
