@@ -153,18 +153,23 @@ def solvers(folder: Path, cases: int) -> plt.Figure:
     grid = {"method": BACK_ENDS, "settings": [*ASKED], "fingers": sizes, "seed": seeds}
     rg.sweep("studies:state", grid, out=folder, time_limit=60)
     data: Any = rg.read_study(folder)
-    data = data.assign(asked=data["settings"].map(ASKED), off=data["off"].clip(lower=1e-16))
+    known = 1e-10  # to which the reference knows the optimum
+    data = data.assign(asked=data["settings"].map(ASKED), off=data["off"].clip(lower=known))
     print(data.groupby(["method", "settings"])["right"].mean().unstack()[[*ASKED]])
     figure = new_figure(6.4, 2.8)
     panels = (("off", "distance from the optimum [-]", 1.0), ("took", "processor time [ms]", 1e3))
     for ax, (column, label, unit) in zip(figure.subplots(1, 2), panels, strict=True):
-        for method, colour, marker in zip(BACK_ENDS, PALETTE * 2, "osd^vPx*", strict=False):
+        for k, (method, marker) in enumerate(zip(BACK_ENDS, "osd^vPx*", strict=True)):
             medians = unit * data[data["method"] == method].groupby("asked")[column].median()
-            ax.plot(medians, color=colour, marker=marker, markersize=4, label=method)
+            look = {"color": PALETTE[k % len(PALETTE)], "linestyle": "-" if k < len(PALETTE) else "--"}
+            ax.plot(medians, marker=marker, markersize=4, label=method, **look)
         ax.set(xlabel="accuracy asked for [-]", ylabel=label, xscale="log", yscale="log")
         ax.set_xticks([*ASKED.values()])
         ax.invert_xaxis()
         tidy(ax)
+    figure.axes[0].axhline(known, color="0.6", linewidth=0.8, linestyle=":")
+    ax.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5], ["0.02", "0.05", "0.1", "0.2", "0.5"])
+    ax.yaxis.set_minor_locator(plt.NullLocator())
     handles, labels = figure.axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right center", frameon=False, fontsize=7)
     return figure
