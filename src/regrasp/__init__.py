@@ -61,7 +61,6 @@ if TYPE_CHECKING:
     from regrasp.plans.regrasp_cut import RegraspCut
     from regrasp.plans.regrasp_plan import RegraspPlan
     from regrasp.plans.sampled import SampledPath
-    from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
     from regrasp.plans.straight import StraightPath
     from regrasp.plans.timing import TimeScaling
     from regrasp.plans.transition import Transition
@@ -132,7 +131,6 @@ _LATER = {
     "SampledPath": "regrasp.plans.sampled",
     "Sensitivity": "regrasp.planning.surveys.sensitivity",
     "sensitivity": "regrasp.planning.surveys.sensitivity",
-    "SpaceRegraspPlan": "regrasp.plans.space_regrasp_plan",
     "SpaceRegraspProblem": "regrasp.planning.regrasps.spatial",
     "SqueezeLocus": "regrasp.planning.surveys.squeeze_locus",
     "StraightPath": "regrasp.plans.straight",
@@ -192,7 +190,6 @@ __all__ = [
     "Sensitivity",
     "SolverFailed",
     "SolverUnavailable",
-    "SpaceRegraspPlan",
     "SpaceRegraspProblem",
     "SqueezeLocus",
     "StraightPath",

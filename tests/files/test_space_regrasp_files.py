@@ -27,7 +27,7 @@ from regrasp.files import (
 from regrasp.files.plans.setpoints import checked, read_setpoints, setpoint_blocks
 from regrasp.mechanics.orientation.quaternion import about, conjugate, product, quaternion
 from regrasp.mechanics.orientation.rotations import rotation_matrix
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
+from regrasp.plans.regrasp_plan import RegraspPlan, accumulated
 from regrasp_moves import check_moves
 from scenarios import regrasp
 from space import random_rotation
@@ -41,9 +41,9 @@ SCENARIO = read_scenario(EXAMPLE)
 
 
 @pytest.fixture(scope="module")
-def plan() -> SpaceRegraspPlan:
+def plan() -> RegraspPlan:
     planned = plan_scenario(SCENARIO)
-    assert isinstance(planned, SpaceRegraspPlan)
+    assert planned.rotations is not None
     return planned
 
 
@@ -80,12 +80,12 @@ def test_quaternions_are_rotations(seed: int, angle: float) -> None:
 
 @pytest.mark.parametrize("backwards", [False, True])
 def test_a_regrasp_in_space_is_read_back_bit_for_bit(
-    plan: SpaceRegraspPlan, backwards: bool, tmp_path: Path
+    plan: RegraspPlan, backwards: bool, tmp_path: Path
 ) -> None:
     whole = plan.reversed() if backwards else plan
     write_plan(whole, tmp_path / "plan.json")
     back = read_plan(tmp_path / "plan.json")
-    assert isinstance(back, SpaceRegraspPlan)
+    assert back.rotations is not None
     assert back == whole
     assert back.rotations.tobytes() == whole.rotations.tobytes()
     assert not back.rotations.flags.writeable
@@ -131,7 +131,7 @@ def damaged(plan: rg.RegraspPlan, change: Callable[[dict[str, Any]], None], path
     ],
 )  # fmt: skip
 def test_damaged_plans(
-    plan: SpaceRegraspPlan, change: Callable[[dict[str, Any]], None], message: str, tmp_path: Path
+    plan: RegraspPlan, change: Callable[[dict[str, Any]], None], message: str, tmp_path: Path
 ) -> None:
     path = damaged(plan, change, tmp_path / "plan.json")
     with pytest.raises(rg.InvalidInput) as raised:
@@ -151,7 +151,7 @@ def turned_more(data: dict[str, Any]) -> None:
     ],
 )
 def test_readable_plans_that_are_wrong_do_not_verify(
-    plan: SpaceRegraspPlan, change: Callable[[dict[str, Any]], None], words: str, tmp_path: Path
+    plan: RegraspPlan, change: Callable[[dict[str, Any]], None], words: str, tmp_path: Path
 ) -> None:
     read = read_plan(damaged(plan, change, tmp_path / "plan.json"))
     assert words in "; ".join(rg.verify(read).violations)
@@ -166,9 +166,7 @@ def table_of(path: Path) -> tuple[list[str], np.ndarray]:
 
 
 @pytest.mark.parametrize("backwards", [False, True])
-def test_setpoints_hold_the_object_by_themselves(
-    plan: SpaceRegraspPlan, backwards: bool, tmp_path: Path
-) -> None:
+def test_setpoints_hold_the_object_by_themselves(plan: RegraspPlan, backwards: bool, tmp_path: Path) -> None:
     """Nothing is used but the table, the mesh, the friction and the weight."""
     whole, path = plan.reversed() if backwards else plan, tmp_path / "setpoints.csv"
     write_setpoints(whole, path, 40.0)
@@ -198,7 +196,7 @@ def test_setpoints_hold_the_object_by_themselves(
     assert rotations[-1] == pytest.approx(last.T if backwards else last, abs=1e-12)
 
 
-def test_setpoints_are_read_back_and_verify(plan: SpaceRegraspPlan, tmp_path: Path) -> None:
+def test_setpoints_are_read_back_and_verify(plan: RegraspPlan, tmp_path: Path) -> None:
     path = tmp_path / "setpoints.csv"
     write_setpoints(plan, path, 40.0)
     steps = read_setpoints(path, plan)
@@ -227,9 +225,9 @@ BALL = rg.choose_state(
 )
 
 
-def whole_of(*steps: rg.Transition) -> SpaceRegraspPlan:
+def whole_of(*steps: rg.Transition) -> RegraspPlan:
     turned, rotations = accumulated(list(steps))
-    plan = SpaceRegraspPlan(steps, turned, 0.0, rotations=rotations)
+    plan = RegraspPlan(steps, turned, 0.0, rotations=rotations)
     assert rg.verify(plan).ok
     return plan
 
@@ -278,7 +276,7 @@ def test_turns_of_any_size_are_read_back(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_damaged_setpoints(
-    plan: SpaceRegraspPlan, row: int, column: int, value: str, message: str, tmp_path: Path
+    plan: RegraspPlan, row: int, column: int, value: str, message: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "setpoints.csv"
     write_setpoints(plan, path, 10.0)
@@ -300,7 +298,7 @@ def changed(text: str, *changes: tuple[str, str]) -> str:
     return text
 
 
-def test_the_example_plans_what_the_same_call_plans(plan: SpaceRegraspPlan) -> None:
+def test_the_example_plans_what_the_same_call_plans(plan: RegraspPlan) -> None:
     assert isinstance(SCENARIO, SpaceRegraspScenario)
     mesh = SCENARIO.object.value
 
@@ -548,14 +546,14 @@ def test_what_is_wrong_with_soft_fingers(changes: list[tuple[str, str]], words: 
         parse_scenario(changed(SOFT, *changes))
 
 
-def test_a_regrasp_that_is_not_finite_is_not_written(plan: SpaceRegraspPlan, tmp_path: Path) -> None:
+def test_a_regrasp_that_is_not_finite_is_not_written(plan: RegraspPlan, tmp_path: Path) -> None:
     with pytest.raises(rg.InvalidInput, match="margin: expected a finite number, got nan"):
         write_plan(replace(plan, margin=float("nan")), tmp_path / "plan.json")
     assert not list(tmp_path.iterdir())
 
 
 def test_the_example_from_the_command_line(
-    plan: SpaceRegraspPlan, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    plan: RegraspPlan, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     status, out, err = regrasp(capsys, "plan", EXAMPLE, "-o", tmp_path)
     assert (status, err) == (0, "")

@@ -63,9 +63,9 @@ def test_every_public_value_is_tried() -> None:
         for name in rg.__all__
         if isinstance(getattr(rg, name), type) and not issubclass(getattr(rg, name), Exception)
     }
-    # Plans in space are regrasps with one field more, an obstacle says what could not be planned, and sets
+    # An obstacle says what could not be planned, and sets
     # of loads are of classes of their own.
-    assert public - known <= {"RegraspObstacle", "SpaceRegraspPlan", "LoadSet"}
+    assert public - known <= {"RegraspObstacle", "LoadSet"}
 
 
 @pytest.mark.parametrize("name", ["Grasp", "GraspState", "straight Transition", "Outline, smooth"])

@@ -24,7 +24,7 @@ RECORDS = {
     "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
     "PyramidLosses", "RegraspCut", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
     "ContactRegions", "OutlineCut", "OutlineRegrasps",
-    "SpaceRegraspPlan", "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
+    "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
     "HeldCentres", "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath",
     "SampledPath", "TurningPath",
 }  # fmt: skip

@@ -32,7 +32,7 @@ def spatial() -> Motions:
     places = ([0.03, 0, 0.015], [0, 0.025, 0.01], [0, -0.025, 0.01], [-0.04, 0, 0.01], [0.02, 0.01, 0.015])
     contacts = [BOX.contact_at(p, friction=0.8, name=f"C{k}") for k, p in enumerate(places)]
     one = moved([*contacts[:4], contacts[4], *contacts[1:4]]).steps[:2]
-    plan = rg.SpaceRegraspPlan(one, (0.0,) * 3, 0.0, rotations=np.array([np.eye(3)] * 3))
+    plan = rg.RegraspPlan(one, (0.0,) * 3, 0.0, rotations=np.array([np.eye(3)] * 3))
     return plan_motions(plan, BOX, **AIR, capsules=[0, 0, 0.02])
 
 

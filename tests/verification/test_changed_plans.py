@@ -68,7 +68,7 @@ def plans():
     yield "regrasp in space", in_space()
 
 
-def in_space() -> rg.SpaceRegraspPlan:
+def in_space() -> rg.RegraspPlan:
     """One finger leaves, the object turns in the others, and the finger comes back."""
     angle = 0.3
     away = rg.plan_removal(BALL, "P4", load=WEIGHT)
@@ -77,7 +77,7 @@ def in_space() -> rg.SpaceRegraspPlan:
     turned = [[1.0, 0, 0], [0, cos(angle), -sin(angle)], [0, sin(angle), cos(angle)]]
     margin = min(away.end.margins.least_angle, turn.end.margins.least_angle)
     rotations = np.array([np.eye(3), np.eye(3), turned, turned])
-    return rg.SpaceRegraspPlan((away, turn, back), (0.0, 0.0, angle, angle), margin, rotations=rotations)
+    return rg.RegraspPlan((away, turn, back), (0.0, 0.0, angle, angle), margin, rotations=rotations)
 
 
 PLANS = dict(plans())

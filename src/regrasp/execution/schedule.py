@@ -13,8 +13,7 @@ from regrasp.execution.units import Units, steps_of
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.motions.value import Motions
-from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.regrasp_plan import RegraspPlan, rotation_before
 from regrasp.plans.transition import Transition
 
 MOST_STEPS = 500_000
@@ -249,7 +248,7 @@ def _smooth(u: Array) -> Array:
 def _rotations(plan: Transition | RegraspPlan, k: int, step: Transition, local: Array) -> Array:
     """(m, d, d) from the object's frame to the world's, which is the object's frame at the start."""
     if step.grasp.dimension == 3:
-        before = plan.rotations[k] if isinstance(plan, SpaceRegraspPlan) else np.eye(3)
+        before = rotation_before(plan, k)
         return np.asarray(before @ step.rotations(local))
     begun = plan.orientations[k] if isinstance(plan, RegraspPlan) else 0.0
     angle = begun + step.orientation(local)

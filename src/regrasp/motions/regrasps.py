@@ -82,8 +82,8 @@ def plan_regrasp(
 
     outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
     ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
-    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan is a
-    ``SpaceRegraspPlan``.
+    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan has
+    ``rotations``.
 
     With ``motions`` the best sequence is taken whose free fingers have ways (``plan_motions``). Where a
     finger of one finds none, those are next that lack the hold meanwhile, or those before it, or after it.

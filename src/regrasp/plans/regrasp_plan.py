@@ -1,6 +1,7 @@
 """A whole regrasp: transitions one after the other, and the finger that moves between them."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +9,8 @@ from numpy.typing import NDArray
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, numbers_in
+from regrasp.mechanics.checks import Array, ArrayLike, numbers_in, read_only
+from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.mechanics.value import ArrayValue
 from regrasp.plans.document import Documented
 from regrasp.plans.regrasp_notes import notes_on
@@ -33,20 +35,30 @@ class FingerMove(ArrayValue):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RegraspPlan(ArrayValue, Documented, Pictured):
-    """Transitions that carry an object from one three-finger grasp to another.
+    """Transitions that carry an object from one grasp to another, of three fingers or of four in space.
 
     Args:
-        steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most
-            three.
-        orientations: (len(steps) + 1,) the object's angle before the first step, and after each [rad].
+        steps: a removal, exchanges and rotations, and an addition; each with the contacts in play, at most as
+            many as there are fingers.
+        orientations: (len(steps) + 1,) the object's angle before the first step, and after each; in space the
+            sum of its turns so far, each about its own axis [rad].
         margin: the least angle margin of the holds on the way [rad].
+        rotations: (len(steps) + 1, 3, 3) in space, from the object's frame to its frame at the start, before
+            the first step and after each; None in the plane.
     """
 
     steps: tuple[Transition, ...]
     orientations: tuple[float, ...]
     margin: float
+    rotations: Array | None = field(default=None, kw_only=True)
 
     _drawn_by = "regrasp.plots.regrasps.steps:regrasp_png"
+
+    def __post_init__(self) -> None:
+        if self.rotations is not None and self.rotations.shape != (len(self.steps) + 1, 3, 3):
+            raise InvalidInput(
+                f"rotations must have shape ({len(self.steps) + 1}, 3, 3), got {self.rotations.shape}"
+            )
 
     @property
     def duration(self) -> float:
@@ -74,6 +86,24 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
         for step in range(len(self.steps)):
             here = k == step
             result[here] = self.orientations[step] + self.steps[step].orientation(local[here])
+        return result
+
+    def rotation(self, t: ArrayLike) -> Array:
+        """(..., 3, 3) in space, from the object's frame to its frame at the start, at times (...) [s].
+
+        Args:
+            t: (...) times in [0, duration] [s].
+
+        Raises:
+            InvalidInput: In the plane, where ``orientation`` is an angle.
+        """
+        if self.rotations is None:
+            raise InvalidInput("a planar regrasp has an orientation(t), an angle, and no rotation")
+        k, local = self._place(t)
+        result = np.empty((*local.shape, 3, 3))
+        for step, plan in enumerate(self.steps):
+            here = k == step
+            result[here] = self.rotations[step] @ plan.rotations(local[here])
         return result
 
     def _place(self, t: ArrayLike) -> tuple[NDArray[np.intp], Array]:
@@ -117,10 +147,11 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
         return moves, fingers
 
     def reversed(self) -> "RegraspPlan":
-        """The same regrasp run backwards."""
-        return RegraspPlan(
-            tuple(step.reversed() for step in reversed(self.steps)), self.orientations[::-1], self.margin
-        )
+        """The same regrasp run backwards, in space from the orientation where it ended."""
+        back = tuple(step.reversed() for step in reversed(self.steps))
+        turned = self.rotations
+        rotations = None if turned is None else read_only(turned[-1].T @ turned[::-1])
+        return RegraspPlan(back, self.orientations[::-1], self.margin, rotations=rotations)
 
     def __str__(self) -> str:
         lines = [
@@ -136,4 +167,29 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
     __repr__ = __str__
 
     def _turn_in_words(self, step: Transition, before: float, after: float) -> str:
-        return f", turning from {np.degrees(before):.4g} to {np.degrees(after):.4g} deg" if step.turn else ""
+        if step.turn is None:
+            return ""
+        if step.turn.axis is None:
+            return f", turning from {np.degrees(before):.4g} to {np.degrees(after):.4g} deg"
+        x, y, z = np.round(step.turn.axis, 9) + 0.0  # rounding reads as 0
+        return f", turning by {np.degrees(after - before):.4g} deg about ({x:.3g}, {y:.3g}, {z:.3g})"
+
+
+def rotation_before(plan: object, k: int) -> Array:
+    """(3, 3) from the object's frame before step ``k`` of a plan in space to its frame at the start."""
+    turned = plan.rotations if isinstance(plan, RegraspPlan) else None
+    return np.eye(3) if turned is None else np.asarray(turned[k])
+
+
+def accumulated(steps: Sequence[Transition]) -> tuple[tuple[float, ...], Array]:
+    """Total turns (K + 1,) [rad] and rotations (K + 1, 3, 3) before and after each step."""
+    turned, rotations = [0.0], [np.eye(3)]
+    for step in steps:
+        turn = step.turn
+        if turn is None or turn.axis is None:
+            turned.append(turned[-1])
+            rotations.append(rotations[-1])
+        else:
+            turned.append(turned[-1] + turn.angle)
+            rotations.append(rotations[-1] @ rotation_matrix(turn.axis, turn.angle))
+    return tuple(turned), read_only(np.array(rotations))

@@ -221,7 +221,7 @@ ELSEWHERE = {
     "bottleneck", "ChosenGrasp", "ChosenState", "Closure", "Contact", "ContactRegions", "Criteria",
     "EscapeTwist", "Grasp", "GraspState", "HeldCentres", "HeldSphere", "LargestLoad", "LeastFriction",
     "MarginCurve", "OutlineRegrasps", "Quality", "RegraspCut", "SampledPath", "Sensitivity",
-    "SpaceRegraspPlan", "StraightPath", "Transition", "TurningPath", "WrenchBall", "RegraspPlan",
+    "StraightPath", "Transition", "TurningPath", "WrenchBall", "RegraspPlan",
     "OutlineCut", "plan_motions", "Bottleneck", "RegraspObstacle", "Tolerances",
 }  # fmt: skip
 _TAKES = {"grasp", "start", "goal", "contacts", "state", "state_or_plan", "graph", "plan"}

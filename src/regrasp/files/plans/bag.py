@@ -14,8 +14,7 @@ from regrasp.files.plans.setpoints import setpoint_blocks
 from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.mechanics.contact import Contact
 from regrasp.motions.value import Motions
-from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.regrasp_plan import RegraspPlan, rotation_before
 from regrasp.plans.transition import Transition
 
 OBJECT, WORLD = "object", "world"
@@ -264,6 +263,6 @@ def _quaternions(plan: Transition | RegraspPlan, k: int, step: Transition, times
         return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
     from scipy.spatial.transform import Rotation
 
-    before = plan.rotations[k] if isinstance(plan, SpaceRegraspPlan) else np.eye(3)
+    before = rotation_before(plan, k)
     result: Array = Rotation.from_matrix(before @ step.rotations(times)).as_quat(scalar_first=True)
     return result

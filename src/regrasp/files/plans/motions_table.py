@@ -11,8 +11,7 @@ from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.orientation.quaternion import quaternion
 from regrasp.motions.value import Motions
-from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.regrasp_plan import RegraspPlan, rotation_before
 from regrasp.plans.transition import Transition
 
 _MOST = 1e6  # rows; hours at a thousand per second are a slip of the pen
@@ -98,7 +97,7 @@ def orientations(plan: Transition | RegraspPlan, k: NDArray[np.intp], local: Arr
     for s, step in enumerate(steps):
         here = k == s
         if in_space:
-            before = plan.rotations[s] if isinstance(plan, SpaceRegraspPlan) else np.eye(3)
+            before = rotation_before(plan, s)
             result[here] = [quaternion(r) for r in before @ step.rotations(local[here])]
         else:
             begun = plan.orientations[s] if isinstance(plan, RegraspPlan) else 0.0

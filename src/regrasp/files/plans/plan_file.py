@@ -26,7 +26,6 @@ from regrasp.plans.path import Path as ForcePath
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.sampled import SampledPath
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
@@ -215,7 +214,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:
-    turned = {"rotations": plan.rotations.tolist()} if isinstance(plan, SpaceRegraspPlan) else {}
+    turned = {"rotations": plan.rotations.tolist()} if plan.rotations is not None else {}
     return {
         "kind": "regrasp",
         "orientations": list(plan.orientations),
@@ -239,10 +238,8 @@ def _regrasp(stored: _Regrasp) -> RegraspPlan:
     if in_space != (given is not None):
         problem = "a required key is missing, for the steps are in space"
         raise InvalidInput(f"rotations: {problem if in_space else 'leave them out in the plane'}")
-    whole = tuple(steps), tuple(stored.orientations), stored.margin
-    plan = RegraspPlan(*whole)
-    if given is not None:
-        plan = SpaceRegraspPlan(*whole, rotations=array(given, "rotations", (count, 3, 3)))
+    rotations = None if given is None else array(given, "rotations", (count, 3, 3))
+    plan = RegraspPlan(tuple(steps), tuple(stored.orientations), stored.margin, rotations=rotations)
     _ = plan.moves  # raises where a step has more fingers than the first
     return plan
 

@@ -17,7 +17,6 @@ from regrasp.files.plans.setpoint_rows import (
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.orientation.quaternion import about, conjugate, product, quaternion
 from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 from regrasp.plans.transition import Transition
 
 _FORCES = ("fx", "fy", "fz", "mn")  # the last one is a soft finger's torque
@@ -98,7 +97,7 @@ class RegraspTable:
 
     @property
     def _in_space(self) -> bool:
-        return isinstance(self.plan, SpaceRegraspPlan)
+        return self.plan.rotations is not None
 
     @property
     def _dimension(self) -> int:
@@ -146,7 +145,7 @@ class RegraspTable:
     @cached_property
     def _quaternions(self) -> list[Array]:
         """(4,) at the start of each step, with the sign that follows from the step before."""
-        assert isinstance(self.plan, SpaceRegraspPlan)
+        assert self.plan.rotations is not None
         result = [quaternion(self.plan.rotations[0])]
         for step, rotation in zip(self.plan.steps[:-1], self.plan.rotations[1:-1], strict=True):
             last = product(result[-1], _turned(step, step.orientation([step.duration])))[0]

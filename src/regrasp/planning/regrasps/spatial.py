@@ -34,7 +34,7 @@ from regrasp.planning.regrasps.steps import (
 )
 from regrasp.planning.states.criteria import PEAK_RATIO, Criteria
 from regrasp.planning.states.objectives import FORCE, Objective
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
+from regrasp.plans.regrasp_plan import RegraspPlan, accumulated
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
 
@@ -190,7 +190,7 @@ class SpaceRegraspProblem(ArrayValue):
         stances = Quads(self.graph, self.directions, self.max_turn, self.least_margin)
         return preferred(stances, *self.places, extra)
 
-    def plans(self, extra: int = 0) -> list[SpaceRegraspPlan]:
+    def plans(self, extra: int = 0) -> list[RegraspPlan]:
         """The plan of each sequence.
 
         Args:
@@ -208,7 +208,7 @@ class SpaceRegraspProblem(ArrayValue):
         except Infeasible:
             raise self._unheld_end() or self._why_not() from None
 
-    def _plan(self, sequence: Sequence) -> SpaceRegraspPlan:
+    def _plan(self, sequence: Sequence) -> RegraspPlan:
         whole = replace(self.criteria, objective=FORCE)
         start, goal, last = self.places
         nodes = [(start, 0), *((tuple(places), o) for *places, o in sequence.holds), (goal, last)]
@@ -245,7 +245,7 @@ class SpaceRegraspProblem(ArrayValue):
         ]
         steps += self._last_turn(steps, scaling)
         turned, rotations = accumulated(steps)
-        return SpaceRegraspPlan(tuple(steps), turned, least_margin(states), rotations=rotations)
+        return RegraspPlan(tuple(steps), turned, least_margin(states), rotations=rotations)
 
     def _seen(self, way: Array) -> Wrench:
         """The load seen in a direction; that of the start as it was given."""

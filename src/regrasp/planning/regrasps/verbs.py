@@ -31,8 +31,8 @@ def plan_regrasp(
 
     outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
     ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
-    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan is a
-    ``SpaceRegraspPlan``.
+    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan has
+    ``rotations``.
 
     What is proven: every state, every path between two, and that no regrasp on the sampled points has fewer
     moves or, with as few, a wider least margin; or costs less. Points between the samples are not looked at.

@@ -12,8 +12,7 @@ from matplotlib.path import Path
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.outline.outline import Outline
-from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan, accumulated
+from regrasp.plans.regrasp_plan import RegraspPlan, accumulated
 from regrasp.plans.transition import Transition
 from regrasp.plots.look.arrows import arrow
 from regrasp.plots.look.style import INK, PALE, PALETTE, literal, note, quantity, round_below
@@ -176,7 +175,7 @@ def as_regrasp(plan: RegraspPlan | Transition) -> RegraspPlan:
         return plan
     if plan.grasp.dimension == 3:
         turned, rotations = accumulated([plan])
-        return SpaceRegraspPlan((plan,), turned, 0.0, rotations=rotations)
+        return RegraspPlan((plan,), turned, 0.0, rotations=rotations)
     turn = float(plan.orientation(plan.duration)) + 0.0
     return RegraspPlan((plan,), (0.0, turn), 0.0)
 
@@ -211,7 +210,7 @@ def moment_of(plan: RegraspPlan, step: int, t: float, idle: dict[int, Array] | N
 def turn_of(plan: RegraspPlan, step: int, t: float) -> Array:
     """(d, d) from the object frame to the world at time ``t`` of a step, from its start [s]."""
     now = plan.steps[step]
-    if not isinstance(plan, SpaceRegraspPlan):
+    if plan.rotations is None:
         return rotation(plan.orientations[step] + float(now.orientation(t)))
     before: Array = plan.rotations[step]
     return before @ now.rotations(t)

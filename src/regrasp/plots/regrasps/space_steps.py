@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from regrasp.mechanics.checks import Array
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
+from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plots.grasps.space_body import dot, write
 from regrasp.plots.look.arrows import arrow3d
 from regrasp.plots.look.labels import Labels
@@ -39,7 +39,7 @@ _LIFT, _TURN = 0.04, 0.3  # of the object's size
 _GAP = 3.0  # between a finger and its word [pt]
 
 
-def draw_regrasp(plan: SpaceRegraspPlan, mesh: Triangles | None, units: Units) -> Figure:
+def draw_regrasp(plan: RegraspPlan, mesh: Triangles | None, units: Units) -> Figure:
     """``plot_regrasp`` in space."""
     stage, count = SpaceStage(plan.steps, mesh, heads=6), len(plan.steps) + 1
     rows = ceil(count / _COLUMNS)
@@ -68,7 +68,7 @@ def draw_regrasp(plan: SpaceRegraspPlan, mesh: Triangles | None, units: Units) -
     return figure
 
 
-def _step(ax: Any, plan: SpaceRegraspPlan, k: int, stage: SpaceStage, moment: Moment, window: Window) -> None:
+def _step(ax: Any, plan: RegraspPlan, k: int, stage: SpaceStage, moment: Moment, window: Window) -> None:
     """What moves: the finger before the step, who leaves and arrives in it, and the turn of the object."""
     step, words = plan.steps[k], _Words(ax, window)
     for finger in moment.fingers:
@@ -108,7 +108,7 @@ class _Words:
         write(self.ax, text, at, way @ picture, _GAP / self.labels.scale, gid=gid, color=color)
 
 
-def _draw_moves(ax: Any, plan: SpaceRegraspPlan, k: int, stage: SpaceStage, turn: Array) -> None:
+def _draw_moves(ax: Any, plan: RegraspPlan, k: int, stage: SpaceStage, turn: Array) -> None:
     """A dashed arrow from where a finger last touched to where it touches in the step, off the surface."""
     normals = joined([step.grasp for step in plan.steps])
     for move in (move for move in plan.moves if move.step == k):

@@ -12,7 +12,6 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.outline.outline import Outline
 from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plans.space_regrasp_plan import SpaceRegraspPlan
 from regrasp.plots.look.arrows import arrow
 from regrasp.plots.look.labels import Labels
 from regrasp.plots.look.png import png
@@ -58,7 +57,7 @@ def plot_regrasp(plan: RegraspPlan, outline: Outline | Any = None, *, units: Uni
     """
     if not isinstance(plan, RegraspPlan):
         raise InvalidInput(f"plan must be a RegraspPlan, got {type(plan).__name__}; see plot_transition")
-    if isinstance(plan, SpaceRegraspPlan):
+    if plan.rotations is not None:
         return draw_regrasp(plan, triangles_of(outline), units)
     if outline is not None and not isinstance(outline, Outline):
         raise InvalidInput(f"a regrasp in the plane is drawn on an Outline, got {type(outline).__name__}")
