@@ -167,6 +167,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "HeldCentres": lambda: rg.held_centres(PAIR, rg.Wrench(LOAD.force), max_force=20.0),
     "ChosenGrasp": placed,
     "ContactRegions": lambda: rg.contact_regions(SQUARE_OUTLINE, placed().grasp, WEIGHT_IN_PLANE),
+    "PlacementMap": lambda: rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, count=8),
     "OtherGrasp": lambda: placed().others[0],
     "PlacementProof": lambda: placed().certificate,
     "LoadSet": lambda: rg.LoadSet.ball(LOAD, force=1.0, torque=0.1),

@@ -347,6 +347,17 @@ def rows() -> dict[str, Row]:
         "OutlineCut.from_dict": Row(
             rg.OutlineCut.from_dict, {"data": on_outline(0.01).certificate.to_dict()}
         ),
+        "placement_map": Row(
+            rg.placement_map,
+            {"shape": SQUARE_OUTLINE, "load": WEIGHT_IN_PLANE, "friction": 0.5, "count": 8},
+            {
+                "shape": "value",
+                "disturbance": "value",
+                "fixed": "table",
+                "free": "count",
+                "length": "positive",
+            },
+        ),
         "contact_regions": Row(
             rg.contact_regions,
             {"shape": SQUARE_OUTLINE, "grasp": placed().grasp, "load": WEIGHT_IN_PLANE},

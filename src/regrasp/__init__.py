@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from regrasp.planning.holds.weights import RegraspWeights
     from regrasp.planning.placement.choosing import choose_grasp
     from regrasp.planning.placement.chosen import ChosenGrasp
+    from regrasp.planning.placement.maps import PlacementMap, placement_map
     from regrasp.planning.placement.regions import ContactRegions, contact_regions
     from regrasp.planning.regrasps.planar import RegraspProblem
     from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
@@ -110,6 +111,8 @@ _LATER = {
     "Outline": "regrasp.outline.outline",
     "OutlineCut": "regrasp.plans.outline_cut",
     "OutlineRegrasps": "regrasp.planning.anywhere.results",
+    "placement_map": "regrasp.planning.placement.maps",
+    "PlacementMap": "regrasp.planning.placement.maps",
     "plan_addition": "regrasp.planning.changes.finger_change",
     "plan_exchange": "regrasp.planning.changes.finger_change",
     "plan_motions": "regrasp.motions.plan",
@@ -178,6 +181,7 @@ __all__ = [
     "Outline",
     "OutlineCut",
     "OutlineRegrasps",
+    "PlacementMap",
     "PyramidLosses",
     "Quality",
     "RegraspError",
@@ -216,6 +220,7 @@ __all__ = [
     "least_stiffness",
     "locus_intervals",
     "margin_curve",
+    "placement_map",
     "plan_addition",
     "plan_exchange",
     "plan_hold",

@@ -1,5 +1,6 @@
 """Pictures of chosen grasps and of regions say where fingers are and what is proven."""
 
+import numpy as np
 import pytest
 
 import regrasp as rg
@@ -27,3 +28,27 @@ def test_regions_are_drawn_where_they_are() -> None:
     for line, arc in zip(drawn, regions.arcs, strict=True):
         assert line == pytest.approx(SQUARE_OUTLINE.points(arc))
     assert " m at once" in ax.get_legend().get_texts()[0].get_text()
+
+
+def test_maps_show_values_where_fingers_hold_and_a_ring_at_the_best() -> None:
+    found = rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, count=16)
+    ax = plots.plot_placement_map(found, units=plots.Units("mm", "N", "s"))
+    drawn = {artist.get_gid(): artist for artist in (*ax.collections, *ax.lines)}
+    assert drawn["values"].get_array().count() == (~np.isnan(found.values)).sum()
+    assert drawn["best"].get_xydata()[0] == pytest.approx(found.at)
+    assert [axes.get_ylabel() for axes in ax.figure.axes[1:]] == ["sum normal [N]"]
+    assert ax.get_xlabel() == "one finger at arc length [mm]"
+    ax = plots.plot_placement_outline(found)
+    parts = {c.get_gid(): len(c.get_paths()) for c in ax.collections}
+    assert parts["best"] == (~np.isnan(found.best)).sum()
+    assert parts["best"] + parts["no hold"] == len(found.places)
+
+
+def test_the_map_of_one_finger_is_drawn_on_the_outline_only() -> None:
+    found = rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, fixed=[0.2], free=1, count=16)
+    ax = plots.plot_placement_outline(found)
+    assert [line.get_xydata()[0] for line in ax.lines if line.get_gid() == "fixed"] == [
+        pytest.approx(SQUARE_OUTLINE.points([0.2])[0])
+    ]
+    with pytest.raises(rg.InvalidInput, match="plot_placement_outline"):
+        plots.plot_placement_map(found)

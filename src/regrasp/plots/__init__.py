@@ -33,6 +33,7 @@ from regrasp.plots.pages.overview import (
 from regrasp.plots.pages.page import html
 from regrasp.plots.pages.run_film import animate_execution
 from regrasp.plots.placement.chosen import plot_chosen_grasp, plot_contact_regions
+from regrasp.plots.placement.maps import plot_placement_map, plot_placement_outline
 from regrasp.plots.regrasps.hold_map import plot_hold_map
 from regrasp.plots.regrasps.outline_map import plot_outline_map
 from regrasp.plots.regrasps.steps import plot_regrasp
@@ -84,6 +85,8 @@ __all__ = [
     "plot_motions",
     "plot_outline",
     "plot_outline_map",
+    "plot_placement_map",
+    "plot_placement_outline",
     "plot_regrasp",
     "plot_scaling",
     "plot_sensitivity",

@@ -161,7 +161,7 @@ def test_arcs_of_a_curve_are_kept_to_and_may_run_past_its_start(shape: rg.Outlin
     a, b = 0.92 * shape.length, 0.06 * shape.length
     c, d = 0.4 * shape.length, 0.6 * shape.length
     found = rg.choose_grasp(shape, 2, TILTED, friction=0.8, arcs=[(a, b), (c, d)])
-    inside = [s >= a - 1e-6 or s <= b + 1e-6 or c - 1e-6 <= s <= d + 1e-6 for s in found.places]
+    inside = [s >= a - 1e-9 or s <= b + 1e-9 or c - 1e-9 <= s <= d + 1e-9 for s in found.places]
     assert all(inside)
     assert found.value >= rg.choose_grasp(shape, 2, TILTED, friction=0.8).bound
     assert rg.verify(found).ok

@@ -10,13 +10,13 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
-from regrasp.planning.placement.ball_level import BallLevel
+from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
-from regrasp.planning.placement.climbing import run_level
 from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.laws import LEVELS, law_of
-from regrasp.planning.placement.levels import AnsweredLevel, FrictionLevel, Level
-from regrasp.planning.placement.loads import check_planar, inner_and_outer, offset_by
+from regrasp.planning.placement.levels.ball import BallLevel
+from regrasp.planning.placement.levels.climbing import run_level
+from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
 from regrasp.planning.placement.search import MOST_BOXES, Progress, Search
@@ -99,7 +99,9 @@ def choose_grasp(
         Infeasible: Where no placement holds the loads; the certificate is the proof.
         InvalidInput: For arguments that are not what they must be.
     """
-    _check(shape, load, progress)
+    check_task(shape, load)
+    if progress is not None and not callable(progress):
+        raise InvalidInput(f"progress must be a function of bound and value, got {shown(progress)}")
     whole(fingers, "fingers", least=2, most=4)
     mu = number(friction, "friction", least=0)
     goal, law = law_of(objective)
@@ -119,7 +121,7 @@ def choose_grasp(
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
-    level = _level(goal, mu, load, max_force, disturbance, _length(goal, length, shape))
+    level = level_of(goal, mu, load, max_force, disturbance, length_of(goal, length, shape))
     stretches = None if arcs is None else _pairs(arcs)
     radius = number(tip_radius, "tip_radius", least=0)
     sides = sides_of(shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius)
@@ -152,52 +154,6 @@ def _pairs(arcs: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
     return [(float(a), float(b)) for a, b in found]
 
 
-def _level(
-    goal: str,
-    friction: float,
-    load: Wrench | LoadSet,
-    max_force: float | None,
-    disturbance: LoadSet | None,
-    length: float,
-) -> Level | None:
-    """The level that is sought, None for a norm. ``InvalidInput`` for limits that it does not go with."""
-    if (disturbance is not None) != (goal == "answered"):
-        raise InvalidInput("disturbance and objective 'answered' go together: give both, or neither")
-    if goal not in LEVELS:
-        return None
-    if max_force is None:
-        raise InvalidInput(
-            f"objective {goal!r} needs max_force: without a limit it is best at infinite force; got None"
-        )
-    limit = number(max_force, "max_force", above=0)
-    if goal == "wrench_ball":
-        if not isinstance(load, Wrench) or load.vector.any():
-            raise InvalidInput(
-                f"objective 'wrench_ball' is about loads in every direction: load must be zero, got "
-                f"{shown(load)}"
-            )
-        return BallLevel(limit, friction, length)
-    if disturbance is None:
-        if friction == 0:
-            raise InvalidInput(f"objective {goal!r} needs friction above 0")
-        loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
-        if loads is not None and not loads.any():
-            raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")
-        return FrictionLevel(limit, friction, angle=goal == "angle")
-    if not isinstance(load, Wrench):
-        raise InvalidInput(
-            "objective 'answered' takes one load, a Wrench, on top of which the disturbance comes"
-        )
-    return AnsweredLevel(limit, load.vector, _deviations(disturbance))
-
-
-def _length(goal: str, length: float | None, shape: Outline) -> float:
-    if length is not None and goal != "wrench_ball":
-        raise InvalidInput("length is for objective 'wrench_ball', by which it divides torques")
-    reach = float(np.hypot(*shape.polygon().T).max())
-    return reach if length is None else number(length, "length", above=0)
-
-
 def _check_constraints(constraints: Constraints, goal: str, fingers: int) -> None:
     if constraints.keep is not None:
         function(constraints.keep, "keep", "a function of first points, second points and an angle", 3)
@@ -210,19 +166,3 @@ def _check_constraints(constraints: Constraints, goal: str, fingers: int) -> Non
         )
     if constraints.removable and fingers < 3:
         raise InvalidInput("removable asks for three fingers or more: one finger alone is no grasp")
-
-
-def _deviations(disturbance: LoadSet) -> Array:
-    if not isinstance(disturbance, LoadSet) or disturbance.dimension != 2 or disturbance.vertices is None:
-        raise InvalidInput(f"disturbance must be a planar LoadSet.hull, got {shown(disturbance)}")
-    if not disturbance.vertices.any(axis=1).all():
-        raise InvalidInput("every vertex of disturbance must be a deviation, other than zero")
-    return disturbance.vertices
-
-
-def _check(shape: Outline, load: Wrench | LoadSet, progress: Progress | None) -> None:
-    if not isinstance(shape, Outline):
-        raise InvalidInput(f"shape must be an Outline, got {shown(shape)}")
-    check_planar(load)
-    if progress is not None and not callable(progress):
-        raise InvalidInput(f"progress must be a function of bound and value, got {shown(progress)}")

@@ -61,7 +61,12 @@ class CurvedSides(Sides):
         """The place at an arc length from 0 to the length of the outline [m]."""
         knots, at = self._knots, float(self._boundary.parameter(s))
         edge = min(int(np.searchsorted(knots, at, "right")), len(knots) - 1) - 1
-        return edge + float((at - knots[edge]) / (knots[edge + 1] - knots[edge]))
+        t = np.array([(at - knots[edge]) / (knots[edge + 1] - knots[edge])])
+        control, point = self.control[edge : edge + 1], self.outline.points(s)
+        for _ in range(2):  # the pieces of an ellipse are not at its pace
+            slope = 3 * _velocity(control, t)[0]
+            t = np.clip(t - (_at(control, t)[0] - point) @ slope / (slope @ slope), 0.0, 1.0)
+        return edge + float(t[0])
 
     def moved(self, place: int, u: float, way: float) -> tuple[int, float]:
         """A place some way along the boundary, a fraction of half of it, or at the end of a stretch."""

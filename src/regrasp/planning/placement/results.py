@@ -14,10 +14,10 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.planning.placement.ball_level import BallLevel
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
 from regrasp.planning.placement.laws import Law
-from regrasp.planning.placement.levels import AnsweredLevel, Level, Shown
+from regrasp.planning.placement.levels.ball import BallLevel
+from regrasp.planning.placement.levels.level import AnsweredLevel, Level, Shown
 from regrasp.planning.placement.proof import PlacementProof
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides

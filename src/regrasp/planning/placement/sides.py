@@ -66,6 +66,11 @@ class Sides(ArrayValue):
         edge = min(int(np.searchsorted(self.starts, s, "right")), len(self.starts)) - 1
         return edge + min(float((s - self.starts[edge]) / self.lengths[edge]), 1.0)
 
+    def on(self, u: Array) -> np.ndarray:
+        """(k,) the sides that places are on; the nearest before one that is on none."""
+        found: np.ndarray = np.maximum(np.searchsorted(self.ends[:, 0], u, "right") - 1, 0)
+        return found
+
     def on_edge(self, arc: tuple[float, float], edge: int, length: float) -> list[tuple[float, float]]:
         """The stretches u of an edge that an arc covers, which may run past the first vertex."""
         lo, hi, around = self.u_at(arc[0] % length), self.u_at(arc[1] % length), float(len(self.vertices))

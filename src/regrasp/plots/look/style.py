@@ -22,6 +22,8 @@ from regrasp.mechanics.grasp import Grasp
 
 # Okabe and Ito, "Color Universal Design", 2008; yellow, too pale for a line, is left out.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+NO_HOLD = "#dddddd"
+"""Of maps, where nothing holds."""
 INK, GREY, PALE = "#222222", "#767676", "#ececec"
 
 WIDTH = 3.4

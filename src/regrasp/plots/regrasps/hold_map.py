@@ -13,10 +13,9 @@ from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plots.look.style import INK, PALETTE, SMALL, TEXT, axes_or_new, label_axis, note, short
+from regrasp.plots.look.style import INK, NO_HOLD, PALETTE, SMALL, TEXT, axes_or_new, label_axis, note, short
 from regrasp.plots.look.units import SI, Units
 
-NO_HOLD = "#dddddd"
 PATH = PALETTE[1]
 # Contacts are on an outline within this fraction of its length.
 _ON = 1e-6

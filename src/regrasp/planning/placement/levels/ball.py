@@ -10,7 +10,7 @@ from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.placement.levels import AT_THE_EDGE, Level, Shown
+from regrasp.planning.placement.levels.level import AT_THE_EDGE, Level, Shown
 from regrasp.planning.placement.search import Search
 from regrasp.planning.states.choosing import choose_state
 

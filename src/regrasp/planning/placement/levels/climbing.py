@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.placement.levels import Level
+from regrasp.planning.placement.levels.level import Level
 from regrasp.planning.placement.search import Progress, Search
 
 _STRICT = 1e-9  # of the limit, by which excluded boxes must be above it

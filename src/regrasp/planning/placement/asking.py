@@ -1,0 +1,75 @@
+"""What a placement is asked for, checked: shape, load, and the level that an objective is."""
+
+import numpy as np
+
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.laws import LEVELS
+from regrasp.planning.placement.levels.ball import BallLevel
+from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel, Level
+from regrasp.planning.placement.loads import check_planar
+
+
+def level_of(
+    goal: str,
+    friction: float,
+    load: Wrench | LoadSet,
+    max_force: float | None,
+    disturbance: LoadSet | None,
+    length: float,
+) -> Level | None:
+    """The level that is sought, None for a norm. ``InvalidInput`` for limits that it does not go with."""
+    if (disturbance is not None) != (goal == "answered"):
+        raise InvalidInput("disturbance and objective 'answered' go together: give both, or neither")
+    if goal not in LEVELS:
+        return None
+    if max_force is None:
+        raise InvalidInput(
+            f"objective {goal!r} needs max_force: without a limit it is best at infinite force; got None"
+        )
+    limit = number(max_force, "max_force", above=0)
+    if goal == "wrench_ball":
+        if not isinstance(load, Wrench) or load.vector.any():
+            raise InvalidInput(
+                f"objective 'wrench_ball' is about loads in every direction: load must be zero, got "
+                f"{shown(load)}"
+            )
+        return BallLevel(limit, friction, length)
+    if disturbance is None:
+        if friction == 0:
+            raise InvalidInput(f"objective {goal!r} needs friction above 0")
+        loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
+        if loads is not None and not loads.any():
+            raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")
+        return FrictionLevel(limit, friction, angle=goal == "angle")
+    if not isinstance(load, Wrench):
+        raise InvalidInput(
+            "objective 'answered' takes one load, a Wrench, on top of which the disturbance comes"
+        )
+    return AnsweredLevel(limit, load.vector, _deviations(disturbance))
+
+
+def length_of(goal: str, length: float | None, shape: Outline) -> float:
+    """By which torques are divided [m]. ``InvalidInput`` for one that is not asked for."""
+    if length is not None and goal != "wrench_ball":
+        raise InvalidInput("length is for objective 'wrench_ball', by which it divides torques")
+    reach = float(np.hypot(*shape.polygon().T).max())
+    return reach if length is None else number(length, "length", above=0)
+
+
+def _deviations(disturbance: LoadSet) -> Array:
+    if not isinstance(disturbance, LoadSet) or disturbance.dimension != 2 or disturbance.vertices is None:
+        raise InvalidInput(f"disturbance must be a planar LoadSet.hull, got {shown(disturbance)}")
+    if not disturbance.vertices.any(axis=1).all():
+        raise InvalidInput("every vertex of disturbance must be a deviation, other than zero")
+    return disturbance.vertices
+
+
+def check_task(shape: Outline, load: Wrench | LoadSet) -> None:
+    """``InvalidInput`` for what is no outline or no load of the plane."""
+    if not isinstance(shape, Outline):
+        raise InvalidInput(f"shape must be an Outline, got {shown(shape)}")
+    check_planar(load)

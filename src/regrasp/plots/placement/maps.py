@@ -1,0 +1,134 @@
+"""Maps of placement: values over the places of two fingers, and on the outline itself."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, instance
+from regrasp.planning.placement.maps import PlacementMap
+from regrasp.plots.grasps.outline import plot_outline
+from regrasp.plots.look.style import INK, NO_HOLD, SMALL, TEXT, axes_or_new, label_axis, legend
+from regrasp.plots.look.units import SI, Units
+
+_UNITS = {"friction_use": "-", "angle": "deg", "answered": "-"}
+_WORST = 90.0  # percentile of values that colours tell apart: the worst grow without end
+
+
+def plot_placement_map(placements: PlacementMap, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """The value of two fingers over both arc lengths; grey where they do not hold, a ring at the best.
+
+    Args:
+        placements: what ``regrasp.placement_map`` found for two fingers that move.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(placements, "placements", PlacementMap)
+    if placements.values.ndim != 2:
+        raise InvalidInput("expected the map of two fingers; plot_placement_outline draws that of one")
+    length, values = placements.shape.length, _shown(placements, placements.values)
+    ax = axes_or_new(ax, height=3.3)
+    edges = _edges(placements.places, length)
+    none = np.where(np.isnan(values), 0.0, np.nan)
+    ax.pcolormesh(edges, edges, none, cmap=ListedColormap([NO_HOLD]), zorder=1, gid="no hold")
+    drawn = ax.pcolormesh(edges, edges, values, **_colours(placements, values), zorder=1, gid="values")
+    _bar(ax, drawn, placements, units)
+    if placements.at.size:
+        best = placements.at
+        ax.plot(*np.array([best, best[::-1]]).T, "o", mfc="none", mec="white", ms=8, mew=2.6, zorder=3)
+        ax.plot(
+            *np.array([best, best[::-1]]).T, "o", mfc="none", mec=INK, ms=8, mew=1.2, zorder=4, gid="best"
+        )
+    ax.set(xlim=(0, length), ylim=(0, length))
+    ax.set_aspect("equal", adjustable="box")
+    label_axis(ax.xaxis, "one finger at arc length", units.length, length)
+    label_axis(ax.yaxis, "the other at", units.length, length)
+    ax.set_title(f"{placements.share:.0%} of all placements hold", fontsize=TEXT, loc="left")
+    return ax
+
+
+def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+    """The best value that is reached with a finger at each place, in colour along the outline.
+
+    Args:
+        placements: what ``regrasp.placement_map`` found.
+        ax: the axes to draw on; new ones if not given.
+        units: what one unit of length, force and time is called; nothing is converted.
+    """
+    instance(placements, "placements", PlacementMap)
+    shape, best = placements.shape, _shown(placements, placements.best)
+    ax = plot_outline(shape, ax, units=units)
+    lows, highs = _ends(placements.places, shape.length)
+    strokes = [shape.points(np.linspace(lo, hi, 9)) for lo, hi in zip(lows, highs, strict=True)]
+    held = ~np.isnan(best)
+    ax.add_collection(
+        LineCollection(
+            [s for s, holds in zip(strokes, held, strict=True) if not holds], colors=NO_HOLD, linewidths=5,
+            capstyle="butt", zorder=2, gid="no hold",
+        )
+    )  # fmt: skip
+    colours = _colours(placements, best)
+    drawn = LineCollection(
+        [s for s, holds in zip(strokes, held, strict=True) if holds], array=best[held], linewidths=5,
+        capstyle="butt", zorder=3, gid="best", cmap=colours["cmap"],
+    )  # fmt: skip
+    drawn.set_clim(colours["vmin"], colours["vmax"])
+    ax.add_collection(drawn)
+    _bar(ax, drawn, placements, units)
+    handles = [Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold")]
+    if placements.fixed.size:
+        at = shape.points(placements.fixed)
+        ax.plot(*at.T, "o", color=INK, markersize=5, zorder=5, gid="fixed")
+        handles.append(Line2D([], [], marker="o", linestyle="none", color=INK, markersize=5, label="stays"))
+    if placements.at.size:
+        ax.plot(*shape.points(placements.at).T, "o", mfc="white", mec=INK, ms=7, mew=1.2, zorder=6, gid="at")
+        ring = Line2D([], [], marker="o", linestyle="none", markersize=7, label="best")
+        ring.set(markerfacecolor="white", markeredgecolor=INK)
+        handles.append(ring)
+    legend(ax, handles, ncols=3)
+    return ax
+
+
+def _shown(placements: PlacementMap, values: Array) -> Array:
+    """In the unit that is written."""
+    return np.degrees(values) if placements.objective == "angle" else values
+
+
+def _colours(placements: PlacementMap, values: Array) -> dict[str, Any]:
+    """Yellow is best; what is worse than most has the colour of the worst."""
+    held = values[~np.isnan(values)]
+    if not held.size:
+        return {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
+    if placements.more:
+        return {"cmap": "viridis", "vmin": 0.0, "vmax": float(held.max()) or 1.0}
+    low, high = float(held.min()), float(np.percentile(held, _WORST))
+    return {"cmap": "viridis_r", "vmin": low, "vmax": high if high > low else low + (abs(low) or 1.0)}
+
+
+def _bar(ax: Axes, drawn: Any, placements: PlacementMap, units: Units) -> None:
+    bar = ax.figure.colorbar(
+        drawn, ax=ax, fraction=0.046, pad=0.03, extend="neither" if placements.more else "max"
+    )
+    bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
+    bar.outline.set_linewidth(0.6)
+    unit = _UNITS.get(
+        placements.objective, units.force + ("$^2$" if placements.objective == "effort" else "")
+    )
+    bar.set_label(f"{placements.objective.replace('_', ' ')} [{unit}]", fontsize=TEXT)
+
+
+def _ends(places: Array, length: float) -> tuple[Array, Array]:
+    """Arc lengths where the cells of places begin and end: half way to the next, or half of what is usual."""
+    gaps = np.diff(places, append=places[0] + length)
+    reach = np.minimum(gaps, 1.01 * float(np.median(gaps))) / 2
+    return places - np.roll(reach, 1), places + reach
+
+
+def _edges(places: Array, length: float) -> Array:
+    """(m + 1,) edges of cells around places."""
+    middles = 0.5 * (places[1:] + places[:-1])
+    return np.concatenate([[max(1.5 * places[0] - 0.5 * places[1], 0.0)], middles, [length]])
