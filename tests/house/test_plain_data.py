@@ -142,6 +142,7 @@ def test_every_key_is_needed_or_has_a_default(name: str) -> None:
             "max_force",
             "min_normal",
             "deviations",
+            "length",
             "torque",
             "torsion",
             "limits",

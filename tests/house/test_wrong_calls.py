@@ -23,7 +23,7 @@ ROWS = rows()
 RECORDS = {
     "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
     "PyramidLosses", "RegraspCut", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
-    "ContactRegions", "OutlineCut", "OutlineRegrasps",
+    "ContactRegions", "OutlineCut", "OutlineRegrasps", "PlacementMap",
     "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
     "HeldCentres", "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath",
     "SampledPath", "TurningPath",

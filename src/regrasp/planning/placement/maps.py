@@ -106,7 +106,7 @@ def placement_map(
     """
     check_task(shape, load)
     mu, goal = number(friction, "friction", least=0), law_of(objective)
-    stays = array(list(fixed) if isinstance(fixed, Sequence) else fixed, "fixed", (None,))
+    stays = array(fixed, "fixed", (None,))
     whole(free, "free", least=1, most=2)
     if not 2 <= len(stays) + free <= 4:
         raise InvalidInput(
