@@ -80,6 +80,7 @@ KINDS: dict[str, Sequence[Any]] = {
     "normal": (*NOT_A_VECTOR, [0, 0]),
     "numbers": NOT_NUMBERS,
     "table": (*NOT_NUMBERS, 5, [], [1, 2], np.zeros((2, 2, 2))),
+    "some places": (*NOT_NUMBERS, 5, [1, 2, 3, 4], np.zeros((2, 2))),
     "times": (*NOT_NUMBERS, -1.0, 1e9, [0.0, 1e9]),
     "limits": (*NOT_NUMBERS, 0, -1, [1, 2], [0, 0, 0], [[1, 1, 1]]),
     "count": NOT_A_COUNT,
@@ -353,7 +354,7 @@ def rows() -> dict[str, Row]:
             {
                 "shape": "value",
                 "disturbance": "value",
-                "fixed": "table",
+                "fixed": "some places",
                 "free": "count",
                 "length": "positive",
             },
