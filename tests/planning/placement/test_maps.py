@@ -43,7 +43,7 @@ def test_each_cell_is_what_a_state_there_costs(
     shape: rg.Outline, objective: str, limit: float | None
 ) -> None:
     found = rg.placement_map(shape, LOADS, friction=0.5, objective=objective, max_force=limit, count=12)
-    assert (found.values.T == found.values)[~np.isnan(found.values)].all()
+    assert (found.values == found.values.T)[~np.isnan(found.values)].all()
     for i, s in enumerate(found.places):
         for j, t in enumerate(found.places[:i]):
             wanted = value(shape, [s, t], objective, limit)
