@@ -24,9 +24,7 @@ def regrasp(duration: float) -> rg.RegraspPlan:
         rg.Grasp(SHAPE.contact_at(p * SHAPE.length, friction=0.5) for p in places)
         for places in ((0.02, 0.35, 0.7), (0.2, 0.5, 0.85))
     )
-    return rg.plan_regrasp(
-        SHAPE, start, goal, rg.Wrench([0, -3.0]), friction=0.5, min_normal=0.3, step_duration=duration
-    )
+    return rg.plan_regrasp(SHAPE, start, goal, rg.Wrench([0, -3.0]), friction=0.5, step_duration=duration)
 
 
 def measured() -> list[dict[str, float]]:

@@ -44,7 +44,7 @@ def test_fingers_go_the_ways_planned_and_the_object_is_held() -> None:
 
 def test_a_regrasp_that_turns_holds_on_its_ways() -> None:
     """Steps of 4 s: the simulation's contacts creep with the square of the angular velocity."""
-    plan = rg.plan_regrasp(SHAPE, *ENDS, LOAD, friction=0.5, min_normal=0.3, step_duration=4.0)
+    plan = rg.plan_regrasp(SHAPE, *ENDS, LOAD, friction=0.5, step_duration=4.0)
     assert abs(np.diff(plan.orientations)).max() > 1.0
     motions = plan_motions(plan, SHAPE, tip_radius=0.003, clearance=0.002)
     run = simulate(plan, shape=SHAPE, motions=motions)

@@ -20,25 +20,7 @@ if TYPE_CHECKING:
 def plan_regrasp(
     outline: "Outline | Mesh", start: Grasp, goal: Grasp, load: Wrench, **options: Unpack[RegraspOptions]
 ) -> RegraspPlan:
-    """The regrasp of fewest finger moves, and of these the one of the widest least angle margin.
-
-    Every step is a removal, an exchange of one of two fingers that hold for the third, or an addition, while
-    the object may turn; or it turns the object alone. All three fingers turn it where it has to turn by more
-    than one step may: before one leaves, after the last arrives and between. A finger moves where it goes,
-    without force, to another point; exchanges between the points where the three stand need no move. Of
-    sequences of as many moves and as wide a margin, to 1e-6 rad, that of fewest steps is taken, then of least
-    turning. With ``weights`` the one of least cost.
-
-    outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
-    ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
-    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan has
-    ``rotations``.
-
-    What is proven: every state, every path between two, and that no regrasp on the sampled points has fewer
-    moves or, with as few, a wider least margin; or costs less. Points between the samples are not looked at.
-    All orientations are, where nothing but the load, friction, distances and ``arcs`` limits the holds;
-    ``peak_ratio`` and force limits leave several arcs of angles, of which one that is shorter than a 24th of
-    the whole may be missed. ``keep``, ``weights`` and regrasps in space look at sampled orientations.
+    """The best regrasp, without ways; the public verb, ``regrasp.motions.regrasps``, says what that is.
 
     Args:
         outline: an ``Outline``, or a ``Mesh`` in space.
@@ -46,11 +28,6 @@ def plan_regrasp(
         goal: as many, at the end.
         load: a force through the centre of mass, seen from the object before it turns [N].
         **options: of ``RegraspProblem`` or ``SpaceRegraspProblem``; ``friction`` [-] is required.
-
-    Raises:
-        Infeasible: Where no sequence of holds leads from one to the other, and says why and what would make
-            one possible.
-        InvalidInput: For arguments that are not what they must be.
     """
     return _problem(outline, start, goal, load, options).plans()[0]
 
