@@ -252,6 +252,24 @@ def test_a_listener_hears_of_failures_by_kind(tmp_path: Path) -> None:
     assert heard[-1].endswith("; failed 1, invalid 2, out of memory 1")
 
 
+def test_a_notebook_shows_one_line_that_is_renewed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+
+    class Handle:
+        def update(self, data: dict[str, str], raw: bool) -> None:
+            shown.append(data["text/plain"])
+
+    def display(data: dict[str, str], raw: bool, display_id: bool) -> Handle:
+        shown.append(data["text/plain"])
+        return Handle()
+
+    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+    monkeypatch.setattr("IPython.display.display", display)
+    swept(tmp_path, progress=True)
+    assert shown[-1].startswith("15 of 15 rows in this process, ")
+    assert shown[-1].endswith("/s, 0 s left")
+
+
 def test_cheap_cases_are_told_of_the_functions_of_arrays(tmp_path: Path, caplog: Any) -> None:
     with caplog.at_level("INFO", "regrasp"):
         swept(tmp_path, {"a": range(200)})
