@@ -20,10 +20,14 @@ _ROUNDING = 1e-9  # of the duration: how far a clock that is a sum may be off
 class MotionRows(NamedTuple):
     """Set-points of positions, velocities, contacts and forces; k fingers.
 
-    times: (m,) rising from 0 [s]. steps: (m,) from 0, the pause before each included. local: (m,) the plan's
-    own time from the start of the step [s].
-    positions, velocities: (m, k, d) of the tips' centres in the object's frame [m, m/s]. touching: (m, k).
-    forces: (m, k, d) of the fingers on the object [N], (m, k, 4) with soft fingers.
+    Args:
+        times: (m,) rising from 0 [s].
+        steps: (m,) from 0, the pause before each included.
+        local: (m,) the plan's own time from the start of the step [s].
+        positions: (m, k, d) of the tips' centres in the object's frame [m].
+        velocities: (m, k, d) of these [m/s].
+        touching: (m, k) whether each finger is at a contact.
+        forces: (m, k, d) of the fingers on the object [N], (m, k, 4) with soft fingers.
     """
 
     times: Array
@@ -36,11 +40,16 @@ class MotionRows(NamedTuple):
 
 
 def read_motions(path: str | Path, plan: Transition | RegraspPlan) -> MotionRows:
-    """The set-points of a file that ``write_motions`` wrote for motions of this plan.
+    """The set-points of a file that ``write_motions`` wrote; ``verify_motion_rows`` judges what they say.
 
-    Raises ``InvalidInput`` for other columns, rows that are not numbers, clocks and steps that do not rise
-    from the plan's start to its end, orientations that are not the plan's, and marks of contact that are
-    neither 0 nor 1. ``verify_motion_rows`` judges the rest.
+    Args:
+        path: the file.
+        plan: of the motions that were written.
+
+    Raises:
+        InvalidInput: For other columns, rows that are not numbers, clocks and steps that do not rise from the
+            plan's start to its end, orientations that are not the plan's, and marks of contact that are
+            neither 0 nor 1.
     """
     path = file_path(path)
     check_plan(plan)
