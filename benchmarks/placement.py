@@ -21,8 +21,8 @@ from scipy.optimize import Bounds, LinearConstraint, milp, minimize
 
 import regrasp as rg
 from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
-from regrasp.planning.placement.sides import sides_of
 
 FRICTION = 0.4
 LOADS = rg.LoadSet.hull(rg.Wrench([np.cos(t), np.sin(t)]) for t in np.arange(12) * np.pi / 6)
