@@ -177,7 +177,7 @@ def test_arcs(forces, delta):
     theta = np.linspace(0, delta, 4001)
     a, c, b = arc_weights(delta, theta)
     assert min(a.min(), b.min(), c.min()) >= -1e-12
-    assert a + b + c == pytest.approx(np.ones(theta.size), abs=1e-9)
+    assert abs(a + b + c - 1).max() <= 1e-9
     start, middle, end = forces
     path = arc_path(start[None], middle[None], end[None], delta, theta)[:, 0]
     slope = arc_slope(start[None], middle[None], end[None], delta, theta)[:, 0]
@@ -189,7 +189,8 @@ def test_arcs(forces, delta):
     assert fastest * (1 - 1e-9) - 1e-9 * size <= steepest <= fastest * (1 + 1e-4) + 1e-9 * size
     inner = slice(1, -1)
     measured = np.gradient(path, theta, axis=0)[inner]
-    assert measured == pytest.approx(slope[inner], abs=1e-3 * size / min(abs(delta), 1) ** 2)
+    allowed = np.maximum(1e-3 * size / min(abs(delta), 1) ** 2, 1e-6 * abs(slope[inner]))
+    assert (abs(measured - slope[inner]) <= allowed).all()
 
 
 @given(st.floats(-3, 3), st.floats(0.01, 3.0), st.lists(st.floats(-1, 1), min_size=9, max_size=9))

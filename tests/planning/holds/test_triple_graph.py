@@ -37,7 +37,7 @@ def with_torques(seed: int, count: int) -> np.ndarray:
     return loads
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10**6), st.booleans(), st.sampled_from([4, 6, 8, 16]))
 def test_all_at_once_is_the_same_as_one_at_a_time(seed: int, limited: bool, facets: int) -> None:
     graph = TripleGraph(candidates(seed, 6, limited=limited), with_torques(seed, 9), facets=facets)

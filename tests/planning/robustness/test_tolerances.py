@@ -90,7 +90,7 @@ def directions(force: np.ndarray) -> np.ndarray:
     if unit.size == 2:
         return np.array([[-unit[1], unit[0]], [unit[1], -unit[0]]])
     basis = np.linalg.svd(unit[None])[2][1:]
-    angles = np.linspace(0, 2 * pi, 1441)[:, None]
+    angles = np.linspace(0, 2 * pi, 481)[:, None]
     return np.cos(angles) * basis[0] + np.sin(angles) * basis[1]
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import oracle
 import regrasp as rg
-from agreement import FACETS
+from agreement import FACETS, LEVELS
 from places import ROOT
 from regrasp.programs import available_backends
 from regrasp.programs.backends import BACKENDS
@@ -22,6 +22,7 @@ OBJECTIVES = ("angle", "force", "effort", "peak", "friction_use")
 # The share of known verdicts that a back end may refuse: zero loads and wide scales are not for all of them.
 REFUSED = {"auto": 0.1, "clarabel": 0.15, "closed-form": 0.1, "daqp": 0.25, "quadprog": 0.2, "highs": 0.15}
 OTHERS = 0.4
+# Searches for levels ask a back end a dozen times for each case: others than ours on every fourth.
 # They take their time before they give a badly scaled linear program up.
 SLOW = {"proxqp": ("effort",), "scs": ("effort",), "osqp": ("effort", "peak")}
 
@@ -67,11 +68,14 @@ def test_the_cases_are_what_they_are_called():
 @pytest.mark.parametrize("backend", ["auto", "closed-form", *available_backends()])
 def test_no_back_end_leads_to_a_wrong_verdict(backend):
     facets = None if backend in ("auto", "closed-form") or BACKENDS[backend].second_order else FACETS
-    counted = Counter()
-    for case in degenerate_cases():
+    counted, searched = Counter(), backend in ("auto", "closed-form", "clarabel")
+    for k, case in enumerate(degenerate_cases()):
         if backend == "closed-form" and len(case.contacts) > 2:
             continue
-        for objective in SLOW.get(backend, OBJECTIVES):
+        objectives = SLOW.get(backend, OBJECTIVES)
+        if not searched and k % 4 > 0:
+            objectives = [objective for objective in objectives if objective not in LEVELS]
+        for objective in objectives:
             verdict = outcome(case, objective, backend, facets)
             assert verdict != "unproven"
             if case.held is not None:
