@@ -15,7 +15,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.limits.limit_rows import LimitRows, stacked
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries, listed
-from regrasp.mechanics.value import ArrayValue, one_line
+from regrasp.mechanics.value import ArrayValue, kept, one_line
 from regrasp.mechanics.wrench import torque
 
 _MOST = 1e50
@@ -152,6 +152,9 @@ class Grasp(ArrayValue):
         gone = self.index(contact)
         if len(self) == 1:
             raise InvalidInput(f"the last contact, {shown(self.names[0])}, cannot be taken from a grasp")
+        return kept(self, gone, Grasp._without)
+
+    def _without(self, gone: int) -> "Grasp":
         return self._of(self.contacts[:gone] + self.contacts[gone + 1 :])
 
     def with_contact(self, contact: Contact) -> "Grasp":
@@ -237,6 +240,8 @@ class Grasp(ArrayValue):
     @cached_property
     def limit_rows(self) -> LimitRows | None:
         """The contacts' linear ``limits``, as the cones measure forces; None where there are none."""
+        if not [contact for contact in self.contacts if contact.limits is not None]:
+            return None  # without a look at the cones, which take longer than a plan of two fingers
         return stacked(self.contacts, self.cones)
 
     @cached_property

@@ -48,6 +48,8 @@ class End(NamedTuple):
     def _asked(self, grasp: Grasp, moving: set[int]) -> Criteria:
         """The criteria: fingers that leave or arrive need not push and are force-controlled."""
         criteria, least = self.criteria, self.criteria.least_normal
+        if not least and not criteria.demands:  # the usual case, in microseconds
+            return criteria
         at_work = [i for i in range(len(grasp)) if i not in self.idle]
         if least:
             criteria = replace(criteria, min_normal=tuple(0.0 if i in moving else least for i in at_work))
@@ -79,7 +81,9 @@ class Change(NamedTuple):
     @classmethod
     def between(cls, grasp: Grasp, first: End, last: End, options: Mapping[str, Any]) -> "Change":
         """The change from one end to the other, states balanced or chosen by the options of a call."""
-        tolerance = number(options.get("balance_tolerance", BALANCE_TOLERANCE), "balance_tolerance", least=0)
+        tolerance = BALANCE_TOLERANCE
+        if "balance_tolerance" in options:
+            tolerance = number(options["balance_tolerance"], "balance_tolerance", least=0)
         how = {*first.idle, *last.idle}, options.get("method", "auto"), options.get("facets"), tolerance
         # The state of fewer fingers first: it is the one that may not exist.
         if len(first.idle) >= len(last.idle):
@@ -99,10 +103,11 @@ class Change(NamedTuple):
         return cls(start, end, last.idle, first.idle, record)
 
 
-def shared(criteria: Criteria, *ends: End) -> Criteria:
+def shared(criteria: Criteria, first: End, last: End) -> Criteria:
     """The criteria of a path: the loosest limit and the least reserve of its ends, between which it lies."""
-    limits, reserve = [end.criteria.max_force for end in ends], min(end.criteria.reserve for end in ends)
-    loosest = None if None in limits else max(limit for limit in limits if limit is not None)
+    a, b = first.criteria, last.criteria
+    reserve = a.reserve if a.reserve < b.reserve else b.reserve
+    loosest = None if a.max_force is None or b.max_force is None else max(a.max_force, b.max_force)
     if (loosest, reserve) == (criteria.max_force, criteria.reserve):
         return criteria
     return replace(criteria, max_force=loosest, reserve=reserve)

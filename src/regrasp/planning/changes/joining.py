@@ -62,8 +62,9 @@ class Demands:
     @classmethod
     def of(cls, options: ChangeOptions, **idle: float | None) -> "Demands":
         """The demands of a call; one value for the many calls without any, which take microseconds."""
-        given: dict[str, Any] = {name: value for name, value in options.items() if name in _DEMANDS}
-        given |= {name: time for name, time in idle.items() if time is not None}
+        given: dict[str, Any] = {name: time for name, time in idle.items() if time is not None}
+        if options:
+            given |= {name: value for name, value in options.items() if name in _DEMANDS}
         return cls(**given) if given else _NONE
 
     @property

@@ -24,10 +24,9 @@ _HELD = 2.0**-11
 def refuse_lost_load(plan: Transition) -> Transition:
     """The plan, or ``InvalidInput`` where its forces round to more than a thousandth of its load."""
     d = plan.grasp.dimension
-    largest = max(map(abs, plan.start.load.plain[:d]))
-    if not any(
-        max(map(abs, force)) > _NEVER * largest for s in (plan.start, plan.end) for force in s.forces.tolist()
-    ):
+    most = _NEVER * max(map(abs, plan.start.load.plain[:d]))
+    rows = plan.start.forces.tolist() + plan.end.forces.tolist()
+    if not [x for row in rows for x in row if x > most or x < -most]:
         return plan  # nearly all of them, in microseconds
     refuse_lost(plan.grasp, *_held(plan))
     return plan

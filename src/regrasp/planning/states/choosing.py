@@ -11,7 +11,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import StateOptions, criteria_of, takes
-from regrasp.planning.states.two_fingers import best_forces, is_closed, is_one_point
+from regrasp.planning.states.two_fingers import closed_forces, is_one_point
 
 MOST_FACETS = 10_000
 """Sides of a polygon that stands for a circle: one of so many is a circle to eight digits."""
@@ -67,30 +67,30 @@ def choose_forces(
     check_facets(facets)
     if not isinstance(method, str):
         raise InvalidInput(f"method must be text, such as 'auto', got {shown(method)}")
-    closed = is_closed(grasp, criteria)
     if method == "closed-form":
         _refuse_closed_form(grasp, criteria, facets)
-    if method == "closed-form" or (method == "auto" and closed and facets is None):
+    refused: Infeasible | None = None
+    if method == "closed-form" or (method == "auto" and facets is None):
         try:
-            return best_forces(grasp, load, criteria)
+            found = closed_forces(grasp, load, criteria)
         except Infeasible as reason:
             if method == "closed-form" or reason.certificate is not None:
                 raise
-            refused = reason  # without proof: rounding of contacts next to one another, or of the edge
-        from regrasp.planning.states.many_contacts import solved_forces
-
-        try:
-            return solved_forces(grasp, load, criteria, DEFAULT_BACKEND)
-        except RegraspError:
-            raise refused from None
+            found, refused = None, reason  # without proof: contacts next to one another, or at the edge
+        if found is not None:
+            return found
+    from regrasp.planning.states.many_contacts import solved_forces
     from regrasp.programs.backends import available_backends, is_available
 
     if method != "auto" and not is_available(method):
         known = ", ".join(("auto", "closed-form", *available_backends()))
         raise InvalidInput(f"method must be one of {known}; got {shown(method)}")
-    from regrasp.planning.states.many_contacts import solved_forces
-
-    return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)
+    try:
+        return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)
+    except RegraspError:
+        if refused is not None:
+            raise refused from None
+        raise
 
 
 def _refuse_closed_form(grasp: Grasp, criteria: Criteria, facets: int | None) -> None:

@@ -147,12 +147,12 @@ class Criteria:
         """Whether any finger must push with a least normal force."""
         return bool(self.min_normal) and (not isinstance(self.min_normal, tuple) or any(self.min_normal))
 
-    @property
+    @cached_property
     def withstands(self) -> bool:
         """Whether forces must withstand a set, rather than the widest factor of it."""
         return self.disturbance is not None and not isinstance(self.objective, WithstoodFactor)
 
-    @property
+    @cached_property
     def demands(self) -> bool:
         """Whether a set counts, as it is or by its factor."""
         return self.disturbance is not None or isinstance(self.objective, WithstoodFactor)

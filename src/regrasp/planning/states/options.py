@@ -207,7 +207,9 @@ _LIMITS = (*LimitOptions.__annotations__, "min_normal", "disturbance", "stiffnes
 
 def criteria_of(objective: "str | Objective | Criteria", options: Mapping[str, Any]) -> Criteria:
     """The criteria of a call: as they were given, or of a word or an objective and the limits given."""
-    given = tuple((name, options[name], type(options[name])) for name in _LIMITS if name in options)
+    given = tuple(
+        [(name, options[name], type(options[name])) for name in _LIMITS if name in options] if options else ()
+    )
     if isinstance(objective, Criteria):
         if given:
             raise InvalidInput(
@@ -228,9 +230,11 @@ def _known(objective: "str | Objective", limits: tuple[tuple[str, Any, type], ..
 
 def with_objective(criteria: Criteria, objective: "str | Objective | Criteria") -> Criteria:
     """The same limits for another objective; ``Criteria`` hold their own."""
-    return objective if isinstance(objective, Criteria) else _for(criteria, objective_of(objective))
+    if isinstance(objective, Criteria):
+        return objective
+    return _for(criteria, objective if isinstance(objective, str) else objective_of(objective))
 
 
 @lru_cache(maxsize=256)
-def _for(criteria: Criteria, objective: Objective) -> Criteria:
-    return replace(criteria, objective=objective)
+def _for(criteria: Criteria, objective: "str | Objective") -> Criteria:
+    return replace(criteria, objective=objective_of(objective))

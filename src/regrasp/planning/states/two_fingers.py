@@ -204,11 +204,23 @@ def is_one_point(grasp: Grasp) -> bool:
 
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
     """The best forces of two planar contacts, in closed form. Raises ``Infeasible`` with the escape twist."""
-    question = _question(grasp, criteria)
-    if question is None:
+    found = closed_forces(grasp, load, criteria)
+    if found is None:
         criteria.refuse_pressing("the closed form")
         refuse_limits(grasp, "the closed form")
         raise InvalidInput(f"objective {shown(criteria.objective.name)} has no closed form; use choose_state")
+    return found
+
+
+def closed_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces | None:
+    """The best forces of two planar contacts at two points; None where the closed form has no answer.
+
+    Raises ``Infeasible`` with the escape twist.
+    """
+    # Kept with the grasp, since loads change more often.
+    question = kept(grasp, criteria, _asked)
+    if question is None:
+        return None
     if question.needs_load and not any(load.plain):
         criteria.demand_limit(grasp, load)
     x, (f1x, f1y, f2x, f2y), limits = best_squeeze(*question.pair, *_load(load), *question.sought)  # type: ignore[arg-type]
@@ -225,17 +237,8 @@ class _Question(NamedTuple):
     needs_load: bool
 
 
-def is_closed(grasp: Grasp, criteria: Criteria) -> bool:
-    """Whether the closed form answers: two planar contacts at two points, and nothing it does not know."""
-    return _question(grasp, criteria) is not None
-
-
-def _question(grasp: Grasp, criteria: Criteria) -> _Question | None:
-    """Kept with the grasp, since loads change more often; None where the closed form has no answer."""
-    return kept(grasp, criteria, _asked)
-
-
 def _asked(grasp: Grasp, criteria: Criteria) -> _Question | None:
+    """None where the closed form has no answer: it knows two planar contacts at two points, and no more."""
     code = criteria.objective.closed_form
     if len(grasp) != 2 or grasp.dimension != 2 or code is None or criteria.presses or criteria.withstands:
         return None
