@@ -407,6 +407,23 @@ def rows() -> dict[str, Row]:
                 "length": "batch lengths",
             },
         ),
+        "choose_states": Row(
+            rg.choose_states,
+            {
+                "positions": [[1, 0], [-1, 0]],
+                "normals": [[-1, 0], [1, 0]],
+                "frictions": 0.5,
+                "force": [0, -1.0],
+            },
+            {
+                "positions": "finger rows",
+                "normals": "finger rows",
+                "frictions": "batch lengths",
+                "force": "rows",
+                "torque": "batch torque",
+                "max_force": "batch limits",
+            },
+        ),
         "batch_tolerances": Row(
             rg.batch_tolerances,
             {"positions": r, "normals": n, "frictions": 0.5, "forces": n},

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from regrasp.planning.robustness.least_stiffness import least_stiffness
     from regrasp.planning.robustness.margin_curve import MarginCurve, margin_curve
     from regrasp.planning.robustness.tolerances import Tolerances, tolerances
+    from regrasp.planning.states.arrays.many_states import BatchStates, choose_states
     from regrasp.planning.states.batch import best_squeezes, locus_intervals
     from regrasp.planning.states.objectives import ForceCost
     from regrasp.planning.states.two_fingers import EquilibriumLocus
@@ -76,6 +77,8 @@ _LATER = {
     "BatchTolerances": "regrasp.planning.robustness.batch",
     "batch_tolerances": "regrasp.planning.robustness.batch",
     "wrench_balls": "regrasp.measures.wrench_balls",
+    "BatchStates": "regrasp.planning.states.arrays.many_states",
+    "choose_states": "regrasp.planning.states.arrays.many_states",
     "best_squeezes": "regrasp.planning.states.batch",
     "Bottleneck": "regrasp.planning.holds.bottleneck",
     "bottleneck": "regrasp.planning.holds.bottleneck",
@@ -150,6 +153,7 @@ _LATER = {
 }
 
 __all__ = [
+    "BatchStates",
     "BatchTolerances",
     "Bottleneck",
     "ChosenGrasp",
@@ -210,6 +214,7 @@ __all__ = [
     "choose_grasp",
     "carried_load",
     "choose_state",
+    "choose_states",
     "closure",
     "contact_regions",
     "held_centres",

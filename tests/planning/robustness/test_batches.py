@@ -97,3 +97,65 @@ def test_shapes_broadcast_and_degenerate_grasps_have_nothing() -> None:
 def test_wrong_arrays_are_refused(call, said: str) -> None:
     with pytest.raises(rg.InvalidInput, match=said):
         call()
+
+
+def arrays(count: int, fingers: int, dimension: int):
+    """Positions, normals, frictions, forces and torques of random grasps."""
+    rng = np.random.default_rng(10 * fingers + dimension)
+    if dimension == 2:
+        angles = rng.uniform(0, 6, (count, 1)) + 2 * np.pi * np.arange(fingers) / fingers
+        angles = angles + rng.uniform(-0.4, 0.4, angles.shape)
+        r = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * rng.uniform(0.6, 1.4, (count, fingers, 1))
+    else:
+        r = rng.normal(size=(count, fingers, 3))
+    n = -r + 0.3 * rng.normal(size=r.shape)
+    torques = 0.1 * rng.normal(size=(count, 3) if dimension == 3 else count)
+    return r, n, rng.uniform(0.4, 1.0, r.shape[:2]), rng.normal(size=(count, dimension)), torques
+
+
+@pytest.mark.parametrize(("fingers", "dimension"), [(2, 2), (3, 2), (3, 3), (4, 3)])
+def test_states_of_arrays_are_those_of_each(fingers: int, dimension: int) -> None:
+    given = arrays(12, fingers, dimension)
+    for objective, limit in (("force", 4.0), ("effort", None), ("peak_normal", None), ("angle", None)):
+        found = rg.choose_states(*given, objective=objective, max_force=limit)
+        assert (found.held | found.refused).all()
+        assert not (found.held & found.refused).any()
+        for k, (r, n, mu, f, tau) in enumerate(zip(*given, strict=True)):
+            grasp, load = rg.Grasp(rg.Contact(*c) for c in zip(r, n, mu, strict=True)), rg.Wrench(f, tau)
+            try:
+                state = rg.choose_state(grasp, load, objective, max_force=limit)
+            except rg.Infeasible:
+                assert found.refused[k]
+                proof = rg.EscapeTwist(
+                    grasp, load, found.twists[k], tuple(mu.tolist()), (limit or np.inf,) * fingers
+                )
+                assert (
+                    proof.least_force > 0.999e4 * np.abs(load.force).max() / fingers
+                    if limit is None
+                    else proof.is_proof
+                )
+                continue
+            assert found.held[k]
+            assert found.values[k] == pytest.approx(state.value, rel=1e-6, abs=1e-7)
+            seen = rg.GraspState(grasp, load, found.forces[k])
+            assert seen.is_balanced(reserve=0.0)
+            np.testing.assert_allclose(found.margins.force[k], seen.margins.force, atol=1e-12)
+
+
+def test_states_of_arrays_take_any_leading_shape_and_say_what_they_leave_open() -> None:
+    r, n, mu, f, tau = arrays(6, 3, 2)
+    flat = rg.choose_states(r, n, mu, f, tau, objective="effort")
+    shaped = rg.choose_states(
+        r.reshape(2, 3, 3, 2), n.reshape(2, 3, 3, 2), mu.reshape(2, 3, 3), f.reshape(2, 3, 2),
+        tau.reshape(2, 3), objective="effort",
+    )  # fmt: skip
+    assert (shaped.forces.reshape(6, 3, 2) == flat.forces)[flat.held].all()
+    none = rg.choose_states(r, n, mu, np.zeros((6, 2)), objective="peak")
+    assert none.held.all()
+    assert not none.forces.any()
+    with pytest.raises(rg.InvalidInput, match="under a zero load needs max_force"):
+        rg.choose_states(r, n, mu, np.zeros((6, 2)), objective="force")
+    line = np.array([[[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]]])  # leaves the turn about it free
+    open_ = rg.choose_states(line, [[[0, 0, 1.0]] * 3], 0.5, [[0, 0, -1.0]], objective="effort")
+    assert not open_.held[0]
+    assert not open_.refused[0]

@@ -213,14 +213,6 @@ WEIGHT = rg.Wrench([0, -2])
         ((PINCH, rg.Wrench([0, 0])), {}, "under a zero load needs max_force"),
         ((PINCH, rg.Wrench([0, 0]), "effort"), {}, "no finger pushes in the state best for 'effort', so its"),
         ((rg.Grasp([rg.Contact([0, 0], [0, 1], 1)]), WEIGHT), {}, "needs two contacts or more"),
-        (
-            (
-                rg.Grasp([rg.Contact([1, 0, 0], [-1, 0, 0], 1), rg.Contact([-1, 0, 0], [1, 0, 0], 1)]),
-                rg.Wrench([0, 0, 1]),
-            ),
-            {},
-            "sensitivities are of planar grasps so far; this grasp is in space",
-        ),
     ],
 )
 def test_bad_arguments_are_named(arguments: tuple, options: dict, message: str) -> None:

@@ -14,15 +14,21 @@ _FIRST = {2: 0.07, 3: 0.16, 4: 0.35}  # half the distance of neighbours at the s
 _SHRINK = {2: 0.125, 3: 0.45, 4: 0.5}
 
 
-def least_over(value: Callable[[Array], Array], count: int, size: int) -> tuple[Array, Array]:
+def least_over(
+    value: Callable[[Array], Array], count: int, size: int, starts: int = 1
+) -> tuple[Array, Array]:
     """Least values (count,) of ``count`` functions over unit vectors (size,), and where, (count, size).
 
-    value: from (count, m, size) unit vectors to (count, m). Functions are smooth around their minima.
+    value: from (count, m, size) unit vectors to (count, m). Functions are smooth around their minima. starts:
+    where they have several, the best points of so many parts of the grid are refined.
     """
     if size == 1:
         at = np.broadcast_to(np.array([[1.0], [-1.0]]), (count, 2, 1))
         return _best(value(at), at)
-    least, where = _best(value(start := np.broadcast_to(_grid(size), (count, *_grid(size).shape))), start)
+    start = np.broadcast_to(_grid(size), (count, *_grid(size).shape))
+    if starts > 1:
+        return _from_several(value, start, starts)
+    least, where = _best(value(start), start)
     step, pattern = _FIRST[size], _pattern(size)
     for _ in range(_ROUNDS[size]):
         near = where[:, None] + step * _across(where, pattern)
@@ -32,6 +38,27 @@ def least_over(value: Callable[[Array], Array], count: int, size: int) -> tuple[
         least, where = np.where(better, found, least), np.where(better[:, None], at, where)
         step *= _SHRINK[size]
     return least, where
+
+
+def _from_several(value: Callable[[Array], Array], start: Array, starts: int) -> tuple[Array, Array]:
+    """The same from the best point of each part of the grid, all refined side by side."""
+    count, _, size = start.shape
+    values = np.where(np.isnan(found := value(start)), np.inf, found)
+    parts = np.array_split(np.argsort(start[0, :, 0], kind="stable"), starts)
+    best = np.stack([part[values[:, part].argmin(axis=1)] for part in parts], axis=1)  # (count, starts)
+    rows = np.arange(count)[:, None]
+    least, where = values[rows, best], start[rows, best]
+    step, pattern = _FIRST[size], _pattern(size)
+    for _ in range(_ROUNDS[size]):
+        near = where.reshape(-1, 1, size) + step * _across(where.reshape(-1, size), pattern)
+        near = near / np.sqrt((near * near).sum(axis=-1, keepdims=True))
+        reached = value(near.reshape(count, -1, size)).reshape(count * starts, -1)
+        found, at = _best(reached, near)
+        found, at = found.reshape(count, starts), at.reshape(count, starts, size)
+        better = found < least
+        least, where = np.where(better, found, least), np.where(better[..., None], at, where)
+        step *= _SHRINK[size]
+    return _best(least, where)
 
 
 def _best(values: Array, at: Array) -> tuple[Array, Array]:

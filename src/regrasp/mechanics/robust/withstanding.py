@@ -79,14 +79,17 @@ class Withstanding:
         return self.worst(ratio, member)
 
     def worst(
-        self, measure: Callable[[Array, Array], Array], member: Callable[[Array, float], Array]
+        self,
+        measure: Callable[[Array, Array], Array],
+        member: Callable[[Array, float], Array],
+        starts: int = 1,
     ) -> Worst:
         """The least ``measure`` of room (n, m) and twists (n, m, q) along which deviations work, by contact.
 
-        member: the deviation (q,) that reaches a measure along a twist.
+        member: the deviation (q,) that reaches a measure along a twist. starts: as of ``least_over``.
         """
         n, w = self.forces.shape
-        least, where = least_over(lambda u: self._slipping(u, measure), n, w - 1)
+        least, where = least_over(lambda u: self._slipping(u, measure), n, w - 1, starts)
         gs = self._edges(where[:, None])[:, 0]
         twists = [-self.responses[i].T @ gs[i] for i in range(n)]
         hows = [SLIPS] * n
@@ -99,7 +102,7 @@ class Withstanding:
                 limits=self.limits[limited],
                 rows=None,
             )
-            reached, us = least_over(lambda u: some._exceeding(u, measure), limited.size, w)
+            reached, us = least_over(lambda u: some._exceeding(u, measure), limited.size, w, starts)
             for k, i in enumerate(limited.tolist()):
                 if reached[k] < least[i]:
                     least[i], hows[i] = reached[k], EXCEEDS

@@ -30,6 +30,7 @@ class Failure(NamedTuple):
 
 
 Found = tuple[float, Failure | None]
+_STARTS = 8  # an angle may be least at several twists
 
 
 def friction_factor(views: Iterable[View], base: LoadSet | None) -> Found:
@@ -106,7 +107,8 @@ def _tilted(view: View, base: LoadSet | None) -> Worst:
         needed = np.divide(room + ahead, length, out=np.full(room.shape, inf), where=known)
         psi = np.arccos(np.clip(np.divide(ahead, length, out=np.zeros(room.shape), where=known), -1, 1))
         within = needed < 1
-        result: Array = np.where(within, psi - np.arccos(np.clip(needed, -1, 1)), inf)
+        beyond = pi + np.minimum(needed - 1, 1.0)  # never; less of it the nearer, so that a search has a way
+        result: Array = np.where(within, psi - np.arccos(np.clip(needed, -1, 1)), beyond)
         return result
 
     def member(twist: Array, angle: float) -> Array:
@@ -115,7 +117,7 @@ def _tilted(view: View, base: LoadSet | None) -> Worst:
         tilted = LoadSet.tilted(view.state.load, max(angle, 0.0)).extreme(twist).vector
         return tilted - view.state.load.vector
 
-    return view.withstanding(base).worst(angle, member)
+    return view.withstanding(base).worst(angle, member, _STARTS)
 
 
 def offsets(

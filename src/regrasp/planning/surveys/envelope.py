@@ -20,8 +20,9 @@ from regrasp.planning.states.objectives import ConvexObjective
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Status, solve
 
-PARAMETERS = ("friction", "position", "normal", "limit")
-"""What a contact has one number of; rates come in this order, n of each, then the three of the load."""
+Rates = dict[str, Array]
+"""By parameter: ``friction``, ``limit`` and ``torsion`` (n,), ``position`` and ``normal`` (n, d - 1) along
+and towards the tangents, ``load`` (3,) or (6,). Friction is the cone's: soft fingers' torsions follow it."""
 
 # Cube root of the rounding unit: rounding and curvature of the data cost 1e-10 each.
 _STEP = 6e-6
@@ -29,7 +30,7 @@ _STEP = 6e-6
 
 @dataclass(frozen=True)
 class Setting:
-    """What shapes a program: a planar grasp and its load; friction and limits in place of the contacts' own.
+    """What shapes a program: a grasp and its load; friction and limits in place of the contacts' own.
 
     frictions: (n,) [-]. limits: (n,) [N], infinite for none.
     """
@@ -44,41 +45,51 @@ class Setting:
         frictions, limits = self.frictions.tolist(), self.limits.tolist()
         return state_program(self.grasp, self.load, objective, frictions, limits, unit, weights=weights)
 
-    def moved(self, parameter: str, i: int, by: float) -> "Setting":
-        """The setting with one number changed: of contact i, or component i of the ``load``."""
+    def moved(self, parameter: str, place: tuple[int, ...], by: float) -> "Setting":
+        """The setting with one number changed, at its place in the rates."""
+        i = place[0]
         if parameter == "load":
-            return replace(self, load=Wrench.from_vector(self.load.vector + by * np.eye(3)[i]))
+            vector = self.load.vector.copy()
+            vector[i] += by
+            return replace(self, load=Wrench.from_vector(vector))
         one = by * np.eye(len(self.grasp))[i]
         if parameter == "friction":
             return replace(self, frictions=self.frictions + one)
         if parameter == "limit":
             return replace(self, limits=self.limits + one)
-        contact, tangent = self.grasp[i], self.grasp.tangents[i]
+        contact = self.grasp[i]
+        if parameter == "torsion":
+            return replace(
+                self, grasp=self.grasp.replaced(i, contact.changed(torsion=(contact.torsion or 0.0) + by))
+            )
+        tangent = self.grasp.cones.tangents[i, place[1], : self.grasp.dimension]
         if parameter == "position":
             changed = replace(contact, position=contact.position + by * tangent)
         else:
             changed = replace(contact, normal=cos(by) * contact.normal + sin(by) * tangent)
         return replace(self, grasp=self.grasp.replaced(i, changed))
 
-    def steps(self, unit: float) -> dict[str, Array]:
-        """A small change of every parameter, (n,) each, (3,) of the load; 0 where it is no parameter here.
+    def steps(self, unit: float) -> Rates:
+        """A small change of every parameter; 0 where it is no parameter here.
 
-        A contact without friction or limit has none to change.
+        A contact without friction, limit or torsion has none to change.
         """
-        n, size = len(self.grasp), self.grasp.size
+        grasp, size = self.grasp, self.grasp.size
+        across = (len(grasp), grasp.dimension - 1)
         return {
             "friction": np.minimum(_STEP, self.frictions / 2),
-            "position": np.full(n, _STEP * size),
-            "normal": np.full(n, _STEP),
+            "position": np.full(across, _STEP * size),
+            "normal": np.full(across, _STEP),
             "limit": _STEP * np.where(self.limits < inf, self.limits, 0.0),
-            "load": _STEP * unit * np.array([1.0, 1.0, size]),
+            "torsion": _STEP * (np.zeros(len(grasp)) if grasp.torsions is None else grasp.torsions),
+            "load": _STEP * unit * np.where(grasp.lengths == 1.0, 1.0, size),
         }
 
 
 def optimum_rates(
     setting: Setting, objective: ConvexObjective, unit: float, weights: Array | None = None
-) -> Array:
-    """Derivatives (4n + 3,) of the least value of ``state_program``, in the order of ``PARAMETERS``.
+) -> Rates:
+    """Derivatives of the least value of ``state_program``.
 
     The value is that of the program, in units of ``unit`` [N] and with the sign of a minimum; ``weights`` as
     there. The parameters are in units of their own. Raises ``SolverFailed`` without a sound optimum.
@@ -88,14 +99,18 @@ def optimum_rates(
         raise SolverFailed(f"no duals to differentiate by: {answer}", answer.program, answer)
     x, z = answer.value, answer.duals
 
-    def rate(parameter: str, i: int, step: float) -> float:
+    def rate(parameter: str, place: tuple[int, ...], step: float) -> float:
         if step == 0:
             return 0.0
         ahead, behind = (
-            setting.moved(parameter, i, by).program(objective, unit, weights) for by in (step, -step)
+            setting.moved(parameter, place, by).program(objective, unit, weights) for by in (step, -step)
         )
         moved = z @ ((ahead.A - behind.A) @ x - (ahead.b - behind.b)) + x @ (ahead.q - behind.q)
         return float(moved) / (2 * step)
 
-    steps = setting.steps(unit)
-    return np.array([rate(p, i, step) for p in (*PARAMETERS, "load") for i, step in enumerate(steps[p])])
+    found = {}
+    for parameter, steps in setting.steps(unit).items():
+        found[parameter] = np.array([rate(parameter, at, h) for at, h in np.ndenumerate(steps)]).reshape(
+            steps.shape
+        )
+    return found

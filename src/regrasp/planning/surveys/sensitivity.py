@@ -1,6 +1,7 @@
 """What the best forces of a grasp are sensitive to."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING, Unpack
 
@@ -9,6 +10,7 @@ import numpy as np
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, read_only
+from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.state import GraspState, check_load
@@ -26,8 +28,11 @@ if TYPE_CHECKING:
 
 # What is less than this fraction of the largest effect prints as 0.
 _ROUNDING = 1e-6
-_PER = {"friction": "", "position": "m", "normal": "rad", "limit": "N"}
-_LOAD = {"force x": "N", "force y": "N", "torque": "(N m)"}
+_PER = {"friction": "", "position": "m", "normal": "rad", "limit": "N", "torsion": "m"}
+_LOADS = {
+    2: {"force x": "N", "force y": "N", "torque": "(N m)"},
+    3: {f"{what} {axis}": per for what, per in (("force", "N"), ("torque", "(N m)")) for axis in "xyz"},
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,13 +46,16 @@ class Sensitivity(ArrayValue, Pictured):
         state: the best state.
         value: its objective, margins measured within the friction that planning may use.
         friction: (n,) per unit of mu_i; NaN where mu_i = 0, which can change to one side only.
-        position: (n,) per metre along the contact's tangent, the normal turned left by a right angle. The
-            normal stays as it is: along a boundary of curvature kappa, positive where convex, the value
-            changes by ``position`` - kappa ``normal`` (1 / R on a disc).
-        normal: (n,) per radian that the normal turns counter-clockwise.
+        position: (n,) per metre along the contact's tangent, the normal turned left by a right angle; in
+            space (n, 2) along both of ``Grasp.tangents``. The normal stays as it is: along a boundary of
+            curvature kappa, positive where convex, the value changes by ``position`` - kappa ``normal`` (1 /
+            R on a disc).
+        normal: (n,) per radian that the normal turns counter-clockwise; in space (n, 2) towards both
+            tangents.
         limit: (n,) per newton of the contact's force limit, its own or ``max_force``; 0 where it does not
             bind, NaN where none is given.
-        load: (3,) per newton, newton and newton metre of the load.
+        load: (3,) or (6,) per newton and newton metre of the load.
+        torsion: (n,) per metre of a soft finger's torsion, its friction staying; NaN of point contacts.
     """
 
     state: ChosenState
@@ -57,6 +65,7 @@ class Sensitivity(ArrayValue, Pictured):
     normal: Array
     limit: Array
     load: Array
+    torsion: Array
 
     _drawn_by = "regrasp.plots.surveys.sensitivity:sensitivity_png"
 
@@ -81,25 +90,26 @@ class Sensitivity(ArrayValue, Pictured):
         return self.objective.maximise
 
     def steps(self, fraction: float = 0.01) -> dict[str, Array]:
-        """Comparable changes of all parameters, (n,) for contacts and (3,) for the load, whatever the units.
+        """Comparable changes of all parameters, in the shapes of the rates, whatever the units.
 
-        That fraction of the friction, the force limit and the magnitude of the load's force (of the
-        largest finger force if it is zero); of the grasp's size along the tangent; of a radian. The load's
-        torque changes as if its force moved by the grasp's size.
+        That fraction of the friction, the torsion, the force limit and the magnitude of the load's force (of
+        the largest finger force if it is zero); of the grasp's size along the tangent; of a radian. The
+        load's torque changes as if its force moved by the grasp's size.
 
         Args:
             fraction: of friction, limits, sizes and a radian [-].
         """
         share = number(fraction, "fraction", above=0)
-        n, size, criteria = len(self.grasp), self.grasp.size, self.state.criteria
-        force = float(np.hypot(*self.state.load.force)) or float(self.state.magnitudes.max())
+        size, criteria = self.grasp.size, self.state.criteria
+        force = float(np.linalg.norm(self.state.load.force)) or float(self.state.magnitudes.max())
         limits = np.array(criteria.limits(self.grasp))
         return {
             "friction": share * self.grasp.frictions,
-            "position": np.full(n, share * size),
-            "normal": np.full(n, share),
+            "position": np.full(self.position.shape, share * size),
+            "normal": np.full(self.normal.shape, share),
             "limit": share * np.where(np.isfinite(limits), limits, nan),
-            "load": share * force * np.array([1.0, 1.0, size]),
+            "torsion": share * np.array([nan if c.torsion is None else c.torsion for c in self.grasp]),
+            "load": share * force * np.where(np.arange(self.load.size) < self.grasp.dimension, 1.0, size),
         }
 
     def effects(self, fraction: float = 0.01) -> dict[str, Array]:
@@ -117,34 +127,51 @@ class Sensitivity(ArrayValue, Pictured):
         except ImportError:
             raise ImportError("to_dataframe needs pandas: pip install 'regrasp[pandas]'") from None
         rows = [
-            (name, parameter, getattr(self, parameter)[i], self._unit_per(per))
+            (name, parameter, rates[i], self._unit_per(per))
             for i, name in enumerate(self.grasp.names)
-            for parameter, per in _PER.items()
+            for parameter, (rates, per) in self._columns(vars(self)).items()
+            if parameter != "torsion" or self.grasp.is_soft
         ]
         rows += [
             ("load", parameter, rate, self._unit_per(per))
-            for (parameter, per), rate in zip(_LOAD.items(), self.load, strict=True)
+            for (parameter, per), rate in zip(self._loads.items(), self.load, strict=True)
         ]
         return pandas.DataFrame(rows, columns=["of", "parameter", "rate", "unit"])
+
+    @property
+    def _loads(self) -> dict[str, str]:
+        """The load's components and their units."""
+        return _LOADS[self.grasp.dimension]
+
+    def _columns(self, values: Mapping[str, Array]) -> dict[str, tuple[Array, str]]:
+        """(n,) numbers of the contacts and their units, those of both tangents one after the other."""
+        columns = {}
+        for name, per in _PER.items():
+            if values[name].ndim == 1:
+                columns[name] = values[name], per
+            else:
+                columns |= {f"{name} {k + 1}": (part, per) for k, part in enumerate(values[name].T)}
+        return columns
 
     def _unit_per(self, per: str) -> str:
         unit = "1" if self.unit == "-" and per else self.unit
         return f"{unit}/{per}" if per else unit
 
     def __str__(self) -> str:
-        shown = [parameter for parameter in _PER if not np.isnan(getattr(self, parameter)).all()]
+        columns = self._columns(vars(self))
+        shown = {name: per for name, (rates, per) in columns.items() if not np.isnan(rates).all()}
         width = max(8, *(len(name) for name in self.grasp.names))
         lines = [
             f"{self.objective} {self.value:.5g} {self.unit} under {self.state.load!r}; it changes by",
             f"{'':{width}}" + "".join(f"{parameter:>14}" for parameter in shown),
-            f"{'':{width}}" + "".join(f"{'[' + self._unit_per(_PER[p]) + ']':>14}" for p in shown),
+            f"{'':{width}}" + "".join(f"{'[' + self._unit_per(per) + ']':>14}" for per in shown.values()),
         ]
         cells = self._cells()
         for i, name in enumerate(self.grasp.names):
             lines.append(f"{name:{width}}" + "".join(cells[p][i] for p in shown))
-        lines.append(f"{'load':{width}}" + "".join(f"{name:>14}" for name in _LOAD))
+        lines.append(f"{'load':{width}}" + "".join(f"{name:>14}" for name in self._loads))
         lines.append(
-            f"{'':{width}}" + "".join(f"{'[' + self._unit_per(p) + ']':>14}" for p in _LOAD.values())
+            f"{'':{width}}" + "".join(f"{'[' + self._unit_per(p) + ']':>14}" for p in self._loads.values())
         )
         lines.append(f"{'':{width}}" + "".join(cells["load"]))
         return "\n".join(lines)
@@ -152,13 +179,16 @@ class Sensitivity(ArrayValue, Pictured):
     def _cells(self) -> dict[str, list[str]]:
         """The rates, 14 characters each; a dash where there is none, 0 where the effect is rounding."""
         effects = self.effects()
+        columns, of_columns = self._columns(vars(self)), self._columns(effects)
+        pairs = {name: (rates, of_columns[name][0]) for name, (rates, _) in columns.items()}
+        pairs["load"] = self.load, effects["load"]
         rounding = _ROUNDING * max(float(np.nanmax(abs(e), initial=0.0)) for e in effects.values())
         return {
             name: [
                 f"{'-':>14}" if np.isnan(effect) else f"{rate if abs(effect) > rounding else 0.0:14.4g}"
-                for effect, rate in zip(effect_of, getattr(self, name), strict=True)
+                for effect, rate in zip(effect_of, rates, strict=True)
             ]
-            for name, effect_of in effects.items()
+            for name, (rates, effect_of) in pairs.items()
         }
 
     __repr__ = __str__
@@ -173,7 +203,8 @@ def sensitivity(
 ) -> Sensitivity:
     """How much the best margin or the least effort changes per unit of friction, position, normal and load.
 
-    The arguments are those of ``choose_state``, for planar grasps of two contacts or more.
+    The arguments are those of ``choose_state``, for grasps of two contacts or more, in space with exact cones
+    and soft fingers.
 
     By the envelope theorem, from the duals of the programs that Clarabel solves (docs/sensitivity.md); a
     force limit set by ``peak_ratio`` moves with the least peak force.
@@ -183,22 +214,19 @@ def sensitivity(
     what is returned is a mixture. Nothing warns of it: where it matters, choose again after a small change.
 
     Args:
-        grasp: two planar contacts or more.
+        grasp: two contacts or more.
         load: external wrench on the object about its centre of mass, object frame [N, N m].
         objective: as for ``choose_state``.
         options
 
     Raises:
         Infeasible: When no forces hold the load.
-        InvalidInput: For a grasp in space, a state without forces and a ``peak_ratio`` of 1, which leaves
-            nothing to choose.
+        InvalidInput: For a state without forces and a ``peak_ratio`` of 1, which leaves nothing to choose.
         SolverFailed: Where there are no duals, at the very limit of what can be held.
     """
     instance(grasp, "grasp", Grasp)
     check_load(grasp, load)
     refuse_limits(grasp, "a sensitivity")
-    if grasp.dimension != 2:
-        raise InvalidInput("sensitivities are of planar grasps so far; this grasp is in space")
     if len(grasp) < 2:
         raise InvalidInput("a sensitivity needs two contacts or more: one holds a load along its line alone")
     criteria = criteria_of(objective, options)
@@ -215,17 +243,31 @@ def sensitivity(
     from regrasp.planning.surveys.value_rates import value_rates
 
     frictions, limits = state.criteria.frictions(grasp), np.array(state.criteria.limits(grasp))
-    kept = Grasp(replace(c, friction=mu) for c, mu in zip(grasp, frictions, strict=True))
+    kept = Grasp(_with_friction(c, mu) for c, mu in zip(grasp, frictions, strict=True))
     best = GraspState(kept, load, state.forces)
-    rates = value_rates(best, state.criteria, np.array(state.force_limits)) + 0.0  # no -0.0
-    n = len(grasp)
-    friction, position, normal, limit = rates[: 4 * n].reshape(4, n)
+    rates = {
+        name: rate + 0.0  # no -0.0
+        for name, rate in value_rates(best, state.criteria, np.array(state.force_limits)).items()
+    }
+    # a cone's friction moves a soft finger's torsion along, the contact's does not
+    arms = np.array([(c.torsion or 0.0) / (c.friction or 1.0) for c in grasp])
+    share, shape = 1 - criteria.reserve, (len(grasp), 2) if grasp.dimension == 3 else (len(grasp),)
+    friction = share * (rates["friction"] - arms * rates["torsion"])
+    soft = np.array([c.torsion is not None for c in grasp])
     return Sensitivity(
         state,
         criteria.objective.value(best),
-        read_only(np.where(grasp.frictions > 0, (1 - criteria.reserve) * friction, nan)),
-        read_only(position),
-        read_only(normal),
-        read_only(np.where(np.isfinite(limits), limit, nan)),
-        read_only(rates[4 * n :]),
+        read_only(np.where(grasp.frictions > 0, friction, nan)),
+        read_only(rates["position"].reshape(shape)),
+        read_only(rates["normal"].reshape(shape)),
+        read_only(np.where(np.isfinite(limits), rates["limit"], nan)),
+        read_only(rates["load"]),
+        read_only(np.where(soft, share * rates["torsion"], nan)),
     )
+
+
+def _with_friction(contact: Contact, friction: float) -> Contact:
+    """The contact with what planning may use of its friction, and as much of its torsion."""
+    if contact.torsion is None:
+        return contact.changed(friction=friction)
+    return contact.changed(friction=friction, torsion=contact.torsion * friction / contact.friction)

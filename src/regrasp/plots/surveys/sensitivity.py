@@ -31,8 +31,9 @@ _LINE = 36  # letters that fit above the axes
 def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """The change of the best value, to first order, by a hundredth of everything (``Sensitivity.effects``).
 
-    A bar per contact for its friction, its place along the boundary's tangent, its normal and its force
-    limit, where one is given; below them the load's force and torque. Angles are in degrees.
+    A bar per contact for its friction, its place along the boundary's tangent (in space along both), its
+    normal and its force limit, where one is given; below them the load's force and torque. Angles are in
+    degrees.
 
     Args:
         sensitivity: what ``regrasp.sensitivity`` found.
@@ -83,22 +84,27 @@ def _rows(
 ) -> list[tuple[str, Array, list[str]]]:
     """Label, bars and colours of each group, from top to bottom."""
     colours = list(contact_colours(sensitivity.grasp).values())
-    along = quantity(float(steps["position"][0]), units.length, 2)
-    turn = quantity(float(np.degrees(steps["normal"][0])), "deg", 2)
+    along = quantity(float(steps["position"].flat[0]), units.length, 2)
+    turn = quantity(float(np.degrees(steps["normal"].flat[0])), "deg", 2)
     labels = {
         "friction": "friction\n+1%",
         "position": f"position\n+{along}",
         "normal": f"normal\n+{turn}",
         "limit": "force limit\n+1%",
+        "torsion": "torsion\n+1%",
     }
-    rows = [
-        (label, np.nan_to_num(effects[name]), colours)
-        for name, label in labels.items()
-        if np.isfinite(effects[name]).any()
-    ]
-    names = ("load $f_x$", "load $f_y$", r"load $\tau$")
-    for name, step, effect, of in zip(
-        names, steps["load"], effects["load"], (units.force, units.force, units.torque), strict=True
-    ):
+    rows = []
+    for name, label in labels.items():
+        parts = np.atleast_2d(effects[name].T)  # in space one for each tangent
+        for k, part in enumerate(parts, 1):
+            words = label if len(parts) == 1 else label.replace("\n", f" $t_{k}$\n")
+            if np.isfinite(part).any():
+                rows.append((words, np.nan_to_num(part), colours))
+    d = sensitivity.grasp.dimension
+    axes = "xyz"[:d]
+    names = [f"load $f_{axis}$" for axis in axes]
+    names += [r"load $\tau$"] if d == 2 else [rf"load $\tau_{axis}$" for axis in axes]
+    of_units = [units.force] * d + [units.torque] * (len(names) - d)
+    for name, step, effect, of in zip(names, steps["load"], effects["load"], of_units, strict=True):
         rows.append((f"{name} +{quantity(float(step), of, 2)}", np.array([effect]), [GREY]))
     return rows

@@ -1,0 +1,327 @@
+"""What is said to be withstood, on thousands of random grasps, judged by code that knows none of ours.
+
+    python benchmarks/withstood.py [--quick] [-o DIR]
+
+Tolerances: a thousandth less is withstood by every member, a thousandth more has a witness. The forces of a
+deviation follow from the displacement of the object on its fingers' springs, solved for here; stiffness
+differs by contact and direction in half of the grasps. Largest loads: a linear program (HiGHS) in the plane,
+a conic one (Clarabel) in space says a thousandth less is held and a thousandth more is not. Plans: random
+members of the sets of fifty plans at random instants.
+"""
+
+import argparse
+import json
+from collections import Counter
+from collections.abc import Iterator
+from math import cos, inf, pi, sin
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import clarabel
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.optimize import linprog, minimize
+
+import regrasp as rg
+
+Array = NDArray[np.float64]
+LESS, MORE = 0.999, 1.001
+_FINE = {"xatol": 1e-12, "fatol": 1e-15, "maxiter": 2000}
+STATES, LOADS, PLANS, MEMBERS = 3000, 2000, 50, 2000
+
+
+def main() -> None:
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--quick", action="store_true", help="few grasps, to see that it works")
+    arguments.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results")
+    given = arguments.parse_args()
+    share = 100 if given.quick else 1
+    began, rng = process_time(), np.random.default_rng(1)
+    counts: Counter[str] = Counter()
+    for state, stiffness in states(rng, STATES // share):
+        judge_tolerances(state, stiffness, counts)
+    for state, _ in states(rng, LOADS // share):
+        judge_largest(state, counts)
+    for plan, loads in plans(rng, max(PLANS // share, 3)):
+        judge_members(plan, loads, rng, MEMBERS // share, counts)
+    found = {"processor_seconds": round(process_time() - began, 1)} | dict(sorted(counts.items()))
+    given.output.mkdir(parents=True, exist_ok=True)
+    (given.output / "withstood.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    for key, value in found.items():
+        print(f"{key}: {value}")
+
+
+# -- problems -----------------------------------------------------------------------------------------
+
+
+def random_grasp(rng: np.random.Generator) -> tuple[rg.Grasp, rg.Wrench]:
+    """Two to four fingers that push roughly inwards, in the plane or in space, and a load."""
+    plane = rng.random() < 0.6
+    d, n = (2, int(rng.integers(2, 4))) if plane else (3, int(rng.integers(3, 5)))
+    if plane:
+        angles = rng.uniform(0, 2 * pi) + 2 * pi * (np.arange(n) + rng.uniform(-0.25, 0.25, n)) / n
+        points = np.column_stack([np.cos(angles), np.sin(angles)])
+    else:
+        points = rng.normal(size=(n, 3))
+        points /= np.linalg.norm(points, axis=1)[:, None]
+    points *= rng.uniform(0.6, 1.4, n)[:, None]
+    normals = -points + 0.3 * rng.normal(size=(n, d))
+    soft = not plane and rng.random() < 0.3
+    torsion = 0.1 if soft else None
+    mu = rng.uniform(0.4, 1.0, n)
+    grasp = rg.Grasp(
+        rg.Contact(p, v, m, torsion=torsion) for p, v, m in zip(points, normals, mu, strict=True)
+    )
+    return grasp, rg.Wrench(rng.normal(size=d), 0.1 * rng.normal(size=1 if plane else 3))
+
+
+def states(rng: np.random.Generator, count: int) -> Iterator[tuple[rg.GraspState, Any]]:
+    """States with room, some with force limits, and the stiffness of their fingers."""
+    while count:
+        grasp, load = random_grasp(rng)
+        try:
+            state: rg.GraspState = rg.choose_state(grasp, load, "force")
+        except rg.Infeasible:
+            continue
+        if state.margins.least_force < 1e-3:
+            continue
+        if rng.random() < 0.4:
+            limit = 1.3 * float(np.linalg.norm(measured(grasp, state.forces), axis=1).max())
+            state = rg.GraspState(rg.Grasp(c.changed(max_force=limit) for c in grasp), load, state.forces)
+        count -= 1
+        yield state, random_stiffness(rng, grasp)
+
+
+def random_stiffness(rng: np.random.Generator, grasp: rg.Grasp) -> Any:
+    """By contact and direction in half of the cases (and of soft fingers), alike in the others."""
+    n = len(grasp)
+    if rng.random() < 0.5 and not grasp.is_soft:
+        return None
+    rows = 10.0 ** rng.uniform(2, 4, (n, 2))
+    return np.hstack([rows, rng.uniform(1, 30, (n, 1))]) if grasp.is_soft else rows
+
+
+def plans(rng: np.random.Generator, count: int) -> Iterator[tuple[rg.Transition, rg.LoadSet]]:
+    """Plans of every kind and the sets that they were planned to withstand."""
+    kinds = ("removal", "addition", "hold", "rotation")
+    while count:
+        grasp, load = random_grasp(rng)
+        if grasp.is_soft:
+            continue
+        d, size = grasp.dimension, float(np.linalg.norm(load.force))
+        zero = 0.0 * load
+        share, kind = 0.05 * size * rng.random(), kinds[count % len(kinds)]
+        if rng.random() < 0.5:
+            loads = rg.LoadSet.ball(zero, force=share, torque=0.3 * share)
+        else:
+            loads = rg.LoadSet.hull(
+                [rg.Wrench.from_vector(share * v) for v in rng.normal(size=(6, 3 * d - 3))]
+            )
+        if kind in ("removal", "addition") and len(grasp) == d:
+            continue
+        options: dict[str, Any] = {"load": load, "disturbance": loads, "max_force": 20 * size}
+        try:
+            if kind == "removal":
+                plan = rg.plan_removal(grasp, grasp.names[-1], **options)
+            elif kind == "addition":
+                plan = rg.plan_addition(grasp.without(grasp.names[-1]), grasp.contacts[-1], **options)
+            elif kind == "hold":
+                plan = rg.plan_hold(grasp, start_objective="effort", **options)
+            elif not loads.contains(zero):
+                continue
+            else:
+                turn = {"axis": rng.normal(size=3)} if d == 3 else {}
+                plan = rg.plan_rotation(grasp, 0.5, **turn, **options)
+        except rg.Infeasible:
+            continue
+        count -= 1
+        yield plan, loads
+
+
+# -- the judge: displacements, cones and programs, from the mathematics --------------------------------------
+
+
+def grasp_matrix(grasp: rg.Grasp) -> Array:
+    """Stacked forces to the wrench, a soft finger's torque last."""
+    blocks = []
+    for c in grasp:
+        r = c.position
+        if c.dimension == 2:
+            blocks.append(np.vstack([np.eye(2), [[-r[1], r[0]]]]))
+            continue
+        cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
+        about = [np.concatenate([np.zeros(3), c.normal])[:, None]] if grasp.is_soft else []
+        blocks.append(np.hstack([np.vstack([np.eye(3), cross]), *about]))
+    return np.hstack(blocks)
+
+
+def answers(grasp: rg.Grasp, stiffness: Any, free: tuple[int, ...] = ()) -> Array:
+    """(n w, q) changes of forces per load, by the displacement of the object that balances it."""
+    matrix, w = grasp_matrix(grasp), grasp.width
+    springs = np.zeros((matrix.shape[1], matrix.shape[1]))
+    for i, c in enumerate(grasp):
+        if i in free:
+            continue
+        along, across = (1.0, 1.0) if stiffness is None else stiffness[i][:2]
+        here = slice(w * i, w * i + c.dimension)
+        springs[here, here] = across * np.eye(c.dimension) + (along - across) * np.outer(c.normal, c.normal)
+        if w == 4:
+            springs[w * i + 3, w * i + 3] = stiffness[i][2]
+    moves = np.linalg.solve(matrix @ springs @ matrix.T, np.eye(len(matrix)))
+    return -springs @ matrix.T @ moves
+
+
+def measured(grasp: rg.Grasp, forces: Array) -> Array:
+    """(..., n, w) forces, a soft finger's torque as the tangential force that uses as much friction."""
+    result = np.array(forces)
+    if grasp.is_soft:
+        result[..., 3] *= grasp.frictions / np.array([c.torsion for c in grasp])
+    return result
+
+
+def slack(grasp: rg.Grasp, forces: Array, friction: float = 1.0) -> float:
+    """The least of all (..., n, w) forces to the edges of cones and to limits; negative outside."""
+    f, d = measured(grasp, forces), grasp.dimension
+    normal = np.einsum("...nd,nd->...n", f[..., :d], grasp.normals)
+    across = f.copy()
+    across[..., :d] -= normal[..., None] * grasp.normals
+    limits = np.array([inf if c.max_force is None else c.max_force for c in grasp])
+    room = friction * grasp.frictions * normal - np.linalg.norm(across, axis=-1)
+    return float(np.minimum(room, limits - np.linalg.norm(f, axis=-1)).min())
+
+
+def judge_tolerances(state: rg.GraspState, stiffness: Any, counts: Counter[str]) -> None:
+    """A thousandth less and a thousandth more of each tolerance."""
+    grasp, load, change = state.grasp, state.load, answers(state.grasp, stiffness)
+    found = rg.tolerances(state, stiffness=stiffness).withstood
+    d, q, size = grasp.dimension, load.vector.size, float(np.linalg.norm(load.force))
+    counts[
+        "states, stiffness by contact and direction" if stiffness is not None else "states, all alike"
+    ] += 1
+
+    def least(members: Array, friction: float = 1.0) -> float:
+        return slack(
+            grasp, (state.forces.ravel() + members @ change.T).reshape(-1, *state.forces.shape), friction
+        )
+
+    def judged(what: str, inside: float, outside: float) -> None:
+        counts[f"{what}: {'as said' if inside >= 0 > outside else 'WRONG'}"] += 1
+
+    still = np.zeros((1, q))
+    judged("friction", least(still, MORE * found.friction), least(still, LESS * found.friction))
+    if found.load < inf:
+        judged("load", *(least(k * (found.load - 1) * load.vector[None]) for k in (LESS, MORE)))
+    ways = around(load.force / size)
+    if found.tilt < pi:
+
+        def tilted(share: float, ways: Array = ways) -> float:
+            a = share * found.tilt
+            turned = cos(a) * load.force + sin(a) * size * ways
+            return least(np.pad(turned - load.force, ((0, 0), (0, q - d))))
+
+        outside = tilted(MORE)
+        if outside >= 0 and d == 3:  # a force may leave its cone and come back within less than a thousandth
+            basis = np.linalg.svd(load.force[None])[2][1:]
+
+            def worst(at: Array) -> float:
+                way = cos(at[1]) * basis[0] + sin(at[1]) * basis[1]
+                return tilted(min(at[0], MORE), way[None])
+
+            starts = [(share, turn) for share in (0.9999, 1.0) for turn in np.linspace(0, 2 * pi, 25)]
+            outside = min(minimize(worst, at, method="Nelder-Mead", options=_FINE).fun for at in starts)
+        judged("tilt", min(map(tilted, (0.3, 0.6, 0.8, 0.9, LESS))), outside)
+    if found.centre < inf:
+        flat = np.pad(ways, ((0, 0), (0, 3 - d)))
+        moments = np.cross(flat, np.pad(load.force, (0, 3 - d)))
+        moments = np.pad(moments[:, 2:] if d == 2 else moments, ((0, 0), (d, 0)))
+        judged("centre", *(least(k * found.centre * moments) for k in (LESS, MORE)))
+
+
+def around(unit: Array) -> Array:
+    """Unit vectors across one: both in the plane, many in space."""
+    if unit.size == 2:
+        return np.array([[-unit[1], unit[0]], [unit[1], -unit[0]]])
+    basis = np.linalg.svd(unit[None])[2][1:]
+    angles = np.linspace(0, 2 * pi, 1441)[:, None]
+    result: Array = np.cos(angles) * basis[0] + np.sin(angles) * basis[1]
+    return result
+
+
+def judge_largest(state: rg.GraspState, counts: Counter[str]) -> None:
+    """The largest factor of the load under a force limit: of normal forces, by a program of our own."""
+    if state.grasp.is_soft:
+        return
+    limit = 4.0 * float(np.linalg.norm(state.load.vector))
+    grasp = rg.Grasp(c.changed(max_force=limit) for c in state.grasp)
+    most = rg.largest_load(grasp, state.load)
+    held = [is_held(grasp, k * most.factor * state.load.vector, limit) for k in (LESS, MORE)]
+    where = "plane, linear program" if grasp.dimension == 2 else "space, conic program"
+    counts[f"largest load, {where}: {'as said' if held == [True, False] else 'WRONG'}"] += 1
+
+
+def is_held(grasp: rg.Grasp, load: Array, limit: float) -> bool:
+    """Whether forces within cones and limits balance a load, by the depth to which some do."""
+    n, d = grasp.positions.shape
+    matrix = np.hstack([grasp_matrix(grasp), np.zeros((len(load), 1))])
+    if d == 2:  # the disc of the limit by 720 sides from inside, and the edges of the cones, all by a depth
+        angles = 2 * pi * (np.arange(720) + 0.5) / 720
+        sides = np.column_stack([np.cos(angles), np.sin(angles)])
+        rows, bounds = [], []
+        for i, c in enumerate(grasp):
+            t = np.array([-c.normal[1], c.normal[0]])
+            edges = np.array([t - c.friction * c.normal, -t - c.friction * c.normal])
+            block = np.zeros((722, 2 * n + 1))
+            block[:, 2 * i : 2 * i + 2], block[:, -1] = np.vstack([edges, sides]), 1.0
+            rows.append(block)
+            bounds.append(np.r_[0.0, 0.0, np.full(720, limit * cos(pi / 1440))])
+        goal = np.r_[np.zeros(2 * n), -1.0]
+        free = [(None, None)] * (2 * n + 1)
+        answer = linprog(goal, np.vstack(rows), np.concatenate(bounds), matrix, -load, free, method="highs")
+        return answer.status == 0 and answer.x[-1] >= 0
+    # maximise t: (mu n . f - t, f across n) and (limit - t, f) in second-order cones
+    blocks, right = [matrix], [-load]
+    for i, c in enumerate(grasp):
+        basis = np.linalg.svd(c.normal[None])[2][1:]
+        cone = np.zeros((3, 3 * n + 1))
+        cone[:, 3 * i : 3 * i + 3], cone[0, -1] = -np.vstack([c.friction * c.normal, basis]), 1.0
+        ball = np.zeros((4, 3 * n + 1))
+        ball[1:, 3 * i : 3 * i + 3], ball[0, -1] = -np.eye(3), 1.0
+        blocks += [cone, ball]
+        right += [np.zeros(3), np.r_[limit, 0.0, 0.0, 0.0]]
+    cones = [clarabel.ZeroConeT(len(load))]
+    cones += [clarabel.SecondOrderConeT(k) for _ in range(n) for k in (3, 4)]
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    nothing = sparse.csc_matrix((3 * n + 1, 3 * n + 1))
+    goal = np.r_[np.zeros(3 * n), -1.0]
+    solver = clarabel.DefaultSolver(
+        nothing, goal, sparse.csc_matrix(np.vstack(blocks)), np.concatenate(right), cones, settings
+    )
+    answer = solver.solve()
+    return str(answer.status) in ("Solved", "AlmostSolved") and answer.x[-1] >= 0
+
+
+def judge_members(
+    plan: rg.Transition, loads: rg.LoadSet, rng: np.random.Generator, count: int, counts: Counter[str]
+) -> None:
+    """Random members at random instants, by the springs of the fingers that stay."""
+    grasp = plan.grasp
+    free = tuple(grasp.index(name) for name in (*plan.leaving, *plan.arriving))
+    change = answers(grasp, None, free)
+    ways = rng.normal(size=(count, change.shape[1]))
+    ways[:, grasp.dimension :] *= rng.choice([0.1, 1.0, 10.0], size=(count, 1))
+    worst = np.array([loads.extreme(u).vector for u in ways])
+    members = loads.center.vector + rng.random((count, 1)) ** 0.2 * (worst - loads.center.vector)
+    members[: count // 2] = worst[: count // 2]
+    forces = plan.forces(rng.random(count) * plan.duration)
+    after = forces + (members @ change.T).reshape(forces.shape)
+    outside = sum(slack(grasp, f) < -1e-12 * float(np.abs(f).max()) for f in after)
+    counts[f"plans: {plan.kind}"] += 1
+    counts["members inside"] += count - outside
+    counts["members OUTSIDE"] += outside
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Small conic programs on plain arrays, for millions of grasps."""

@@ -1,0 +1,1 @@
+"""States of many grasps at once."""
