@@ -45,6 +45,7 @@ from regrasp.plots.surveys.margin_curve import plot_margin_curve
 from regrasp.plots.surveys.sensitivity import plot_sensitivity
 from regrasp.plots.surveys.tolerances import plot_tolerances
 from regrasp.plots.wrench_space.iso_torque import plot_iso_torque
+from regrasp.plots.wrench_space.load_set import plot_load_set
 from regrasp.plots.wrench_space.locus import plot_locus
 from regrasp.plots.wrench_space.planes_and_cones import (
     plot_locus_segment,
@@ -75,6 +76,7 @@ __all__ = [
     "plot_iso_torque",
     "plot_load",
     "plot_load_map",
+    "plot_load_set",
     "plot_load_sphere",
     "plot_locus",
     "plot_locus_segment",
