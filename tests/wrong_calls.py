@@ -243,7 +243,12 @@ def rows() -> dict[str, Row]:
         "EscapeTwist": Row(
             rg.EscapeTwist,
             {"grasp": PAIR, "load": LOAD, "twist": [0, 0, 1], "frictions": (0.3, 0.3), "limits": (inf, inf)},
-            {"twist": "space vector", "frictions": "numbers of grasp", "limits": "limits of grasp"},
+            {
+                "twist": "space vector",
+                "frictions": "numbers of grasp",
+                "limits": "limits of grasp",
+                "row_duals": "duals",
+            },
         ),
         "LoadSeries": Row(
             rg.LoadSeries,
@@ -739,6 +744,7 @@ KINDS |= {
     ),
     "stiffnesses": (*NOT_NUMBERS, [], 0, -1.0, [0, 0], [-1, 1], np.ones((1, 1, 1, 1))),
     "contact limits": (*[v for v in NOT_A_VALUE if v is not None], ([[1, 0, 0]], [1]), ([[1, 0]], [0])),
+    "duals": (*NOT_NUMBERS, 5, [1.0], [-1.0], np.ones((2, 2))),
     "bounds": (*NOT_NUMBERS, 5, [], [0, 1], [-1, 1], [1, 2, 3], np.ones((2, 2))),
     "torques": (
         *[v for v in NOT_NUMBERS if not isinstance(v, list) or v[:1] != [inf]],

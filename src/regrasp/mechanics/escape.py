@@ -34,6 +34,9 @@ class EscapeTwist(ArrayValue, Pictured):
             length but zero, so work along it is best read per radian or per metre, as ``amount`` measures it.
         frictions: (n,) friction coefficients it was found for [-].
         limits: (n,) force limits it was found for [N].
+        row_duals: (m,) what each of the contacts' linear limits a . f <= b (``Grasp.limit_rows``) counts in
+            the proof, not negative; none if they are not counted. Forces then do no work below -b . l less
+            what the contacts oppose of v + sum l a.
     """
 
     grasp: Grasp
@@ -41,6 +44,7 @@ class EscapeTwist(ArrayValue, Pictured):
     twist: Array
     frictions: tuple[float, ...]
     limits: tuple[float, ...]
+    row_duals: tuple[float, ...] = ()
 
     _drawn_by = "regrasp.plots.escapes.escape:escape_png"
 
@@ -56,6 +60,14 @@ class EscapeTwist(ArrayValue, Pictured):
         object.__setattr__(self, "frictions", tuple(frictions.tolist()))
         object.__setattr__(self, "limits", tuple(limits(self.limits, "limits", count).tolist()))
         object.__setattr__(self, "twist", array(self.twist, "twist", self.load.vector.shape))
+        rows = self.grasp.limit_rows
+        counted = array(self.row_duals, "row_duals", (None,))
+        if counted.size not in (0, 0 if rows is None else len(rows.bounds)) or (counted < 0).any():
+            raise InvalidInput(
+                f"row_duals must be none, or one for each linear limit, at least 0, got "
+                f"{shown(self.row_duals)}"
+            )
+        object.__setattr__(self, "row_duals", tuple(counted.tolist()))
         if not self.twist.any():
             raise InvalidInput("an escape twist must not be zero: the object does not move")
 
@@ -78,7 +90,7 @@ class EscapeTwist(ArrayValue, Pictured):
     @cached_property
     def least_force(self) -> float:
         """Forces that hold the load would have to sum to at least this [N]; infinite when none can hold."""
-        power = dot(exact(self.twist), exact(self.load.vector))
+        power = dot(exact(self.twist), exact(self.load.vector)) - sum(self._rows_work, start=Fraction(0))
         free = Fraction(0)
         for opposition, limit in zip(self._oppositions, self.limits, strict=True):
             if limit == inf:
@@ -92,7 +104,7 @@ class EscapeTwist(ArrayValue, Pictured):
     @property
     def is_proof(self) -> bool:
         """Whether no forces within cones and limits, and below 1e9 times the load, balance the load."""
-        if inf not in self.limits:
+        if inf not in self.limits and not self.row_duals:
             given = self.grasp, self.load.vector, self.twist, self.frictions, self.limits
             if surely_wins(*given):
                 return True
@@ -130,9 +142,10 @@ class EscapeTwist(ArrayValue, Pictured):
 
         0 for a helpless contact, infinite for another one without force limit; [N m] or [N] as ``drive``.
         """
+        each = zip(self.helpless, self.limits, self.oppositions, self._rows_work, strict=True)
         return tuple(
-            0.0 if none else limit * opposition / self.amount
-            for none, limit, opposition in zip(self.helpless, self.limits, self.oppositions, strict=True)
+            (float(rows) + (0.0 if none else limit * opposition)) / self.amount
+            for none, limit, opposition, rows in each
         )
 
     @property
@@ -196,6 +209,8 @@ class EscapeTwist(ArrayValue, Pictured):
                 parts.append(f"{name} cannot oppose it")
             elif most == inf:
                 parts.append(f"{name} can oppose it without limit")
+            elif any(self.row_duals):
+                parts.append(f"{name} can oppose at most {most:.4g} {unit} within its limits")
             else:
                 lever = f"{limit:.4g} N times {most / limit:.4g}{arm}"
                 parts.append(f"{name} can oppose at most {most:.4g} {unit} ({lever})")
@@ -216,7 +231,18 @@ class EscapeTwist(ArrayValue, Pictured):
 
     @cached_property
     def _oppositions(self) -> tuple[Fraction, ...]:
-        return oppositions(self.grasp, self.frictions, self.twist)
+        return oppositions(self.grasp, self.frictions, self.twist, self.row_duals)
+
+    @cached_property
+    def _rows_work(self) -> tuple[Fraction, ...]:
+        """For each contact the work against the motion that its linear limits allow, as they are counted."""
+        work, rows = [Fraction(0)] * len(self.grasp), self.grasp.limit_rows
+        if rows is not None and self.row_duals:
+            for i, bound, dual in zip(
+                rows.contacts.tolist(), rows.bounds.tolist(), self.row_duals, strict=True
+            ):
+                work[i] += Fraction(bound) * Fraction(dual)
+        return tuple(work)
 
 
 def _without_noise(values: Array, scale: float) -> Array:

@@ -13,8 +13,12 @@ from regrasp.mechanics.grasp import Grasp
 _ROUNDING = 64 * 2.0**-53
 
 
-def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple[Fraction, ...]:
+def oppositions(
+    grasp: Grasp, frictions: Sequence[float], twist: Array, duals: Sequence[float] = ()
+) -> tuple[Fraction, ...]:
     """For each contact an upper bound of the work against ``twist`` that one newton in its cone can do.
+
+    duals: (m,) of the grasp's linear limits a . f <= b: velocities are then v + sum l a.
 
     It is zero exactly where a contact cannot oppose at all, and tight to 2^-100 elsewhere.
 
@@ -22,6 +26,7 @@ def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple
     nearer edge of the cone, or |v| where -v lies inside the cone. At most |v_n| + |v_t| mu, scaled by n.
     """
     w, motion = grasp.width, exact(twist)
+    added = _added(grasp, duals)
     columns = [exact(column) for column in grasp.matrix.T]
     result = []
     for i, (contact, mu_float) in enumerate(zip(grasp, frictions, strict=True)):
@@ -30,6 +35,8 @@ def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple
         if w > grasp.dimension:  # the turn about the normal, by the arm e / mu of the torque (``cones``)
             arm = Fraction(contact.torsion or 0) / (Fraction(contact.friction) or 1)
             v[3], n = v[3] * arm, [*n, Fraction(0)]
+        if added:
+            v = [a + b for a, b in zip(v, added[i], strict=True)]
         nn, vn, vv = dot(n, n), dot(v, n), dot(v, v)
         tangential = vv * nn - vn * vn  # |v_t|^2 |n|^2
         if vn <= 0 and tangential <= mu * mu * vn * vn:
@@ -39,6 +46,18 @@ def oppositions(grasp: Grasp, frictions: Sequence[float], twist: Array) -> tuple
         else:
             result.append((mu * _sqrt_above(tangential) - vn) * _sqrt_above(1 / (nn * (1 + mu * mu))))
     return tuple(result)
+
+
+def _added(grasp: Grasp, duals: Sequence[float]) -> list[list[Fraction]]:
+    """What linear limits with these duals add to the velocity of each contact; nothing without any."""
+    rows = grasp.limit_rows
+    if rows is None or not len(duals):
+        return []
+    result = [[Fraction(0)] * grasp.width for _ in range(len(grasp))]
+    for i, row, dual in zip(rows.contacts.tolist(), rows.rows, duals, strict=True):
+        if dual:
+            result[i] = [a + Fraction(dual) * b for a, b in zip(result[i], exact(row), strict=True)]
+    return result
 
 
 def surely_wins(

@@ -116,7 +116,14 @@ def arrays(count: int, fingers: int, dimension: int):
 @pytest.mark.parametrize(("fingers", "dimension"), [(2, 2), (3, 2), (3, 3), (4, 3)])
 def test_states_of_arrays_are_those_of_each(fingers: int, dimension: int) -> None:
     given = arrays(12, fingers, dimension)
-    for objective, limit in (("force", 4.0), ("effort", None), ("peak_normal", None), ("angle", None)):
+    for objective, limit in (
+        ("force", 4.0),
+        ("force", None),
+        ("effort", None),
+        ("peak", None),
+        ("peak_normal", 6.0),
+        ("sum_normal", None),
+    ):
         found = rg.choose_states(*given, objective=objective, max_force=limit)
         assert (found.held | found.refused).all()
         assert not (found.held & found.refused).any()

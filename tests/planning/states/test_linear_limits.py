@@ -189,6 +189,7 @@ KEEPS: dict[str, Callable[[], Any]] = {
     "plan_exchange": lambda: rg.plan_exchange(LIMITED, "P3", _NEW, load=LOAD),
     "plan_hold": lambda: rg.plan_hold(LIMITED, _loads, duration=1.0),
     "plan_rotation": lambda: rg.plan_rotation(TURNING, 1.0, load=LOAD, max_force=20.0),
+    "held_centres": lambda: rg.held_centres(LIMITED, LOAD).states[0],
     "largest_load": lambda: rg.largest_load(LIMITED, LOAD),
     "least_friction": lambda: rg.least_friction(LIMITED, LOAD),
 }
@@ -196,7 +197,6 @@ REFUSES: dict[str, Callable[[], Any]] = {
     "EquilibriumLocus": lambda: rg.EquilibriumLocus(LIMITED.without("P3"), LOAD).best(),
     "SqueezeLocus": lambda: rg.SqueezeLocus(LIMITED, LOAD),
     "sensitivity": lambda: rg.sensitivity(LIMITED, LOAD),
-    "held_centres": lambda: rg.held_centres(LIMITED, LOAD),
     "plan_regrasp": lambda: rg.plan_regrasp(SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5),
     "plan_regrasps": lambda: rg.plan_regrasps(SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5),
     "RegraspProblem": lambda: rg.RegraspProblem(
@@ -258,7 +258,41 @@ def test_bad_limits_are_refused() -> None:
     ):
         with pytest.raises(rg.InvalidInput, match=words):
             rg.Contact([0, 0], [1, 0], 0.5, limits=limits)  # type: ignore[arg-type]
-    with pytest.raises(rg.Infeasible, match="within the linear limits of P1 were found"):
-        rg.choose_state(GRASP.replaced("P1", GRASP["P1"].changed(limits=([[1, 0]], [2.5]))), LOAD)
     with pytest.raises(rg.InvalidInput, match="the closed form does not keep"):
         rg.choose_state(LIMITED.without("P3"), LOAD, method="closed-form")
+
+
+def test_refusals_are_proven_and_extremes_bounded_from_both_sides() -> None:
+    rng = np.random.default_rng(8)
+    weak = GRASP.replaced("P1", GRASP["P1"].changed(limits=([[1, 0]], [2.5])))
+    with pytest.raises(rg.Infeasible, match="the linear limits of P1 balance") as refusal:
+        rg.choose_state(weak, LOAD)
+    proof = refusal.value.certificate
+    assert proof is not None
+    assert proof.is_proof
+    assert "within its limits" in proof.explanation
+    bare = rg.EscapeTwist(weak, LOAD, proof.twist, proof.frictions, proof.limits)
+    assert not bare.is_proof  # the cones alone hold the load
+    tight = 0
+    for k in range(12):
+        d = 2 + k % 2
+        grasp, load = (random_grasp(rng, 4), random_load(rng)) if d == 3 else (LIMITED, LOAD)
+        grasp = random_limits(grasp, rng) if d == 3 else grasp
+        try:
+            most = rg.largest_load(grasp, load)
+        except rg.Infeasible:
+            continue
+        if most.factor in (0.0, inf):
+            continue
+        lower, upper = most.bounds
+        assert upper >= lower
+        if lower < 100:  # forces thousands of times the limits leave no digits
+            assert upper <= lower * (1 + 1e-6)
+            assert most.escape is not None
+            assert most.escape.is_proof
+            tight += 1
+    assert tight >= 6
+    region = rg.held_centres(LIMITED, LOAD)
+    assert np.abs(region.inner - region.outer).max() < 1e-6 * np.abs(region.outer).max()
+    for state in region.states:
+        assert pushed(state) <= MOST * (1 + 1e-12)

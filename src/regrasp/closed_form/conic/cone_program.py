@@ -13,7 +13,7 @@ from typing import Any
 
 MOST_STEPS = 60
 _NEAR = 0.99  # of the way to the boundary
-_GAP, _RESIDUAL = 1e-11, 1e-10
+_GAP, _PRIMAL, _DUAL = 1e-11, 1e-13, 1e-10
 _ENOUGH = 1e4  # times these, where rounding ends the steps
 _LEAST = 1e-200
 _STUCK = 1e-9
@@ -170,6 +170,8 @@ def minimise(
     for _ in range(MOST_STEPS):
         # residuals and gap
         gap, largest, primal, dual, cost = 0.0, 1.0, 0.0, 0.0, 1.0
+        for j in range(size):
+            largest = max(largest, abs(x[j]))
         for i in range(rows):
             gap += s[i] * z[i]
             entry = s[i] - b[i]
@@ -177,7 +179,6 @@ def minimise(
                 entry += A[i, j] * x[j]
             rz[i] = entry
             primal = max(primal, abs(entry))
-            largest = max(largest, abs(s[i]))
         for j in range(size):
             entry = weight * x[j] + c[j]
             for i in range(rows):
@@ -188,9 +189,7 @@ def minimise(
         objective = 0.0
         for j in range(size):
             objective += (weight * x[j] / 2.0 + c[j]) * x[j]
-        far = max(
-            gap / (_GAP * max(1.0, abs(objective))), primal / largest / _RESIDUAL, dual / cost / _RESIDUAL
-        )
+        far = max(gap / (_GAP * max(1.0, abs(objective))), primal / largest / _PRIMAL, dual / cost / _DUAL)
         if far <= 1.0:
             return 1
         if not scale(s, z, flat, first, w, eta, point):

@@ -11,21 +11,13 @@ G f = 0, so that equilibrium costs no rows and the effort is |x|^2 but for a con
     SUM_NORMAL   minimise sum n.f
 
 DEPTH always has an answer: above zero it is where the others start, below it its duals are the motion along
-which the load wins. The best ANGLE and FRICTION_USE are where the depth of narrower cones is zero.
+which the load wins.
 """
 
-from math import atan, inf, nan, sqrt, tan
+from math import inf, nan, sqrt
 from typing import Any, NamedTuple
 
-from regrasp.closed_form.choice import (
-    ANGLE,
-    EFFORT,
-    FORCE,
-    FRICTION_USE,
-    PEAK,
-    PEAK_NORMAL,
-    SUM_NORMAL,
-)
+from regrasp.closed_form.choice import EFFORT, FORCE, PEAK, PEAK_NORMAL, SUM_NORMAL
 from regrasp.closed_form.conic.cone_program import minimise
 
 NONE, HELD, OPEN = 0, 1, -1
@@ -35,8 +27,7 @@ FAR = 1e4
 """Forces are at most this multiple of the load where nothing else limits them."""
 _FLAT = 1e-9
 _CLEAR = 1e-9
-_LEVELS, _LEVEL = 60, 1e-9
-_LESS = 1e-10
+_LESS = 1e-9
 """Of frictions and limits: what programs keep back."""
 
 
@@ -301,15 +292,6 @@ def deepest(n: int, d: int, p: int, normals: Any, tangents: Any, room: Room) -> 
     return depth
 
 
-def narrowed(objective: int, level: float, mu: Any, n: int, room: Room) -> None:
-    """Writes the frictions of cones that are narrower by a level."""
-    for i in range(n):
-        if objective == ANGLE:
-            room.mu[i] = tan(max(atan(mu[i]) - level, 0.0))
-        else:
-            room.mu[i] = (1.0 - level) * mu[i]
-
-
 def best_state(
     objective: int, matrix: Any, load: Any, normals: Any, tangents: Any, mu: Any, limits: Any,
     peak_ratio: float, n: int, d: int, room: Room, forces: Any, twist: Any,
@@ -333,55 +315,13 @@ def best_state(
         write_twist(n, d, q, normals, tangents, room, twist)
         return NONE if depth < -_CLEAR else OPEN
     write_forces(n, d, p, room, forces)
-    if is_loose and objective in (ANGLE, FORCE, FRICTION_USE):
+    if is_loose and objective == FORCE:
         if not solve(PEAK, n, d, p, normals, tangents, room):
             return OPEN
         most = peak_ratio * write_forces(n, d, p, room, forces)
         for i in range(n):
             room.limits[i] = min(room.limits[i], most)
-    if objective in (ANGLE, FRICTION_USE):
-        return by_levels(objective, mu, normals, tangents, n, d, p, room, forces)
     if not solve(objective, n, d, p, normals, tangents, room):
         return OPEN
     write_forces(n, d, p, room, forces)
-    return HELD
-
-
-def by_levels(
-    objective: int, mu: Any, normals: Any, tangents: Any, n: int, d: int, p: int, room: Room, forces: Any
-) -> int:
-    """The level at which the depth of narrower cones is zero, between levels of either sign (Illinois)."""
-    low, high = 0.0, 1.0
-    if objective == ANGLE:
-        high = inf
-        for i in range(n):
-            high = min(high, atan(mu[i]))
-    narrowed(objective, low, mu, n, room)
-    at_low = deepest(n, d, p, normals, tangents, room)
-    if not at_low > 0.0:
-        return OPEN
-    write_forces(n, d, p, room, forces)
-    narrowed(objective, high, mu, n, room)
-    at_high = deepest(n, d, p, normals, tangents, room)
-    if not at_high <= 0.0:
-        if at_high > 0.0:
-            write_forces(n, d, p, room, forces)
-            return HELD
-        return OPEN
-    for turn in range(_LEVELS):
-        if high - low <= _LEVEL:
-            break
-        level = (low + high) / 2.0
-        if turn % 3 != 2 and at_low - at_high > 0.0:
-            level = low + (high - low) * at_low / (at_low - at_high)
-            level = min(max(level, low + 0.01 * (high - low)), high - 0.01 * (high - low))
-        narrowed(objective, level, mu, n, room)
-        depth = deepest(n, d, p, normals, tangents, room)
-        if depth > 0.0:
-            low, at_low = level, depth
-            write_forces(n, d, p, room, forces)
-        elif depth <= 0.0:
-            high, at_high = level, depth
-        else:
-            break
     return HELD

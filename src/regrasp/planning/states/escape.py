@@ -17,7 +17,7 @@ from regrasp.mechanics.exact.refining import proven
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.separation import edge_of, gap_left
+from regrasp.planning.states.separation import edge_of, gap_and_duals, gap_left
 
 AT_LIMIT = 1e-6
 """A load within this fraction of the edge of what is held is at its limit: rounding may decide it."""
@@ -72,6 +72,14 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
             f"no forces of {names} inside their friction cones and force limits ({bounds}) "
             f"balance {shown(load)}: "
             f"the object escapes by {twist}; the cones alone would hold it with larger forces",
+            twist,
+        )
+    twist = _by_rows(grasp, load, frictions, limits)
+    if twist is not None:
+        who = ", ".join(str(c.name) for c in grasp if c.limits is not None)
+        return Infeasible(
+            f"no forces of {names} inside their friction cones and the linear limits of {who} balance "
+            f"{shown(load)}: the object escapes by {twist}; the cones alone would hold it with larger forces",
             twist,
         )
     limit = (
@@ -166,6 +174,22 @@ def escape_twist(
     if edge is None or edge.beyond < -AT_LIMIT:
         return None
     return proven(grasp, load, edge.twist, frictions, limits)
+
+
+def _by_rows(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> EscapeTwist | None:
+    """The proof that counts the contacts' linear limits, or None where none is found."""
+    rows, weight = grasp.limit_rows, 1 / grasp.lengths
+    target = -load.vector * weight
+    unit = float(abs(target).max())
+    if rows is None or unit == 0:
+        return None
+    from regrasp.planning.states.linear.row_duals import escape_by_rows
+
+    loose = [inf if limit > _LOOSE * unit else limit for limit in limits]
+    gap, duals = gap_and_duals(
+        grasp, target / unit, weight, frictions, [f / unit for f in loose], rows.bounds / unit
+    )
+    return escape_by_rows(grasp, load, -gap * weight, duals, frictions, loose)
 
 
 def _only_in_the_limit(grasp: Grasp, load: Wrench, frictions: list[float]) -> tuple[float, float] | None:

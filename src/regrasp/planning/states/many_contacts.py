@@ -131,7 +131,7 @@ def _of_least_peak(
 
 def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """Why no forces with these least normal forces exist."""
-    alone = replace(criteria, min_normal=0.0, disturbance=None)
+    alone = replace(criteria, min_normal=0.0, disturbance=None)  # linear limits are the grasp's
     reason = verdict(grasp, load, alone) if any(load.plain) else None
     if reason is not None and reason.certificate is not None:
         return reason

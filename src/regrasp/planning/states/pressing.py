@@ -1,7 +1,8 @@
 """Least normal forces f_i . n_i >= least_i and contacts' linear limits A f <= b, as rows of any program.
 
-The feasible set stays convex, and a straight path between two states that keep them keeps them, too. They are
-no cone, so that an escape twist does not prove a refusal that they alone bring about.
+The feasible set stays convex, and a straight path between two states that keep them keeps them, too. Least
+normal forces are no cone, so that an escape twist does not prove a refusal that they alone bring about; of
+linear limits it does (``linear.row_duals``).
 """
 
 import numpy as np

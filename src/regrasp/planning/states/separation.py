@@ -23,6 +23,18 @@ def gap_left(
     grasp: Grasp, target: Array, weight: Array, frictions: list[float], limits: list[float]
 ) -> Array:
     """rho, (3,) or (6,), for ``target`` = -w_ext times ``weight``, both of order one."""
+    return gap_and_duals(grasp, target, weight, frictions, limits, None)[0]
+
+
+def gap_and_duals(
+    grasp: Grasp,
+    target: Array,
+    weight: Array,
+    frictions: list[float],
+    limits: list[float],
+    bounds: Array | None,
+) -> tuple[Array, Array]:
+    """rho, and the duals (m,) of the contacts' linear limits of these ``bounds``; none without any."""
     from regrasp.programs import Rows, solve
 
     w, size, cones = grasp.width, target.size, grasp.cones
@@ -40,12 +52,18 @@ def gap_left(
             rows.at_least_zero(cones.normals[i] @ pick)
         if limit < inf:
             rows.second_order(np.vstack([np.zeros(n + size), pick]), [limit, *[0.0] * w])
+    linear, count = grasp.limit_rows, 0
+    if linear is not None and bounds is not None:
+        wide, count = np.zeros((len(bounds), n + size)), len(bounds)
+        for row, i, a in zip(wide, linear.contacts.tolist(), linear.rows, strict=True):
+            row[w * i : w * i + w] = -a
+        rows.at_least_zero(wide, bounds)
     try:
         answer = solve(rows.program(np.zeros(n + size), np.diag([0.0] * n + [1.0] * size)), "clarabel")
     except SolverFailed as failed:  # a direction short of the solver's tolerances may prove as much
         answer = failed.solution
     gap: Array = answer.value[n:]
-    return gap
+    return gap, answer.duals[len(answer.duals) - count :]
 
 
 def cleared(grasp: Grasp, twist: Array, frictions: list[float], limits: list[float]) -> Array:

@@ -16,7 +16,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import torque as moments
 from regrasp.planning.states.batch import best_squeezes
 from regrasp.planning.states.criteria import PEAK_RATIO
-from regrasp.planning.states.objectives import Objective, objective_of
+from regrasp.planning.states.objectives import LevelObjective, Objective, objective_of
 
 MOST_FINGERS = 8
 _SMALL = 2.0**-40
@@ -54,7 +54,7 @@ def choose_states(
     force: ArrayLike,
     torque: ArrayLike = 0.0,
     *,
-    objective: str | Objective = "angle",
+    objective: str | Objective = "force",
     max_force: ArrayLike | None = None,
     peak_ratio: float = PEAK_RATIO,
     reserve: float = RESERVE,
@@ -62,8 +62,7 @@ def choose_states(
     """``choose_state`` for arrays of grasps of point contacts, in the plane and in space.
 
     Two planar contacts by the closed form; others by small conic programs, compiled by Numba (seconds on the
-    first call, then kept) and run on all cores. Every state is checked, every refusal proven. ``angle`` and
-    ``friction_use`` are searched for, and take some ten times as long as other objectives.
+    first call, then kept) and run on all cores. Every state is checked, every refusal proven.
 
     Args:
         positions: (..., n, d) of the contacts, object frame, n from 2 to 8 in the plane, 3 to 8 in space [m].
@@ -71,8 +70,8 @@ def choose_states(
         frictions: (..., n), or one number, greater than 0.
         force: (..., d) of the load, object frame [N].
         torque: (...) of the load about the centre of mass, (..., 3) in space; 0 for none [N m].
-        objective: a word: ``angle``, ``force``, ``friction_use``, ``effort``, ``peak``, ``peak_normal`` or
-            ``sum_normal``.
+        objective: a word: ``force``, ``effort``, ``peak``, ``peak_normal`` or ``sum_normal``; of two planar
+            contacts ``angle`` and ``friction_use``, too.
         max_force: (..., n), or one number; infinite for none [N].
         peak_ratio: as for ``choose_state`` [-].
         reserve: fraction of every friction coefficient that is kept back [-].
@@ -84,10 +83,16 @@ def choose_states(
     if sought.closed_form is None:
         raise InvalidInput(f"objective {shown(sought.name)} has no batch; ask choose_state")
     number(peak_ratio, "peak_ratio", least=1)
-    kept = 1 - reserve_fraction(reserve)
     given = _Given.of(positions, normals, frictions, force, torque, max_force)
+    is_pair = given.positions.shape[1:] == (2, 2)
+    if isinstance(sought, LevelObjective) and not is_pair:
+        raise InvalidInput(
+            f"objective {shown(sought.name)} has no batch with more than two planar contacts; "
+            "take 'force', or ask choose_state"
+        )
+    kept = 1 - reserve_fraction(reserve)
     given.demand_limits(sought)
-    if given.positions.shape[1:] == (2, 2):
+    if is_pair:
         forces, verdicts, twists = _pairs(given, sought, peak_ratio, kept)
     else:
         forces, verdicts, twists = _solved(given, sought, peak_ratio, kept)

@@ -14,7 +14,6 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, ArrayLike, number, point, read_only
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
@@ -120,7 +119,6 @@ def held_centres(
         InvalidInput: For bad input.
     """
     check_load(grasp, weight)
-    refuse_limits(grasp, "the region of centres of mass")
     if not weight.force.any():
         raise InvalidInput("weight must have a force: a torque alone does not depend on the centre of mass")
     number(gap, "gap", above=0)
@@ -190,13 +188,15 @@ class _Region:
     def ask(self, direction: Array) -> None:
         """The farthest point along a direction, and the half-plane its dual proves."""
         self.asked.append(direction)
-        found = farthest(self.grasp, self.base, self.directions, direction, self.limits, self.most)
+        found = farthest(self.grasp, self.base, self.directions, direction, self.limits, self.most, self.unit)
         if found.k is not None:
             inside = np.mean(self.points, axis=0) if self.points else np.zeros(len(direction))
             held = held_state(self.grasp, self.base, self.directions, found, inside, self.limits, self.unit)
             if held is not None:
                 self.points.append(held[0])
                 self.states.append(held[1])
-        normal, bound = half_plane(self.grasp, self.base, self.directions, found.twist, self.limits)
+        normal, bound = half_plane(
+            self.grasp, self.base, self.directions, found.twist, self.limits, found.row_duals, self.unit
+        )
         if bound < inf:
             self.outer = regions.clipped(self.outer, normal, bound)

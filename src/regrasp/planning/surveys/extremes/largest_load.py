@@ -14,6 +14,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.linear.row_duals import escape_by_rows
 from regrasp.planning.states.separation import cleared
 from regrasp.planning.states.solving import force_unit
 from regrasp.planning.surveys.extremes.load_reach import Reached, farthest, half_plane, held_state
@@ -32,7 +33,7 @@ class LargestLoad(ArrayValue):
         base: external wrench that stays as it is, object frame [N, N m]; None for none.
         factor: [-], proven by ``state``, which balances base + factor direction; infinite where it has no
             limit, ``state`` then balances the direction alone.
-        bounds: (factor, upper): forces beyond are proven not to exist, linear limits of contacts apart.
+        bounds: (factor, upper): forces beyond are proven not to exist.
         state: a state.
         escape: the twist that proves it just above the upper bound; None where there is no bound.
     """
@@ -74,8 +75,7 @@ def largest_load(
         grasp: the contacts that hold.
         direction: of the load, object frame, of any length but zero.
         base: external wrench that stays as it is, object frame [N, N m].
-        max_force: limits every force besides the contacts' own limits [N]. Friction counts in full. Linear
-            limits of contacts count in the factor; the upper bound is proven without them. By one
+        max_force: limits every force besides the contacts' own limits [N]. Friction counts in full. By one
             conic program; its forces prove the factor from below and its dual the bound from above, both
             checked.
 
@@ -111,9 +111,9 @@ def largest_load(
             raise SolverFailed(f"no forces were found for the largest factor, about {float(k[0]):.6g}")
         raise reason
     factor = float(held[0][0])
-    normal, upper = half_plane(grasp, start, along, found.twist, scaled)
+    normal, upper = half_plane(grasp, start, along, found.twist, scaled, found.row_duals, unit)
     upper = max(upper, factor) if normal[0] > 0 else inf
-    escape = None if upper == inf else _escape(grasp, direction, base, found.twist, limits, upper)
+    escape = None if upper == inf else _escape(grasp, direction, base, found, limits, upper)
     return LargestLoad(grasp, direction, base, factor, (factor, upper), held[1], escape)
 
 
@@ -128,13 +128,18 @@ def _is_held_somewhere(grasp: Grasp, base: Array, along: Array, limits: list[flo
 
 
 def _escape(
-    grasp: Grasp, direction: Wrench, base: Wrench | None, twist: Array, limits: list[float], upper: float
+    grasp: Grasp, direction: Wrench, base: Wrench | None, found: Reached, limits: list[float], upper: float
 ) -> EscapeTwist | None:
     """The proof that a load just above the upper bound is not balanced."""
-    mu = tuple(grasp.frictions.tolist())
+    mu, twist = tuple(grasp.frictions.tolist()), found.twist
     for step in _ABOVE:
         load = (upper + step * max(abs(upper), 1.0)) * direction
         load = load if base is None else base + load
+        if grasp.limit_rows is not None:
+            by_rows = escape_by_rows(grasp, load, twist, found.row_duals, list(mu), limits)
+            if by_rows is not None:
+                return by_rows
+            continue
         for motion in (twist, cleared(grasp, twist, list(mu), limits)):
             proof = EscapeTwist(grasp, load, motion / float(abs(motion).max()), mu, tuple(limits))
             if proof.is_proof:

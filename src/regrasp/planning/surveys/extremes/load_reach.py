@@ -4,7 +4,7 @@
 
 For any twist y, the contacts do no work below -sum limit_i opposition_i(y) along it, so y . (base + D k) is
 at most that sum, whatever k: a half-plane of k that holds all k that are balanced. Linear limits of contacts
-count in the programs and not in this bound, which stays true and is looser then.
+count in it by their duals (``states.linear.row_duals``).
 """
 
 from math import inf
@@ -19,6 +19,7 @@ from regrasp.mechanics.limits.limit_rows import LimitRows
 from regrasp.mechanics.opposition import oppositions
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.linear.row_duals import counted
 from regrasp.planning.states.separation import cleared
 from regrasp.planning.states.solving import SLACK, Chooser
 from regrasp.programs import Program, Rows, Solution, Status, solve
@@ -30,14 +31,20 @@ LOOSE = 1e6
 _NOTHING = 1e-30  # of a load beside one: solvers take the exponents of numbers for their sizes
 _SHARES = (0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 
+_MORE_SHARES = (1e-4, 1e-3)  # beside linear limits, which forces may miss by their own rounding
+
 
 class Reached(NamedTuple):
-    """k (p,), forces (n, w) as the cones measure them, the dual's twist; k None where no k is balanced."""
+    """k (p,), forces (n, w) as the cones measure them, the dual's twist; k None where no k is balanced.
+
+    row_duals: (m,) of the contacts' linear limits, in the scale of the twist; none without any.
+    """
 
     k: Array | None
     forces: Array
     twist: Array
     is_unbounded: bool = False
+    row_duals: Array = np.zeros(0)
 
 
 def farthest(
@@ -61,24 +68,25 @@ def farthest(
     along, start = directions * weight[:, None], base * weight
     along, start = np.where(abs(along) < _NOTHING, 0.0, along), np.where(abs(start) < _NOTHING, 0.0, start)
     rows.equal(np.hstack([grasp.scaled_matrix, along]), start)
+    linear, first = grasp.limit_rows, len(base)
+    if linear is not None:
+        rows.at_least_zero(-_spread(linear, w, t + p), (1 - SLACK) * linear.bounds / unit)
     _inside_cones(rows, grasp, t + p)
     for i, limit in enumerate(limits):
         if limit < inf:
             rows.second_order(np.vstack([np.zeros(t + p), _pick(i, w, t + p)]), [limit, *[0.0] * w])
-    linear = grasp.limit_rows
-    if linear is not None:
-        rows.at_least_zero(-_spread(linear, w, t + p), (1 - SLACK) * linear.bounds / unit)
     if most < inf:
         box = np.hstack([np.zeros((p, t)), np.eye(p)])
         rows.at_least_zero(np.vstack([box, -box]), most)
     answer = _answer(rows.program(np.r_[np.zeros(t), -cost]))
     twist = -answer.duals[: len(base)] * weight
+    duals = np.zeros(0) if linear is None else answer.duals[first : first + len(linear.bounds)]
     if twist @ directions @ cost < 0:
-        twist = -twist
+        twist, duals = -twist, 0 * duals
     forces = answer.value[:t].reshape(n, w)
     if answer.status is Status.INFEASIBLE:
-        return Reached(None, forces, twist)
-    return Reached(answer.value[t:], forces, twist, answer.status is Status.UNBOUNDED)
+        return Reached(None, forces, twist, row_duals=duals)
+    return Reached(answer.value[t:], forces, twist, answer.status is Status.UNBOUNDED, duals)
 
 
 def largest_share(grasp: Grasp, load: Wrench, limits: list[float]) -> tuple[GraspState | None, Array]:
@@ -158,21 +166,35 @@ def _answer(program: Program) -> Solution:
 
 
 def half_plane(
-    grasp: Grasp, base: Array, directions: Array, twist: Array, limits: list[float]
+    grasp: Grasp,
+    base: Array,
+    directions: Array,
+    twist: Array,
+    limits: list[float],
+    duals: Array,
+    unit: float = 1.0,
 ) -> tuple[Array, float]:
-    """(normal, bound), |normal| = 1 or 0: normal . k <= bound for every k that forces balance."""
+    """(normal, bound), |normal| = 1 or 0: normal . k <= bound for every k that forces balance.
+
+    duals: of the contacts' linear limits, as ``farthest`` has them. unit: of force [N].
+    """
+    rows = grasp.limit_rows
     mu = grasp.frictions.tolist()
     if not twist.any() or not np.isfinite(twist).all():
         return np.zeros(directions.shape[1]), inf
     best: tuple[Array, float] = np.zeros(directions.shape[1]), inf
-    for y in (twist, cleared(grasp, twist, mu, limits)):
+    kept = limits
+    if rows is not None:
+        kept = [1.0 if (rows.contacts == i).any() else limit for i, limit in enumerate(limits)]
+    for y in (twist, cleared(grasp, twist, mu, kept)):
         normal = y @ directions
         size = float(np.linalg.norm(normal))
         speed = float(np.abs(y * grasp.lengths).max())
         if size == 0 or speed == 0:
             continue
-        work = 0.0
-        for opposition, limit in zip(map(float, oppositions(grasp, mu, y)), limits, strict=True):
+        counts = [] if rows is None else counted(grasp, rows, y, duals, mu, limits).tolist()
+        work = 0.0 if rows is None else float(np.dot(counts, rows.bounds)) / unit
+        for opposition, limit in zip(map(float, oppositions(grasp, mu, y, counts)), limits, strict=True):
             if limit < inf:
                 work += limit * opposition
             elif opposition > ROUNDING * speed:
@@ -196,13 +218,14 @@ def held_state(
     if found.k is None or not np.isfinite(found.k).all() or not np.isfinite(found.forces).all():
         return None
     cones = grasp.cones
-    for share in _SHARES:
+    for share in _SHARES if grasp.limit_rows is None else (*_SHARES, *_MORE_SHARES):
         k = found.k + share * (inside - found.k)
         load = base + directions @ k
         if not load.any():
             return k, GraspState(grasp, Wrench.from_vector(load), np.zeros_like(found.forces))
         chooser = Chooser(grasp, Wrench.from_vector(load), "clarabel", None, limits)
-        forces = chooser.settled(found.forces, grasp.frictions.tolist(), limits)
+        wanted = found.forces if grasp.limit_rows is None else (1 - share) * found.forces
+        forces = chooser.settled(wanted, grasp.frictions.tolist(), limits)
         if forces is not None:
             state = GraspState(grasp, Wrench.from_vector(unit * load), unit * cones.forces(forces))
             if state.is_balanced(reserve=0.0):

@@ -1,0 +1,1 @@
+"""Linear limits of contacts in proofs that no forces exist."""
