@@ -12,7 +12,8 @@ members of the sets of fifty plans at random instants.
 import argparse
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from math import cos, inf, pi, sin
 from pathlib import Path
 from time import process_time
@@ -46,20 +47,60 @@ def main() -> None:
         judge_largest(state, counts)
     for plan, loads in plans(rng, max(PLANS // share, 3)):
         judge_members(plan, loads, rng, MEMBERS // share, counts)
-    found = {"processor_seconds": round(process_time() - began, 1)} | dict(sorted(counts.items()))
+    found: dict[str, Any] = {"processor_seconds": round(process_time() - began, 1)}
+    found |= dict(sorted(counts.items())) | {"processor time": speeds(rng, 300 // share + 1)}
     given.output.mkdir(parents=True, exist_ok=True)
     (given.output / "withstood.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     for key, value in found.items():
         print(f"{key}: {value}")
 
 
+def speeds(rng: np.random.Generator, count: int) -> dict[str, str]:
+    """Processor time of one call, after a first one: median, 95th percentile and largest."""
+    spent: dict[str, list[float]] = {}
+
+    def timed(what: str, call: Callable[[], object], items: int = 1) -> None:
+        began = process_time()
+        call()
+        spent.setdefault(what, []).append((process_time() - began) / items)
+
+    rg.wrench_ball(random_grasp(rng, 3, 4)[0], limit=1.0)
+    for k in range(count):
+        fingers = 4 + k % 5
+        grasp, _ = random_grasp(rng, 3, fingers)
+        timed(f"wrench_ball to 1 %, space, {fingers} fingers", partial(rg.wrench_ball, grasp, limit=1.0))
+    for d, n, what in ((2, 2, "two planar contacts"), (3, 4, "four contacts in space")):
+        for state, _ in states(rng, count // 6 + 1, d, n):
+            timed(f"tolerances, {what}", partial(rg.tolerances, state))
+    m = 40 * count
+    angles = rng.uniform(0, 2 * pi, (m, 1)) + 2 * pi * np.arange(3) / 3 + rng.uniform(-0.3, 0.3, (m, 3))
+    arms = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    pushes, forces = -arms + 0.2 * rng.normal(size=arms.shape), rng.normal(size=(m, 2))
+    for objective in ("force", "effort"):
+        many = partial(rg.choose_states, arms, pushes, 0.6, forces, objective=objective)
+        rg.choose_states(arms[:9], pushes[:9], 0.6, forces[:9], objective=objective)
+        for _ in range(5):
+            timed(f"choose_states, three planar fingers, {objective}, a grasp", many, m)
+    for _ in range(5):
+        timed("batch_tolerances, three planar fingers, a grasp", partial(_batch, arms, pushes), m)
+    return {
+        what: " / ".join(f"{1e6 * x:.3g} us" for x in (*np.quantile(values, [0.5, 0.95]), max(values)))
+        for what, values in spent.items()
+    }
+
+
+def _batch(arms: Array, pushes: Array) -> object:
+    return rg.batch_tolerances(arms, pushes, 0.6, pushes)
+
+
 # -- problems -----------------------------------------------------------------------------------------
 
 
-def random_grasp(rng: np.random.Generator) -> tuple[rg.Grasp, rg.Wrench]:
-    """Two to four fingers that push roughly inwards, in the plane or in space, and a load."""
-    plane = rng.random() < 0.6
-    d, n = (2, int(rng.integers(2, 4))) if plane else (3, int(rng.integers(3, 5)))
+def random_grasp(rng: np.random.Generator, d: int = 0, n: int = 0) -> tuple[rg.Grasp, rg.Wrench]:
+    """Two to four fingers that push roughly inwards, in the plane or in space (d), and a load."""
+    plane = rng.random() < 0.6 if d == 0 else d == 2
+    if d == 0:
+        d, n = (2, int(rng.integers(2, 4))) if plane else (3, int(rng.integers(3, 5)))
     if plane:
         angles = rng.uniform(0, 2 * pi) + 2 * pi * (np.arange(n) + rng.uniform(-0.25, 0.25, n)) / n
         points = np.column_stack([np.cos(angles), np.sin(angles)])
@@ -77,10 +118,14 @@ def random_grasp(rng: np.random.Generator) -> tuple[rg.Grasp, rg.Wrench]:
     return grasp, rg.Wrench(rng.normal(size=d), 0.1 * rng.normal(size=1 if plane else 3))
 
 
-def states(rng: np.random.Generator, count: int) -> Iterator[tuple[rg.GraspState, Any]]:
+def states(
+    rng: np.random.Generator, count: int, d: int = 0, n: int = 0
+) -> Iterator[tuple[rg.GraspState, Any]]:
     """States with room, some with force limits, and the stiffness of their fingers."""
     while count:
-        grasp, load = random_grasp(rng)
+        grasp, load = random_grasp(rng, d, n)
+        if d == 3 and grasp.is_soft:
+            continue
         try:
             state: rg.GraspState = rg.choose_state(grasp, load, "force")
         except rg.Infeasible:

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import inf, nan, pi
+from math import inf, isnan, nan, pi
 
 import numpy as np
 
+from regrasp.closed_form.choice import EFFORT, best_squeeze
 from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
@@ -17,7 +18,8 @@ from regrasp.mechanics.wrench import Wrench, torque
 from regrasp.planning.robustness.views import View
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenState, Criteria
-from regrasp.planning.states.solving import force_unit
+from regrasp.planning.states.solving import Chooser, force_unit
+from regrasp.planning.states.two_fingers import is_closed
 from regrasp.planning.surveys.extremes.largest_load import largest_load
 from regrasp.planning.surveys.extremes.load_reach import largest_share
 
@@ -26,6 +28,7 @@ SQUEEZE = 1e6
 VIEWS = 12
 """States of a plan that are looked at, at most: fewer leave the answer an upper bound."""
 _DIRECTIONS = 8
+_ANY = Criteria("effort", reserve=0.0)
 _SCAN, _HALVINGS = 12, 26
 
 
@@ -44,6 +47,7 @@ class Answered:
         corners = None if base is None else base.vertices
         self.deviations = [Wrench.from_vector(v) for v in ([] if corners is None else corners)]
         self.deviations = self.deviations or [0.0 * self.load]
+        self.known: dict[int, Array] = {}  # forces that held a load not far from the next
 
     def friction(self) -> float:
         """The least factor on all coefficients."""
@@ -114,9 +118,25 @@ class Answered:
             return nan
 
     def _holds(self, grasp: Grasp, load: Wrench) -> bool:
-        loads = (load + deviation for deviation in self.deviations)
-        limits = grasp.max_forces.tolist()
-        return all(not w.vector.any() or largest_share(grasp, w, limits)[0] is not None for w in loads)
+        return all(self._held(grasp, load + deviation, k) for k, deviation in enumerate(self.deviations))
+
+    def _held(self, grasp: Grasp, load: Wrench, k: int) -> bool:
+        """Whether forces exist: those last found, moved into equilibrium, or others by a program."""
+        if not load.vector.any():
+            return True
+        mu, limits, rows = grasp.frictions.tolist(), grasp.max_forces.tolist(), grasp.limit_rows
+        if is_closed(grasp, _ANY):
+            first, second = (contact.plain for contact in grasp)
+            found = best_squeeze(*first, *second, *load.plain, EFFORT, *limits, 1.0)  # type: ignore[arg-type, call-arg]
+            return not isnan(found[0])
+        if k in self.known:
+            moved = Chooser(grasp, load, "clarabel", None, limits).shifted(self.known[k], mu, limits)
+            if moved is not None and (rows is None or rows.kept(moved)):
+                return True
+        state, _ = largest_share(grasp, load, limits)
+        if state is not None:
+            self.known[k] = grasp.cones.measured(state.forces)
+        return state is not None
 
     def _first(self, holds: Callable[[float], bool], most: float) -> float:
         """Where it first does not hold, looked for in steps; ``most`` where it does everywhere."""
