@@ -30,11 +30,12 @@ def _room(n, d):  # type: ignore[no-untyped-def]
         np.zeros(unknowns),
         np.zeros(unknowns),
         np.zeros(3 * n + 2, dtype=np.int64),
-        np.zeros((10, rows)),
+        np.zeros((12, rows)),
         np.zeros((unknowns, unknowns)),
         np.zeros((rows, unknowns)),
         np.zeros(n),
         np.zeros(n),
+        np.zeros((n, d)),
     )
 
 

@@ -13,10 +13,10 @@ from typing import Any
 
 MOST_STEPS = 60
 _NEAR = 0.99  # of the way to the boundary
-_GAP, _PRIMAL, _DUAL = 1e-11, 1e-13, 1e-10
+_GAP, _PRIMAL, _DUAL = 1e-11, 1e-12, 1e-10
 _ENOUGH = 1e4  # times these, where rounding ends the steps
 _LEAST = 1e-200
-_STUCK = 1e-9
+_STUCK, _LOST = 1e-9, 1e3
 
 
 def scale(s: Any, z: Any, flat: int, first: Any, w: Any, eta: Any, point: Any) -> bool:
@@ -161,12 +161,12 @@ def minimise(
 ) -> int:  # fmt: skip
     """Writes x (size,), s and z (rows,) from a start with s and z inside the cone; 1 where they are solved.
 
-    A: at least (rows, size). room: (10, rows). h: (size, size). scaled: (rows, size).
+    A: at least (rows, size). room: (12, rows). h: (size, size). scaled: (rows, size).
     """
     w, eta, point, u = room[0], room[1], room[2], room[3]
     dz, ds, rz, t, right, dx = room[4], room[5], room[6], room[7], room[8], room[9]
     cones = flat + first.size - 1
-    far = inf
+    best_x, best_z, best = room[10], room[11], inf
     for _ in range(MOST_STEPS):
         # residuals and gap
         gap, largest, primal, dual, cost = 0.0, 1.0, 0.0, 0.0, 1.0
@@ -190,10 +190,16 @@ def minimise(
         for j in range(size):
             objective += (weight * x[j] / 2.0 + c[j]) * x[j]
         far = max(gap / (_GAP * max(1.0, abs(objective))), primal / largest / _PRIMAL, dual / cost / _DUAL)
-        if far <= 1.0:
-            return 1
+        if far < best:
+            best = far
+            for j in range(size):
+                best_x[j] = x[j]
+            for i in range(rows):
+                best_z[i] = z[i]
+        if far <= 1.0 or not far < inf or (best <= _ENOUGH and far > _LOST * best):
+            break
         if not scale(s, z, flat, first, w, eta, point):
-            return 1 if far <= _ENOUGH else 0
+            break
         mean = gap / cones
         # the matrix: w I + (W^-1 A)' (W^-1 A), columns of A one after the other
         for j in range(size):
@@ -210,7 +216,7 @@ def minimise(
                 h[j, k] = entry
             h[j, j] += 1e-14 * h[j, j]
         if not factored(h, size):
-            return 1 if far <= _ENOUGH else 0
+            break
         applied(rz, flat, first, w, eta, t, True)
         for i in range(rows):
             rz[i] = t[i]  # W^-1 rz
@@ -242,8 +248,12 @@ def minimise(
             s[i] += step * t[i]
             z[i] += step * u[i]
         if step < _STUCK:
-            return 1 if far <= _ENOUGH else 0
-    return 1 if far <= _ENOUGH else 0
+            break
+    for j in range(size):
+        x[j] = best_x[j]
+    for i in range(rows):
+        z[i] = best_z[i]
+    return 1 if best <= _ENOUGH else 0
 
 
 def direction(

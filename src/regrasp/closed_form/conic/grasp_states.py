@@ -27,6 +27,7 @@ FAR = 1e4
 """Forces are at most this multiple of the load where nothing else limits them."""
 _FLAT = 1e-9
 _CLEAR = 1e-9
+_MOST_SHARE = 1e-4
 _LESS = 1e-9
 """Of frictions and limits: what programs keep back."""
 
@@ -35,7 +36,8 @@ class Room(NamedTuple):
     """Arrays that one grasp after the other is written into, for n contacts of d numbers and q loads.
 
     qr: (nd, q). tau: (q,). basis: (nd, nd). base: (nd,). A: (rows, nd + 1). b, s, z: (rows,). c, x: (nd +
-    1,). first: (3n + 2,). vectors: (10, rows). h: (nd + 1, nd + 1). scaled: (rows, nd + 1). mu, limits: (n,).
+    1,). first: (3n + 2,). vectors: (12, rows). h: (nd + 1, nd + 1). scaled: (rows, nd + 1). mu, limits: (n,).
+    deep: (n, d) forces well inside.
     """
 
     qr: Any
@@ -54,6 +56,7 @@ class Room(NamedTuple):
     scaled: Any
     mu: Any
     limits: Any
+    deep: Any
 
 
 def split(matrix: Any, load: Any, count: int, q: int, room: Room) -> bool:
@@ -292,6 +295,32 @@ def deepest(n: int, d: int, p: int, normals: Any, tangents: Any, room: Room) -> 
     return depth
 
 
+def pulled_in(
+    n: int, d: int, depth: float, normals: Any, mu: Any, limits: Any, deep: Any, forces: Any
+) -> bool:
+    """Moves forces that rounding left outside towards those that are ``depth`` inside, hardly at all."""
+    short = 0.0
+    for i in range(n):
+        normal, size = 0.0, 0.0
+        for a in range(d):
+            normal += normals[i, a] * forces[i, a]
+            size += forces[i, a] * forces[i, a]
+        across = 0.0
+        for a in range(d):
+            across += (forces[i, a] - normal * normals[i, a]) ** 2
+        short = max(short, sqrt(across) - (1.0 - _LESS / 2.0) * mu[i] * normal)
+        short = max(short, sqrt(size) - (1.0 - _LESS / 2.0) * limits[i])
+    if short <= 0.0:
+        return True
+    share = 2.0 * short / (short + depth)
+    if share > _MOST_SHARE:
+        return False
+    for i in range(n):
+        for a in range(d):
+            forces[i, a] += share * (deep[i, a] - forces[i, a])
+    return True
+
+
 def best_state(
     objective: int, matrix: Any, load: Any, normals: Any, tangents: Any, mu: Any, limits: Any,
     peak_ratio: float, n: int, d: int, room: Room, forces: Any, twist: Any,
@@ -314,7 +343,7 @@ def best_state(
     if not depth > _CLEAR:
         write_twist(n, d, q, normals, tangents, room, twist)
         return NONE if depth < -_CLEAR else OPEN
-    write_forces(n, d, p, room, forces)
+    write_forces(n, d, p, room, room.deep)
     if is_loose and objective == FORCE:
         if not solve(PEAK, n, d, p, normals, tangents, room):
             return OPEN
@@ -324,4 +353,4 @@ def best_state(
     if not solve(objective, n, d, p, normals, tangents, room):
         return OPEN
     write_forces(n, d, p, room, forces)
-    return HELD
+    return HELD if pulled_in(n, d, depth, normals, mu, limits, room.deep, forces) else OPEN
