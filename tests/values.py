@@ -157,6 +157,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "WrenchBall": lambda: rg.wrench_ball(GRASP, limit=1.0),
     "Measure": lambda: rg.quality(GRASP).measures[0],
     "Quality": lambda: rg.quality(GRASP),
+    "BatchStates": lambda: rg.choose_states(PAIR.positions, PAIR.normals, PAIR.frictions, LOAD.force),
     "BatchTolerances": lambda: rg.batch_tolerances(
         GRASP.positions, GRASP.normals, GRASP.frictions, STATE.forces
     ),

@@ -21,7 +21,8 @@ ROWS = rows()
 
 # Records of results: they are made by the verbs, and hold what they are given.
 RECORDS = {
-    "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere", "MarginCurve", "Margins",
+    "BatchStates", "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere",
+    "MarginCurve", "Margins",
     "PyramidLosses", "RegraspCut", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
     "ContactRegions", "OutlineCut", "OutlineRegrasps", "PlacementMap",
     "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
