@@ -48,6 +48,8 @@ def _batches() -> None:
     pairs = ([-1.0, 0.0], [1.0, 0.0], 0.5, [1.0, 0.0], [-1.0, 0.0], 0.5, many)
     rg.locus_intervals(*pairs)
     rg.best_squeezes(*pairs)
+    three = [[1.0, 0.0], [-0.5, 0.9], [-0.5, -0.9]]
+    rg.choose_states(three, [[-x, -y] for x, y in three], 0.6, force=[0.1, -1.0])
 
 
 def _planar_regrasps() -> None:
@@ -102,7 +104,7 @@ def _wrench_balls() -> None:
 
 _WORKS = {
     "least forces": _least_forces,
-    "batches of pairs": _batches,
+    "batches of grasps": _batches,
     "regrasps in the plane": _planar_regrasps,
     "regrasps in space": _regrasps_in_space,
     "places of fingers": _places,

@@ -299,11 +299,12 @@ def _solved(given: _Given, objective: Objective, peak_ratio: float, kept: float)
     forces, twists = np.zeros((m, n, d)), np.zeros((m, 3 * d - 3))
     verdicts = np.zeros(m, dtype=np.int64)
     tangents = tangents_of(given.normals.reshape(-1, d)).reshape(m, n, d - 1, d)
-    best_states(
-        m, objective.closed_form, float(peak_ratio), given.matrices(), loads / units[:, None], given.normals,
-        np.ascontiguousarray(tangents), kept * given.frictions, given.limits / units[:, None], forces, twists,
-        verdicts,
+    parts = (
+        given.matrices(), loads / units[:, None], given.normals, tangents, kept * given.frictions,
+        given.limits / units[:, None],
     )  # fmt: skip
+    plain = (np.array(part, order="C") for part in parts)  # of one type, so that they are compiled for once
+    best_states(m, objective.closed_form, float(peak_ratio), *plain, forces, twists, verdicts)
     forces *= units[:, None, None]
     if not objective.unbounded:  # of a load of zero nothing is the best
         forces[idle], verdicts[idle] = 0.0, HELD
