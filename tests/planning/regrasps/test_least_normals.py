@@ -1,5 +1,6 @@
 """Least normal forces in regrasps: in every hold both fingers push enough, by states chosen one by one."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import regrasp as rg
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
+from values import problem
 
 pytestmark = pytest.mark.oracle
 
@@ -145,3 +147,22 @@ def test_fingers_side_by_side_press_by_no_squeeze():
     graph = HoldGraph(tuple(named(square, "c")), WEIGHT, evenly(4), min_normal=50.0)
     for i, j in ((0, 1), (2, 3)):
         assert all(graph.margin(i, j, o) < 0 for o in range(4))
+
+
+def test_holds_withstand_the_disturbance_of_criteria() -> None:
+    loads = rg.LoadSet.ball(rg.Wrench([0, 0]), force=0.2, torque=0.2)
+    criteria = rg.Criteria("effort", disturbance=loads)
+    least = {}
+    for objective in ("effort", criteria):
+        plan = replace(problem(), objective=objective).plans()[0]
+        factors = []
+        for step in plan.steps:
+            for state in (step.start, step.end):
+                used = [i for i, force in enumerate(state.forces) if force.any()]
+                seen = rg.GraspState(state.grasp.subset(used), state.load, state.forces[used])
+                factors.append(rg.Criteria("wrench", disturbance=loads).objective.value(seen))
+        least[str(objective)] = min(factors)
+    assert least["effort"] < 0.1
+    assert least[str(criteria)] >= 1 - 1e-9
+    with pytest.raises(rg.InvalidInput, match="withstands no disturbance; use states='each'"):
+        replace(problem(), objective=criteria, states="joint")

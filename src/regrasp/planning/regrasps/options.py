@@ -67,6 +67,10 @@ def settled(problem: Any) -> Criteria:
     if asked is not None and number(asked, "min_normal", least=0):
         changed["min_normal"] = asked
     criteria = criteria_of(problem.objective, changed)
+    if criteria.demands and getattr(problem, "states", "each") == "joint":
+        raise InvalidInput(
+            "states='joint' has one margin for all states and withstands no disturbance; use states='each'"
+        )
     if not hasattr(problem, "min_normal"):
         criteria.refuse_pressing("a regrasp in space")
     elif asked is not None or isinstance(problem.objective, Criteria):
