@@ -19,7 +19,7 @@ from regrasp.planning.robustness.views import View
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenState, Criteria
 from regrasp.planning.states.solving import Chooser, force_unit
-from regrasp.planning.states.two_fingers import is_closed
+from regrasp.planning.states.two_fingers import is_one_point
 from regrasp.planning.surveys.extremes.largest_load import largest_load
 from regrasp.planning.surveys.extremes.load_reach import largest_share
 
@@ -28,7 +28,6 @@ SQUEEZE = 1e6
 VIEWS = 12
 """States of a plan that are looked at, at most: fewer leave the answer an upper bound."""
 _DIRECTIONS = 8
-_ANY = Criteria("effort", reserve=0.0)
 _SCAN, _HALVINGS = 12, 26
 
 
@@ -125,7 +124,7 @@ class Answered:
         if not load.vector.any():
             return True
         mu, limits, rows = grasp.frictions.tolist(), grasp.max_forces.tolist(), grasp.limit_rows
-        if is_closed(grasp, _ANY):
+        if len(grasp) == 2 and grasp.dimension == 2 and rows is None and not is_one_point(grasp):
             first, second = (contact.plain for contact in grasp)
             found = best_squeeze(*first, *second, *load.plain, EFFORT, *limits, 1.0)  # type: ignore[arg-type, call-arg]
             return not isnan(found[0])

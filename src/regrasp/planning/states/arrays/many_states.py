@@ -101,9 +101,11 @@ def choose_states(
     forces[~held] = np.nan
     twists[~refused] = 0.0
     found = margins(forces, given.normals, given.frictions)
+    for verdict in (held, refused):
+        verdict.setflags(write=False)
     return BatchStates(
-        read_only(held.reshape(given.shape)),
-        read_only(refused.reshape(given.shape)),
+        held.reshape(given.shape),
+        refused.reshape(given.shape),
         read_only(np.where(held, _values(sought.name, forces, found, given), np.nan).reshape(given.shape)),
         read_only(forces.reshape(*given.shape, *forces.shape[1:])),
         Margins(
@@ -182,8 +184,14 @@ class _Given:
 
     def some(self, rows: NDArray[np.bool_]) -> "_Given":
         """Of some grasps."""
-        parts = self.positions, self.normals, self.frictions, self.limits, self.loads
-        return _Given(*(part[rows] for part in parts), (int(rows.sum()),))
+        return _Given(
+            self.positions[rows],
+            self.normals[rows],
+            self.frictions[rows],
+            self.limits[rows],
+            self.loads[rows],
+            (int(rows.sum()),),
+        )
 
     @property
     def dimension(self) -> int:
@@ -313,17 +321,16 @@ def _solved(given: _Given, objective: Objective, peak_ratio: float, kept: float)
 
 def _values(name: str, forces: Array, found: Margins, given: _Given) -> Array:
     """(m,) what the objective comes to."""
+    sizes = (forces * forces).sum(axis=-1)
+    normal = np.einsum("mnd,mnd->mn", forces, given.normals)
+    by_name = {
+        "angle": lambda: np.where(np.isnan(found.angle), inf, found.angle).min(axis=1),
+        "friction_use": lambda: np.where(np.isnan(found.friction_use), -inf, found.friction_use).max(axis=1),
+        "force": lambda: found.force.min(axis=1),
+        "effort": lambda: sizes.sum(axis=1),
+        "peak": lambda: np.sqrt(sizes.max(axis=1)),
+        "peak_normal": lambda: normal.max(axis=1),
+        "sum_normal": lambda: normal.sum(axis=1),
+    }
     with np.errstate(all="ignore"):
-        if name == "angle":
-            return np.where(np.isnan(found.angle), inf, found.angle).min(axis=1)
-        if name == "friction_use":
-            return np.where(np.isnan(found.friction_use), -inf, found.friction_use).max(axis=1)
-        if name == "force":
-            return np.asarray(found.force.min(axis=1))
-        sizes = (forces * forces).sum(axis=-1)
-        if name == "effort":
-            return np.asarray(sizes.sum(axis=1))
-        if name == "peak":
-            return np.sqrt(sizes.max(axis=1))
-        normal = np.einsum("mnd,mnd->mn", forces, given.normals)
-        return np.asarray(normal.sum(axis=1) if name == "sum_normal" else normal.max(axis=1))
+        return np.asarray(by_name[name]())

@@ -8,6 +8,7 @@ cone that forces cannot oppose makes it good where a finger has no other limit.
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.escape import EscapeTwist
@@ -63,7 +64,7 @@ def counted(
     return result
 
 
-def _inside(grasp: Grasp, rows: LimitRows, i: int, mine: Array, friction: float) -> Array | None:
+def _inside(grasp: Grasp, rows: LimitRows, i: int, mine: NDArray[np.intp], friction: float) -> Array | None:
     """(k,) of least b . l with A'l inside the cone that no force opposes, by one; None without any."""
     from scipy.optimize import linprog
 
