@@ -121,3 +121,14 @@ def test_rows_of_another_plan_are_refused(column: str, value: float, said: str, 
     path.write_text("t,x\n0,1\n")
     with pytest.raises(rg.InvalidInput, match="expected the columns t,plan_t,step,angle,F1_x"):
         read_motions(path, plan)
+
+
+def test_a_row_that_is_missing_is_named(tmp_path: Path) -> None:
+    path, plan = written("plane", tmp_path)
+    assert read_motions(path, plan, 200.0).times.size == read_motions(path, plan, 100.0).times.size
+    with pytest.raises(rg.InvalidInput, match=r"rows must come every 0\.004 s; one is missing after"):
+        read_motions(path, plan, 250.0)
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:50], *lines[51:]]))
+    with pytest.raises(rg.InvalidInput, match=r"rows must come every 0\.005 s; one is missing after 0\.24 s"):
+        read_motions(path, plan)

@@ -43,7 +43,7 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
         say(verdict)
         return {"status": "verified", "exit": VERIFIED, "verification": asdict(verdict)}
     planned = read_plan(path)
-    table, count = path.with_name("setpoints.csv"), 0
+    table, count, more = path.with_name("setpoints.csv"), 0, dict[str, Any]()
     with np.errstate(all="ignore"), legible(names_of(planned)) as shown:  # any numbers at all
         say(shown(planned))
         verdict = verified(verdict_on(planned), path)
@@ -56,6 +56,7 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
             say(f"each of {count} set-points in {table} verified too")
         moved = path.with_name("motions.csv")
         if moved.exists() and not isinstance(planned, ChosenGrasp):
-            found = verified(verify_motion_rows(planned, read_motions(moved, planned)), moved)
+            found = verified(verify_motion_rows(planned, read_motions(moved, planned, rate)), moved)
             say(f"{moved}: {found}")
-    return verdict_facts(planned, verdict, count)
+            more = {"motions": found.rows}
+    return verdict_facts(planned, verdict, count) | more

@@ -10,10 +10,12 @@ from regrasp.errors import InvalidInput
 from regrasp.files.plans.motions_table import motion_columns, orientations
 from regrasp.files.plans.setpoint_rows import check_angles, check_quaternions
 from regrasp.files.plans.setpoints import check_plan, table_of
-from regrasp.mechanics.checks import Array, file_path
+from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.transition import Transition
 
+_MANY = 20  # rows of a step from which on most are as far apart as the rate says
+_UNEVEN = 1e-6
 _ROUNDING = 1e-9  # of the duration: how far a clock that is a sum may be off
 
 
@@ -39,32 +41,36 @@ class MotionRows(NamedTuple):
     forces: Array
 
 
-def read_motions(path: str | Path, plan: Transition | RegraspPlan) -> MotionRows:
+def read_motions(path: str | Path, plan: Transition | RegraspPlan, rate: float | None = None) -> MotionRows:
     """The set-points of a file that ``write_motions`` wrote; ``verify_motion_rows`` judges what they say.
 
     Args:
         path: the file.
         plan: of the motions that were written.
+        rate: rows per second that the file must have at the least; None for any even one.
 
     Raises:
-        InvalidInput: For other columns, rows that are not numbers, clocks and steps that do not rise from the
-            plan's start to its end, orientations that are not the plan's, and marks of contact that are
-            neither 0 nor 1.
+        InvalidInput: For other columns, rows that are not numbers or are missing, clocks and steps that do
+            not rise from the plan's start to its end, orientations that are not the plan's, and marks of
+            contact that are neither 0 nor 1.
     """
     path = file_path(path)
     check_plan(plan)
+    if rate is not None:
+        number(rate, "rate", above=0)
     steps = plan.steps if isinstance(plan, RegraspPlan) else (plan,)
     fingers = len(plan.fingers[0]) if isinstance(plan, RegraspPlan) else len(steps[0].grasp)
     d, width = steps[0].grasp.dimension, steps[0].start.forces.shape[1]
     table = table_of(path, motion_columns(d, fingers, width))
-    t, clock, number = table[:, 0], table[:, 1], table[:, 2] - 1
+    t, clock, which = table[:, 0], table[:, 1], table[:, 2] - 1
     ends = np.cumsum([0.0, *(step.duration for step in steps)])
     slack = _ROUNDING * ends[-1]
     if t[0] != 0 or not (np.diff(t) > 0).all():
         raise InvalidInput(f"{path}: times t must rise from 0")
-    if (np.diff(number) < 0).any() or set(number.tolist()) != set(range(len(steps))):
+    _refuse_gaps(path, t, rate, len(steps))
+    if (np.diff(which) < 0).any() or set(which.tolist()) != set(range(len(steps))):
         raise InvalidInput(f"{path}: steps must rise from 1 to {len(steps)}, and each have rows")
-    k = number.astype(np.intp)
+    k = which.astype(np.intp)
     ran = np.diff(clock)
     if clock[0] != 0 or clock[-1] != ends[-1] or (ran < 0).any() or (ran > np.diff(t) + slack).any():
         raise InvalidInput(
@@ -89,3 +95,15 @@ def read_motions(path: str | Path, plan: Transition | RegraspPlan) -> MotionRows
     if not np.isin(marks, (0.0, 1.0)).all():
         raise InvalidInput(f"{path}: whether a finger touches must be 0 or 1")
     return MotionRows(t, k, local, each[..., :d], each[..., d : 2 * d], marks > 0, each[..., 2 * d + 1 :])
+
+
+def _refuse_gaps(path: Path, times: Array, rate: float | None, steps: int) -> None:
+    """Raise ``InvalidInput`` where a row is missing: rows come evenly, besides those at ends of steps."""
+    gaps = np.diff(times)
+    if rate is None and gaps.size < _MANY * steps:
+        return  # too few to tell how far apart rows are
+    spacing = float(np.quantile(gaps, 0.9)) if rate is None else 1 / rate
+    if gaps.max() > spacing * (1 + _UNEVEN):
+        raise InvalidInput(
+            f"{path}: rows must come every {spacing:.9g} s; one is missing after {times[gaps.argmax()]:.9g} s"
+        )
