@@ -152,6 +152,12 @@ def test_what_is_withstood_counts_them() -> None:
     best = rg.choose_state(LIMITED, LOAD, "wrench", disturbance=ball, max_force=20.0)
     assert rg.verify(rg.plan_hold(best, end=best), disturbance=ball.scaled(0.999 * best.value)).ok
     assert not rg.verify(rg.plan_hold(best, end=best), disturbance=ball.scaled(1.001 * best.value)).ok
+    bare = rg.choose_state(GRASP, LOAD, "wrench", max_force=20.0)
+    near = GRASP["P1"].changed(limits=([[1.0, 0.0]], [pushed(bare) + 0.01]))
+    seen = rg.GraspState(GRASP.replaced("P1", near), LOAD, bare.forces)
+    factor = rg.Criteria("wrench", disturbance=ball).objective.value(seen)
+    assert rg.verify(rg.plan_hold(seen, end=seen), disturbance=ball.scaled(0.999 * factor)).ok
+    assert not rg.verify(rg.plan_hold(seen, end=seen), disturbance=ball.scaled(1.001 * factor)).ok
     first = rg.tolerances(state).first["load"]
     assert (first.finger, first.how) == ("P1", "exceeds its limit")
 

@@ -58,7 +58,7 @@ class WithstoodFactor(ConvexObjective):
         answers = measured_response(grasp, response(grasp, self.stiffness))
         forces = grasp.cones.measured(state.forces)
         base, loads = around_center(self.deviations(grasp))
-        found = Withstanding(grasp.cones, forces, answers, grasp.frictions, limits, base)
+        found = Withstanding(grasp.cones, forces, answers, grasp.frictions, limits, base, grasp.limit_rows)
         return float(found.factors(loads).factors.min())
 
     def scale(self, unit: float) -> float:
