@@ -255,6 +255,16 @@ def test_verbs_that_refuse_them(name: str) -> None:
         REFUSES[name]()
 
 
+def test_squeezes_without_a_load_are_scaled_into_them() -> None:
+    none = rg.Wrench([0, 0])
+    for objective in ("angle", "friction_use"):
+        free = rg.choose_state(GRASP, none, objective, max_force=50.0)
+        kept = rg.choose_state(LIMITED, none, objective, max_force=50.0)
+        assert kept.value == pytest.approx(free.value, abs=1e-6)
+        assert pushed(kept) == pytest.approx(MOST, rel=1e-9)
+    assert not rg.choose_state(LIMITED, none, "effort").forces.any()
+
+
 def test_bad_limits_are_refused() -> None:
     for limits, words in (
         (([[1, 0]], [0]), "bounds of limits must be greater than 0"),

@@ -40,6 +40,8 @@ def solved_forces(
     For ``angle`` and ``friction_use`` see ``regrasp.planning.states.narrowing``.
     """
     criteria.demand_limit(grasp, load)
+    if grasp.limit_rows is not None and not any(load.plain) and not criteria.presses and not criteria.demands:
+        return _unloaded(grasp, load, criteria, backend, facets)
     if criteria.presses or grasp.limit_rows is not None or criteria.demand(grasp) is not None:
         return _pressed(grasp, load, criteria, backend, facets)
     objective = criteria.objective
@@ -61,6 +63,20 @@ def solved_forces(
         if reason is None and (backend != "clarabel" or facets is not None):
             raise  # another back end may know better
         raise reason or unproven(grasp, load, criteria) from None
+
+
+def _unloaded(
+    grasp: Grasp, load: Wrench, criteria: Criteria, backend: str, facets: int | None
+) -> ChosenForces:
+    """The best squeeze within linear limits: scaled into them where its size does not count."""
+    objective = criteria.objective
+    if isinstance(objective, ConvexObjective) and not objective.rests:
+        return _pressed(grasp, load, criteria, backend, facets)
+    found = solved_forces(Grasp(c.changed(limits=None) for c in grasp), load, criteria, backend, facets)
+    forces, rows = np.array(found.forces, dtype=float), grasp.limit_rows
+    assert rows is not None
+    used = np.einsum("mw,mw->m", rows.rows, grasp.cones.measured(forces)[rows.contacts]) / rows.bounds
+    return found._replace(forces=forces / max(1.0, float(used.max()) * (1 + 1e-12)))
 
 
 def _pressed(
