@@ -135,8 +135,31 @@ def states(
         if rng.random() < 0.4:
             limit = 1.3 * float(np.linalg.norm(measured(grasp, state.forces), axis=1).max())
             state = rg.GraspState(rg.Grasp(c.changed(max_force=limit) for c in grasp), load, state.forces)
+        elif rng.random() < 0.3:
+            state = rg.GraspState(with_rows(state, rng), load, state.forces)
         count -= 1
         yield state, random_stiffness(rng, grasp)
+
+
+def with_rows(state: rg.GraspState, rng: np.random.Generator) -> rg.Grasp:
+    """The grasp with linear limits that its forces keep, in the contacts' frames."""
+    contacts = []
+    for c, force in zip(state.grasp, state.forces, strict=True):
+        local = frame(c) @ force[: c.dimension]
+        rows = rng.normal(size=(2, c.dimension))
+        bounds = np.maximum(rows @ local, 0.0) + rng.uniform(0.1, 0.5, 2) * float(np.linalg.norm(local))
+        contacts.append(c.changed(limits=(rows, bounds)))
+    return rg.Grasp(contacts)
+
+
+def frame(c: rg.Contact) -> Array:
+    """Normal and tangents: turned left in the plane, n x z and n x (n x z) in space."""
+    n = c.normal
+    if c.dimension == 2:
+        return np.array([n, [-n[1], n[0]]])
+    first = np.cross(n, [0.0, 0.0, 1.0])
+    first /= np.linalg.norm(first)
+    return np.array([n, first, np.cross(n, first)])
 
 
 def random_stiffness(rng: np.random.Generator, grasp: rg.Grasp) -> Any:
@@ -234,13 +257,19 @@ def slack(grasp: rg.Grasp, forces: Array, friction: float = 1.0) -> float:
     across[..., :d] -= normal[..., None] * grasp.normals
     limits = np.array([inf if c.max_force is None else c.max_force for c in grasp])
     room = friction * grasp.frictions * normal - np.linalg.norm(across, axis=-1)
-    return float(np.minimum(room, limits - np.linalg.norm(f, axis=-1)).min())
+    least = float(np.minimum(room, limits - np.linalg.norm(f, axis=-1)).min())
+    for i, c in enumerate(grasp):
+        if c.limits is not None:
+            used = np.asarray(forces)[..., i, :d] @ (c.limits.rows @ frame(c)).T
+            least = min(least, float((c.limits.bounds - used).min()))
+    return least
 
 
 def judge_tolerances(state: rg.GraspState, stiffness: Any, counts: Counter[str]) -> None:
     """A thousandth less and a thousandth more of each tolerance."""
     grasp, load, change = state.grasp, state.load, answers(state.grasp, stiffness)
     found = rg.tolerances(state, stiffness=stiffness).withstood
+    counts["states within linear limits"] += grasp.contacts[0].limits is not None
     d, q, size = grasp.dimension, load.vector.size, float(np.linalg.norm(load.force))
     counts[
         "states, stiffness by contact and direction" if stiffness is not None else "states, all alike"
@@ -296,7 +325,7 @@ def around(unit: Array) -> Array:
 
 def judge_largest(state: rg.GraspState, counts: Counter[str]) -> None:
     """The largest factor of the load under a force limit: of normal forces, by a program of our own."""
-    if state.grasp.is_soft:
+    if state.grasp.is_soft or state.grasp.contacts[0].limits is not None:
         return
     limit = 4.0 * float(np.linalg.norm(state.load.vector))
     grasp = rg.Grasp(c.changed(max_force=limit) for c in state.grasp)
