@@ -107,3 +107,20 @@ def test_durations_at_their_limit() -> None:
         else:
             with pytest.raises(rg.InvalidInput, match="cannot change within"):
                 plan.retimed(scaling)
+
+
+def test_a_turn_whose_middle_is_lost_is_refused() -> None:
+    """The squeeze between two ends may be larger than at both."""
+    rng, refused = np.random.default_rng(6), 0
+    for _ in range(30):
+        r = rng.normal(size=(3, 3))
+        grasp = rg.Grasp(rg.Contact(p, -p + 0.4 * rng.normal(size=3), 0.8) for p in r)
+        load = rg.Wrench.from_vector(10.0 ** rng.uniform(-14, -11) * rng.normal(size=6))
+        options = {"axis": rng.normal(size=3), "load": load, "objective": "effort", "max_force": 1.0}
+        try:
+            plan = rg.plan_rotation(grasp, float(rng.uniform(0.5, 2)), **options)
+        except (rg.Infeasible, rg.InvalidInput):
+            refused += 1
+            continue
+        assert rg.verify(plan).ok
+    assert refused < 30

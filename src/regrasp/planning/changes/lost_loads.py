@@ -23,10 +23,12 @@ _HELD = 2.0**-11
 
 def refuse_lost_load(plan: Transition) -> Transition:
     """The plan, or ``InvalidInput`` where its forces round to more than a thousandth of its load."""
-    d = plan.grasp.dimension
+    d, turn = plan.grasp.dimension, plan.turn
     most = _NEVER * max(map(abs, plan.start.load.plain[:d]))
     rows = plan.start.forces.tolist() + plan.end.forces.tolist()
-    if not [x for row in rows for x in row if x > most or x < -most]:
+    if turn is not None:  # between its ends forces may be larger
+        rows += [turn.forces.ravel().tolist(), [] if turn.middles is None else turn.middles.ravel().tolist()]
+    if plan.course is None and not [x for row in rows for x in row if x > most or x < -most]:
         return plan  # nearly all of them, in microseconds
     refuse_lost(plan.grasp, *_held(plan))
     return plan
