@@ -154,9 +154,51 @@ def test_a_clip_is_followed_or_said(tmp_path: Path) -> None:
         + "</g>"
     )
     assert rg.Outline.from_file(svg(tmp_path, clip.format(50))).notes == ()
+    assert rg.Outline.from_file(svg(tmp_path, clip.format(10))).area == pytest.approx(90)
+    inside = (
+        HOLE.replace("<circle", '<circle clip-path="url(#c)"') + RECT
+    )  # within the shape: it is cut to the clip
+    around = '<clipPath id="c"><rect x="4" y="4" width="2" height="2"/></clipPath>'
+    assert rg.Outline.from_file(svg(tmp_path, around + inside)).area == pytest.approx(196)
+    overlapping = clip.replace("</clipPath>", '<rect x="5" width="9" height="5"/></clipPath>').format(10)
     with pytest.warns(UserWarning, match="cut by a clip-path, which is not followed: 1 rect") as warned:
-        rg.Outline.from_file(svg(tmp_path, clip.format(10)))
+        assert rg.Outline.from_file(svg(tmp_path, overlapping)).area == 200
     assert warned[0].filename == __file__
+
+
+def polygon_within(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Sutherland and Hodgman: what the half-planes left of a convex polygon's edges leave of another."""
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        side = (b - a)[0] * (points - a)[:, 1] - (b - a)[1] * (points - a)[:, 0]
+        kept = []
+        for p, q, s, t in zip(points, np.roll(points, -1, axis=0), side, np.roll(side, -1), strict=True):
+            kept += [p] if s >= 0 else []
+            kept += [p + s / (s - t) * (q - p)] if s * t < 0 else []
+        points = np.array(kept).reshape(-1, 2)
+    return points
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_a_clip_path_cuts_off_is_off(tmp_path: Path, seed: int) -> None:
+    """Ellipses under random affine maps, cut by a turned rectangle: area against dense flattening."""
+    rng = np.random.default_rng(seed)
+    (a, c), (b, d) = matrix = np.eye(2) + 0.4 * rng.normal(size=(2, 2))
+    turn, w, h = rng.uniform(0, 360), *rng.uniform(12, 25, 2)
+    body = (
+        f'<g transform="matrix({a} {b} {c} {d} 7 -3)"><clipPath id="c"><rect x="-8" y="-6" width="{w}" '
+        f'height="{h}" transform="rotate({turn})"/></clipPath>'
+        '<ellipse rx="15" ry="9" clip-path="url(#c)"/></g>'
+    )
+    t = np.linspace(0, 2 * pi, 20001)[:-1]
+    ellipse = np.column_stack([15 * np.cos(t), 9 * np.sin(t)])
+    at = np.array([[-8, -6], [w - 8, -6], [w - 8, h - 6], [-8, h - 6]])
+    r = np.radians(turn)
+    left = polygon_within(ellipse, at @ np.array([[np.cos(r), np.sin(r)], [-np.sin(r), np.cos(r)]]))
+    x, y = left.T
+    area = abs(np.linalg.det(matrix)) * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2
+    found = rg.Outline.from_file(svg(tmp_path, body), tolerance=1e-4)
+    assert found.area == pytest.approx(area, rel=3e-4, abs=1e-4 * 60)  # chords within the tolerance
+    assert any("cut off at a clip-path: 1 ellipse" in note for note in found.notes)
 
 
 def test_everything_hidden_says_so(tmp_path: Path) -> None:

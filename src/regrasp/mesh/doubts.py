@@ -9,7 +9,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import numbers
 from regrasp.mesh.closest import at, touching
 
-_LARGE = 100.0  # a side in a unit that nobody gave
+_LARGE = 10.0  # a side in a unit that nobody gave
 _OFF = 0.03  # of the largest side
 
 

@@ -2,6 +2,9 @@
 
 from typing import Protocol
 
+import numpy as np
+
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, ArrayLike
 
 
@@ -35,3 +38,17 @@ class Boundary(Protocol):
 
     def polygon(self, tolerance: float) -> Array:
         """(k, 2) vertices on the curve, whose chords are nowhere farther than ``tolerance`` [m] from it."""
+
+
+def check_arcs(arcs: Array, length: float, what: str) -> None:
+    """``InvalidInput`` unless arc lengths (k, 2) are of an outline of a length, once around at most.
+
+    Arcs may begin before the first vertex and end past it; one of 99 on an outline of 4 is in another unit.
+    """
+    beyond = arcs[(np.abs(arcs - length / 2) > 1.5 * length * (1 + 1e-9)).any(axis=1)]
+    if len(beyond):
+        lo, hi = beyond[0].tolist()
+        raise InvalidInput(
+            f"{what} must be arc lengths of an outline of length {length:.6g}, from {-length:.6g} to "
+            f"{2 * length:.6g}, got ({lo:.6g}, {hi:.6g}); are they in its unit?"
+        )

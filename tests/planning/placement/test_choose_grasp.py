@@ -322,7 +322,10 @@ def test_fingers_stay_within_arcs() -> None:
         BRACKET, 2, TILTED, friction=0.6, arcs=[(1.0, 1.0 + BRACKET.length)], load_offset=1e-3
     )
     assert whole.value == pytest.approx(free.value, rel=1e-3)
-    assert "arcs" in str(refusal(lambda: rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=[])))
+    for none in ([], [(0, 2.01 * BRACKET.length)], [(-1.01 * BRACKET.length, 0)]):
+        assert "arcs" in str(
+            refusal(lambda none=none: rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=none))
+        )
 
 
 @pytest.mark.parametrize("radius", [0.1, 0.3, 0.45, 0.6])

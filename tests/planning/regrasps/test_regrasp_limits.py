@@ -135,6 +135,7 @@ def test_arcs_of_the_whole_outline_change_nothing():
         ([(0.0, 0.1), (0.3, 0.4), (0.6, 0.8)], "goal B1 is on no finger's arc"),
         ([(0.0, 0.6), (0.3, 0.4), (0.6, 0.9)],
          "three fingers cannot take the contacts of the goal: goal B1 is on the arc of finger 1; goal B2"),
+        ([None, (0, 99), None], r"arcs: finger 2 must be arc lengths .* are they in its unit"),
         ([(0, 1), (0, 1)], "arcs must have an entry for each of three fingers, got"),
         ([(0, 1), (0, 1, 2), None], r"arcs: finger 2 must have shape \(2,\)"),
         ([[(0, 1), (1, 2, 3)], None, None], "arcs: finger 1 must be numbers of shape"),

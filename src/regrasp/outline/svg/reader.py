@@ -12,7 +12,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.outline.drawing import UNITS, Budget, Drawing, Piece, check_known, counted
 from regrasp.outline.opening import reason
-from regrasp.outline.svg.clip import region_of, share_within
+from regrasp.outline.svg.clip import Clip, clip_of, cut, share_within
 from regrasp.outline.svg.shapes import SHAPES, shape
 from regrasp.outline.svg.style import Name, Styles, is_painted
 from regrasp.outline.svg.transform import (
@@ -44,7 +44,7 @@ class _Place:
     view: tuple[float, float]
     chosen: bool  # in a layer asked for, or none was
     uses: tuple[int, ...] = ()
-    clips: tuple[Any, ...] = ()  # shapely regions, outside of which nothing is seen
+    clips: tuple[Clip | None, ...] = ()  # outside of which nothing is seen
 
 
 def svg_drawing(data: bytes, layers: tuple[str, ...] | None = None) -> Drawing:
@@ -77,15 +77,17 @@ class _Walk:
         self._left: list[str] = []
         self._known: list[str] = []
         self._cut: list[str] = []
-        self._regions: dict[tuple[Any, ...], Any] = {}
+        self._uncut: list[str] = []
+        self._clips: dict[tuple[Any, ...], Clip | None] = {}
 
     def drawing(self) -> Drawing:
         check_known(self._layers, self._known)
-        cut = f"cut by a clip-path, which is not followed: {counted(self._cut)}"
-        notes = [cut] if self._cut else []
+        words = f"cut by a clip-path, which is not followed: {counted(self._uncut)}"
+        notes = [words] if self._uncut else []
         for note in notes:
             warn(f"the drawing is {note}: look at what was read", stacklevel=6)
-        for words, found in (("hidden, left out", self._hidden), ("left out", self._left),
+        for words, found in (("cut off at a clip-path", self._cut),
+                             ("hidden, left out", self._hidden), ("left out", self._left),
                              ("style rules not followed", self._styles.unread)):  # fmt: skip
             if found:
                 notes.append(f"{words}: {counted(found)}")
@@ -162,19 +164,18 @@ class _Walk:
             drawn = Piece(curves, piece.closed, piece.filled and inside)
             if place.clips:
                 self._budget.spend(pieces=20)
-                if not self._is_seen(kind, drawn, place.clips):
-                    continue
-            (self._seen if inside or edge else self._unpainted).append(drawn)
+            seen = self._shown_of(kind, drawn, place.clips) if place.clips else [drawn]
+            (self._seen if inside or edge else self._unpainted).extend(seen)
 
-    def _clip(self, link: str, place: _Place) -> Any:
-        """The region of a clip-path (shapely), None where it is not known."""
+    def _clip(self, link: str, place: _Place) -> Clip | None:
+        """What a clip-path shows, None where it is not known."""
         target = self._by_id.get(link.strip().removeprefix("url(").rstrip(")").strip("'\"# "))
         if target is None or local(target.tag) != "clipPath" or id(target) in place.uses:
             return None
         if target.attrib.get("clipPathUnits", "userSpaceOnUse") != "userSpaceOnUse":
             return None
         key = (id(target), place.matrix.tobytes())
-        if key not in self._regions:
+        if key not in self._clips:
             inside = replace(
                 place, style={"fill": "black"}, uses=(*place.uses, id(target)), clips=(), chosen=True
             )
@@ -182,19 +183,25 @@ class _Walk:
             self._seen, self._unpainted = [], []
             for child in target:
                 self.element(child, inside)
-            self._regions[key] = region_of(self._seen)
+            self._clips[key] = clip_of(self._seen)
             self._seen, self._unpainted = kept
-        return self._regions[key]
+        return self._clips[key]
 
-    def _is_seen(self, kind: str, piece: Piece, clips: tuple[Any, ...]) -> bool:
-        """Whether a piece is in the clips; remembers one that is cut."""
+    def _shown_of(self, kind: str, piece: Piece, clips: tuple[Clip | None, ...]) -> list[Piece]:
+        """What is seen of a piece in clips; remembers one that is cut, and one that should be."""
         seen = [None if clip is None else share_within(piece, clip) for clip in clips]
-        if 0 in seen:
+        if 0 in seen and not (piece.filled and self._left_of(piece, clips)):
             self._hidden.append(f"{kind} outside its clip-path")
-            return False
-        if any(share != 1 for share in seen):
-            self._cut.append(kind)
-        return True
+            return []
+        if all(share == 1 for share in seen):
+            return [piece]
+        left = self._left_of(piece, clips)
+        (self._uncut if left is None else self._cut).append(kind)
+        return [piece] if left is None else left
+
+    def _left_of(self, piece: Piece, clips: tuple[Clip | None, ...]) -> list[Piece] | None:
+        known = [clip for clip in clips if clip is not None]
+        return cut(piece, known) if len(known) == len(clips) else None
 
     def _use(self, element: Element, place: _Place) -> None:
         link = (attribute(element, "href") or "").strip()

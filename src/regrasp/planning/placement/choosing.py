@@ -8,6 +8,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, function, number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.boundary import check_arcs
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.asking import check_task, length_of, level_of
@@ -79,7 +80,8 @@ def choose_grasp(
         length: by which torques are divided, for ``wrench_ball`` [m]; the farthest reach of the outline from
             its centre of mass if not given.
         arcs: the only stretches where fingers may be: pairs of arc lengths, counter-clockwise from the first
-            to the second [m]; the whole outline if not given.
+            to the second [m], at most one length before the first vertex or past it; the whole outline if
+            not given.
         tip_radius: of round fingertips, which do not reach into corners and slots where they would meet
             another part of the outline [m].
         load_offset: each load may act this far beside its line, to either side [m]. Without it the best
@@ -122,7 +124,7 @@ def choose_grasp(
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
     level = level_of(goal, mu, load, max_force, disturbance, length_of(goal, length, shape))
-    stretches = None if arcs is None else _pairs(arcs)
+    stretches = None if arcs is None else _pairs(arcs, shape.length)
     radius = number(tip_radius, "tip_radius", least=0)
     sides = sides_of(shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius)
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
@@ -147,10 +149,11 @@ def _width(vertices: Array) -> float:
     return max(float(np.hypot(*(vertices - vertex).T).max()) for vertex in vertices)
 
 
-def _pairs(arcs: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+def _pairs(arcs: Sequence[Sequence[float]], length: float) -> list[tuple[float, float]]:
     found = array(arcs, "arcs", (None, 2))
     if not len(found) or (found[:, 0] == found[:, 1]).any():
         raise InvalidInput("arcs must be one pair of arc lengths or more, of two different numbers each")
+    check_arcs(found, length, "arcs")
     return [(float(a), float(b)) for a, b in found]
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.outline import Outline
+from regrasp.outline.boundary import check_arcs
 
 Arcs = Sequence[ArrayLike | None]
 """For each finger an interval (lo, hi) of arc length [m], several of them, or None for the whole outline."""
@@ -49,4 +50,5 @@ def _intervals(arc: ArrayLike | None, finger: int, length: float) -> Array:
     result = array(arc, what, (2,))[None] if flat else array(arc, what, (None, 2))
     if not result.size:
         raise InvalidInput(f"{what} has no arc; give (lo, hi), or None for the whole outline")
+    check_arcs(result, length, what)
     return result
