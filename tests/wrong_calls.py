@@ -703,8 +703,17 @@ def file_rows() -> dict[str, Row]:
     }
 
 
+PICTURES = {
+    "ax": "value", "units": "value", "label": "text of a label", "colour": "colour", "colours": "colours",
+    "force_scale": "positive", "reach": "positive", "control": "flag", "shadow": "flag", "absent": "names",
+    "order": "names", "o": "some or all", "torques": "row", "arc_lengths": "row",
+    "force_limits": "two limits",
+}  # fmt: skip
+"""Of parameters of pictures: what they draw need not be right, since these are looked at first."""
+
+
 def picture_rows() -> dict[str, Row]:
-    """The first parameter of every picture: what it draws."""
+    """What every picture draws, and how."""
     import regrasp.plots as plots
 
     more = {"load_size": 1.0, "outline": ellipse(), "values": [1.0], "contact": "P1", "shape": ellipse()}
@@ -713,9 +722,11 @@ def picture_rows() -> dict[str, Row]:
         draw = getattr(plots, name)
         if inspect.isfunction(draw) and name not in ("png", "html", "animate", "animate_execution"):
             first, *others = inspect.signature(draw).parameters
-            needed = {key: value for key, value in more.items() if key in others}
-            kind = "table" if first == "directions" else "value"
-            found[f"plots.{name}"] = Row(draw, needed, {first: kind}, tuple(others))
+            needed = {first: None} | {key: value for key, value in more.items() if key in others}
+            kinds = {first: "table" if first == "directions" else "value"}
+            kinds |= {key: PICTURES[key] for key in others if key in PICTURES}
+            free = tuple(key for key in others if key not in PICTURES)
+            found[f"plots.{name}"] = Row(draw, needed, kinds, free)
     return found
 
 
@@ -723,6 +734,12 @@ KINDS |= {
     "contact names": (*ANYTHING[1:4], *ANYTHING[6:], None, 3, nan, HUGE, [OBJECT], ["Q"], [99], [1.5]),
     "load": [value for value in NOT_A_VALUE if not callable(value)],  # what a function does is its own
     "limits of two": (*NOT_NUMBERS, 0, -1, [1, 2, 3], [0, 0], [[1, 1]]),
+    "text of a label": (b"x", OBJECT, {}, 1j, None, 3, nan, HUGE, True, []),
+    "colour": (*ANYTHING[:2], *ANYTHING[3:], None, 3, nan, HUGE, True, []),
+    "colours": (*NOT_A_VALUE[:4], *NOT_A_VALUE[5:], {"P1": 3}, {"P1": "no colour"}),
+    "names": (*ANYTHING[:4], *ANYTHING[6:], None, 3, nan, HUGE, True, [3], [None]),
+    "row": (*NOT_NUMBERS, np.zeros((2, 2))),
+    "two limits": (*NOT_NUMBERS, 5, [1], [0, 1], [-1, 1], [1, 2, 3]),
     "rows": (*NOT_NUMBERS, 5, [1], [1, 2, 3], np.zeros((2, 3)), np.zeros((7, 2))),
     "entries": (*NOT_NUMBERS, -1, [0.5, -0.5], np.ones(7)),
     "batch torque": (*NOT_NUMBERS, np.ones(7)),

@@ -5,9 +5,12 @@ what it draws. New axes belong to a figure of their own (``ax.figure``), as wide
 N, m and s unless ``units`` names others; numbers are never converted.
 """
 
+from inspect import isfunction
+
 from regrasp.plots.escapes.escape import plot_escape
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.grasps.state import plot_state, plot_transition
+from regrasp.plots.look.given import checked
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import contact_colours
 from regrasp.plots.look.units import SI, Units
@@ -108,3 +111,5 @@ __all__ = [
     "transition_png",
     "wrenches_figure",
 ]
+
+globals().update({name: checked(draw) for name in __all__ if isfunction(draw := globals()[name])})

@@ -46,6 +46,9 @@ def plot_hold_map(
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(graph, "graph", HoldGraph)
+    instance(outline, "outline", Outline)
+    if plan is not None:
+        instance(plan, "plan", RegraspPlan)
     if o is not None and not -len(graph.angles) <= o < len(graph.angles):
         raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {shown(o)}")
     places = np.array([_place(outline, contact) for contact in graph.contacts])
