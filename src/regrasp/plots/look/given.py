@@ -77,7 +77,7 @@ def _colours(value: Any, what: str) -> None:
 def _limits(value: Any, what: str) -> None:
     limits = items(value, what)
     if len(limits) != 2:
-        raise InvalidInput(f"{what} must be two forces, got {shown(value)}")
+        raise InvalidInput(f"{what} must be two numbers, got {shown(value)}")
     for limit in limits:
         if not (isinstance(limit, float) and limit == inf):
             number(limit, f"every entry of {what}", above=0)
