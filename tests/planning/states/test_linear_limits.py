@@ -197,12 +197,12 @@ KEEPS: dict[str, Callable[[], Any]] = {
     "plan_rotation": lambda: rg.plan_rotation(TURNING, 1.0, load=LOAD, max_force=20.0),
     "held_centres": lambda: rg.held_centres(LIMITED, LOAD).states[0],
     "largest_load": lambda: rg.largest_load(LIMITED, LOAD),
+    "sensitivity": lambda: rg.sensitivity(LIMITED, LOAD, "force"),
     "least_friction": lambda: rg.least_friction(LIMITED, LOAD),
 }
 REFUSES: dict[str, Callable[[], Any]] = {
     "EquilibriumLocus": lambda: rg.EquilibriumLocus(LIMITED.without("P3"), LOAD).best(),
     "SqueezeLocus": lambda: rg.SqueezeLocus(LIMITED, LOAD),
-    "sensitivity": lambda: rg.sensitivity(LIMITED, LOAD),
     "plan_regrasp": lambda: rg.plan_regrasp(SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5),
     "plan_regrasps": lambda: rg.plan_regrasps(SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5),
     "RegraspProblem": lambda: rg.RegraspProblem(

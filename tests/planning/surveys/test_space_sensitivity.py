@@ -9,6 +9,7 @@ from space import random_grasp, random_load
 pytestmark = pytest.mark.oracle
 
 STEP, ROOM = 3e-4, 1e-3
+OBJECTIVES = ("force", "effort", "peak", "angle", "friction_use")
 
 
 def changed(grasp: rg.Grasp, load: rg.Wrench, parameter: str, place: tuple[int, ...], by: float):
@@ -20,7 +21,9 @@ def changed(grasp: rg.Grasp, load: rg.Wrench, parameter: str, place: tuple[int, 
     if parameter in ("position", "normal"):
         t = grasp.tangents[i, place[1]]
         r, n = (c.position + by * t, c.normal) if parameter == "position" else (c.position, c.normal + by * t)
-        new = rg.Contact(r, n, c.friction, max_force=c.max_force, torsion=c.torsion, name=c.name)
+        new = rg.Contact(
+            r, n, c.friction, max_force=c.max_force, torsion=c.torsion, limits=c.limits, name=c.name
+        )
     else:
         new = c.changed(
             **{
@@ -31,9 +34,15 @@ def changed(grasp: rg.Grasp, load: rg.Wrench, parameter: str, place: tuple[int, 
     return grasp.replaced(i, new), load
 
 
-@pytest.mark.parametrize("soft", [False, True])
-@pytest.mark.parametrize("objective", ["force", "effort", "peak", "angle", "friction_use"])
-def test_rates_are_the_differences_of_the_value(objective: str, soft: bool) -> None:
+@pytest.mark.parametrize(
+    ("objective", "soft", "rows"),
+    [
+        *((objective, soft, False) for objective in OBJECTIVES for soft in (False, True)),
+        ("force", False, True),
+        ("effort", True, True),
+    ],
+)
+def test_rates_are_the_differences_of_the_value(objective: str, soft: bool, rows: bool) -> None:
     rng = np.random.default_rng(11)
     agreed, kinks, sizes = 0, 0, []
     while agreed < 8:
@@ -42,6 +51,9 @@ def test_rates_are_the_differences_of_the_value(objective: str, soft: bool) -> N
             grasp = rg.Grasp(c.changed(torsion=0.1 if i < 2 else None) for i, c in enumerate(grasp))
         try:
             peak = rg.choose_state(grasp, load, "peak").value
+            if rows:
+                limits = rng.normal(size=(2, 3)), rng.uniform(0.5, 1.2, 2) * peak
+                grasp = grasp.replaced(1, grasp[1].changed(limits=limits))
             grasp = grasp.replaced(0, grasp[0].changed(max_force=1.5 * peak))
             found = rg.sensitivity(grasp, load, objective)
         except rg.Infeasible:

@@ -17,6 +17,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives import ConvexObjective
+from regrasp.planning.states.pressing import pressing
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Program, Status, solve
 
@@ -43,7 +44,8 @@ class Setting:
     def program(self, objective: ConvexObjective, unit: float, weights: Array | None) -> Program:
         """``state_program`` here."""
         frictions, limits = self.frictions.tolist(), self.limits.tolist()
-        return state_program(self.grasp, self.load, objective, frictions, limits, unit, weights=weights)
+        plain = state_program(self.grasp, self.load, objective, frictions, limits, unit, weights=weights)
+        return pressing(plain, self.grasp, np.zeros(len(self.grasp)), unit, unit)  # linear limits
 
     def moved(self, parameter: str, place: tuple[int, ...], by: float) -> "Setting":
         """The setting with one number changed, at its place in the rates."""

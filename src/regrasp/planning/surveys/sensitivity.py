@@ -12,7 +12,6 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.state import GraspState, check_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
@@ -206,6 +205,8 @@ def sensitivity(
     The arguments are those of ``choose_state``, for grasps of two contacts or more, in space with exact cones
     and soft fingers.
 
+    Linear limits of contacts are kept and turn with their normals; their bounds have no rates here.
+
     By the envelope theorem, from the duals of the programs that Clarabel solves (docs/sensitivity.md); a
     force limit set by ``peak_ratio`` moves with the least peak force.
 
@@ -226,7 +227,6 @@ def sensitivity(
     """
     instance(grasp, "grasp", Grasp)
     check_load(grasp, load)
-    refuse_limits(grasp, "a sensitivity")
     if len(grasp) < 2:
         raise InvalidInput("a sensitivity needs two contacts or more: one holds a load along its line alone")
     criteria = criteria_of(objective, options)
