@@ -308,6 +308,10 @@ def test_refusals_are_proven_and_extremes_bounded_from_both_sides() -> None:
             assert most.escape.is_proof
             tight += 1
     assert tight >= 6
+    tight_mu = GRASP.replaced("P1", GRASP["P1"].changed(limits=([[1, 0]], [2.6])))
+    least, free = rg.least_friction(tight_mu, LOAD), rg.least_friction(GRASP, LOAD)
+    assert float(least) > 1.01 * float(free)
+    assert least.bounds[0] == pytest.approx(least.bounds[1], rel=1e-5)
     region = rg.held_centres(LIMITED, LOAD)
     assert np.abs(region.inner - region.outer).max() < 1e-6 * np.abs(region.outer).max()
     for state in region.states:

@@ -132,7 +132,7 @@ class Answered:
             moved = Chooser(grasp, load, "clarabel", None, limits).shifted(self.known[k], mu, limits)
             if moved is not None and (rows is None or rows.kept(moved)):
                 return True
-        state, _ = largest_share(grasp, load, limits)
+        state = largest_share(grasp, load, limits).state
         if state is not None:
             self.known[k] = grasp.cones.measured(state.forces)
         return state is not None

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import Infeasible, SolverFailed
-from regrasp.mechanics.checks import Array, items, number
+from regrasp.mechanics.checks import items, number
 from regrasp.mechanics.escape import EscapeTwist
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState, check_load
@@ -16,9 +16,10 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import ChosenState, Criteria
 from regrasp.planning.states.escape import escape_twist
+from regrasp.planning.states.linear.row_duals import escape_by_rows
 from regrasp.planning.states.separation import cleared
 from regrasp.planning.states.solving import force_unit
-from regrasp.planning.surveys.extremes.load_reach import largest_share
+from regrasp.planning.surveys.extremes.load_reach import Share, largest_share
 
 SQUEEZE = 1e6
 """Forces are at most this multiple of the load where nothing else limits them."""
@@ -87,9 +88,8 @@ def least_friction(
         grasp: the contacts that hold.
         load: external wrench on the object about its centre of mass, object frame [N, N m].
         contacts: those that have friction, all if not given; the others stay without.
-        max_force: limits every force besides the contacts' own limits [N]; their linear ones count, too, and
-            not in the lower bound. Torsion of soft fingers stays as
-            it is, per normal force.
+        max_force: limits every force besides the contacts' own limits [N]; their linear ones count, too.
+            Torsion of soft fingers stays as it is, per normal force.
 
     Raises:
         InvalidInput: For bad input.
@@ -119,8 +119,7 @@ def least_friction(
         if mu * (1 - share) <= lower:
             break
         less = _with(grasp, mu * (1 - share), rough)
-        _, twist = largest_share(less, load, criteria.limits(less))
-        proof = _excluded(less, load, twist, rough, criteria)
+        proof = _excluded(less, load, largest_share(less, load, criteria.limits(less)), rough, criteria)
         if proof is not None and lower < _coefficient(proof.grasp) <= mu:
             lower, escape = _coefficient(proof.grasp), proof
     return LeastFriction(grasp, load, mu, (lower, mu), state, escape)
@@ -150,11 +149,12 @@ def _by_halving(
     state, escape = None, None
     while high == inf or high - low > _SETTLED * high:
         given = _with(grasp, tried, rough)
-        held, twist = largest_share(given, load, criteria.limits(given))
+        found = largest_share(given, load, criteria.limits(given))
+        held = found.state
         if held is not None:
             high, state = min(tried, _need(held, rough) * (1 + _ROUNDING)), held
         else:
-            proof = _excluded(given, load, twist, rough, criteria)
+            proof = _excluded(given, load, found, rough, criteria)
             low = tried
             if proof is not None and (
                 escape is None or _coefficient(proof.grasp) > _coefficient(escape.grasp)
@@ -186,12 +186,17 @@ def _need(state: GraspState, rough: Container[int]) -> float:
 
 
 def _excluded(
-    grasp: Grasp, load: Wrench, twist: Array, rough: Container[int], criteria: Criteria
+    grasp: Grasp, load: Wrench, found: Share, rough: Container[int], criteria: Criteria
 ) -> EscapeTwist | None:
     """The proof that a twist is, v_n >= mu |v_t| at every contact, for the largest mu it excludes."""
+    twist = found.twist
     if not twist.any() or not np.isfinite(twist).all():
         return None
     mu = grasp.frictions.tolist()
+    if grasp.limit_rows is not None:  # of what was tried, since limits count
+        by_rows = escape_by_rows(grasp, load, twist, found.row_duals, mu, criteria.limits(grasp))
+        if by_rows is not None:
+            return by_rows
     for motion in (twist, cleared(grasp, twist, mu, [inf] * len(grasp))):
         velocities = (grasp.cones.matrix.T @ motion).reshape(len(grasp), -1)
         normal = (velocities * grasp.cones.normals).sum(axis=1)

@@ -89,7 +89,15 @@ def farthest(
     return Reached(answer.value[t:], forces, twist, answer.status is Status.UNBOUNDED, duals)
 
 
-def largest_share(grasp: Grasp, load: Wrench, limits: list[float]) -> tuple[GraspState | None, Array]:
+class Share(NamedTuple):
+    """A state, None for none; the dual's twist, and in its scale the duals (m,) of the linear limits."""
+
+    state: GraspState | None
+    twist: Array
+    row_duals: Array
+
+
+def largest_share(grasp: Grasp, load: Wrench, limits: list[float]) -> Share:
     """A state that balances a load, found without ever asking for the impossible; and the dual's twist.
 
         maximise s   subject to   G f + s w_ext = 0,   f_i in cone_i,   |f_i| <= 1,   |f_i| <= s limit_i
@@ -104,27 +112,28 @@ def largest_share(grasp: Grasp, load: Wrench, limits: list[float]) -> tuple[Gras
     unit = float(np.abs(target).max())
     rows = Rows(t + 1)
     rows.equal(np.hstack([grasp.scaled_matrix, target[:, None] / unit]))
+    share, linear = np.eye(t + 1)[-1:], grasp.limit_rows
+    if linear is not None:
+        rows.at_least_zero((1 - SLACK) * linear.bounds[:, None] / unit * share - _spread(linear, w, t + 1))
     _inside_cones(rows, grasp, t + 1, SLACK)
-    share = np.eye(t + 1)[-1:]
     rows.at_least_zero(np.vstack([share, -share]), [0.0, 1.0])
     for i, limit in enumerate(limits):
         rows.second_order(np.vstack([np.zeros(t + 1), _pick(i, w, t + 1)]), [1.0, *[0.0] * w])
         if limit < inf and limit < LOOSE * unit:
             rows.second_order(np.vstack([(1 - SLACK) * limit / unit * share, _pick(i, w, t + 1)]))
-    linear = grasp.limit_rows
-    if linear is not None:
-        rows.at_least_zero((1 - SLACK) * linear.bounds[:, None] / unit * share - _spread(linear, w, t + 1))
     answer = _answer(rows.program(-share[0]))
     twist = -answer.duals[: len(target)] * weight
-    twist = -twist if twist @ load.vector < 0 else twist
+    duals = np.zeros(0) if linear is None else answer.duals[len(target) : len(target) + len(linear.bounds)]
+    if twist @ load.vector < 0:
+        twist, duals = -twist, 0 * duals
     s = float(answer.value[-1])
     if not s * LOOSE > 1 or not np.isfinite(answer.value).all():
-        return None, twist
+        return Share(None, twist, duals)
     one = np.ones(1)
     found = Reached(one, answer.value[:t].reshape(n, w) / s, twist)
     along = load.vector[:, None] / unit
     held = held_state(grasp, 0 * load.vector, along, found, one, [limit / unit for limit in limits], unit)
-    return (None if held is None else held[1]), twist
+    return Share(None if held is None else held[1], twist, duals)
 
 
 def _inside_cones(rows: Rows, grasp: Grasp, unknowns: int, slack: float = 0.0) -> None:
