@@ -255,6 +255,14 @@ def test_verbs_that_refuse_them(name: str) -> None:
         REFUSES[name]()
 
 
+@pytest.mark.parametrize("objective", ["angle", "friction_use"])
+def test_levels_within_them_are_proven(objective: str) -> None:
+    state, free = rg.choose_state(LIMITED, LOAD, objective), rg.choose_state(GRASP, LOAD, objective)
+    assert state.gap is not None
+    assert state.gap < 1e-3
+    assert abs(state.value - free.value) > 0.01
+
+
 def test_squeezes_without_a_load_are_scaled_into_them() -> None:
     none = rg.Wrench([0, 0])
     for objective in ("angle", "friction_use"):

@@ -74,7 +74,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
             f"the object escapes by {twist}; the cones alone would hold it with larger forces",
             twist,
         )
-    twist = _by_rows(grasp, load, frictions, limits)
+    twist = limited_twist(grasp, load, frictions, limits)
     if twist is not None:
         who = ", ".join(str(c.name) for c in grasp if c.limits is not None)
         return Infeasible(
@@ -176,7 +176,9 @@ def escape_twist(
     return proven(grasp, load, edge.twist, frictions, limits)
 
 
-def _by_rows(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> EscapeTwist | None:
+def limited_twist(
+    grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]
+) -> EscapeTwist | None:
     """The proof that counts the contacts' linear limits, or None where none is found."""
     rows, weight = grasp.limit_rows, 1 / grasp.lengths
     target = -load.vector * weight

@@ -14,7 +14,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.opposition import surely_wins
 from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.escape import escape_twist
+from regrasp.planning.states.escape import escape_twist, limited_twist
 from regrasp.planning.states.objectives import FORCE, Bound, ConvexObjective, recorded
 from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
@@ -276,7 +276,8 @@ class Chooser:
 
     def is_lost(self, frictions: list[float], limits: list[float]) -> bool:
         """Whether no forces exist, proven by any motion that is found."""
-        return escape_twist(self.grasp, self.load, frictions, limits) is not None
+        given = self.grasp, self.load, frictions, limits
+        return escape_twist(*given) is not None or limited_twist(*given) is not None
 
     def wanted(self, answer: Solution) -> Array:
         """The answer's forces (n, w), as the cones measure them [N]."""
