@@ -1,6 +1,7 @@
 """Clarabel, called directly. Imported when used."""
 
 from functools import cache, lru_cache
+from threading import local
 from time import perf_counter
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.programs.facts import BACKENDS
-from regrasp.programs.program import Block, Cone, Program
+from regrasp.programs.program import Array, Block, Cone, Program
 from regrasp.programs.solution import Solution, Status
 
 # "Almost" verdicts are not verdicts.
@@ -42,6 +43,65 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
         solved - built,
         said,
     )
+
+
+_LEAN = (
+    "presolve_enable",
+    "equilibrate_enable",
+    "chordal_decomposition_enable",
+    "iterative_refinement_enable",
+)
+_MOST_KEPT = 64
+_LARGEST = 1e50  # unknowns of order one do not end beyond
+_memory = local()  # solvers are of the thread that made them
+
+
+def solved_again(program: Program) -> tuple[Array, Array] | None:
+    """Value and duals by a solver kept for this pattern, without the steps that buy nothing there.
+
+    The answer does not depend on what was asked before. For programs that are quick (``Program.is_quick``)
+    and whose places are shared (``Pattern``). None where it does not say that it solved the program.
+    """
+    P, A = program.P, program.A
+    solvers: dict[Any, _Kept] = _memory.__dict__.setdefault("solvers", {})
+    key = id(A.indices), id(A.indptr), P.nnz, program.blocks
+    kept = solvers.get(key)
+    if kept is None:
+        if len(solvers) >= _MOST_KEPT:
+            solvers.clear()
+        kept = solvers[key] = _Kept(program)
+    return kept.answer(program)
+
+
+class _Kept:
+    """A solver, and the numbers that it has."""
+
+    def __init__(self, program: Program) -> None:
+        lean = _settings(**dict.fromkeys(_LEAN, False))
+        self.solver = clarabel.DefaultSolver(
+            program.P, program.q, program.A, program.b, _cones_of(program.blocks), lean
+        )
+        # Places that live on: so no other matrix has their address.
+        self.places = program.A.indices, program.A.indptr
+        self.P, self.q, self.A = program.P, program.q, program.A.data
+
+    def answer(self, program: Program) -> tuple[Array, Array] | None:
+        """Value and duals."""
+        changed: dict[str, Array] = {"b": program.b}
+        if program.A.data is not self.A:
+            self.A = changed["A"] = program.A.data
+        if program.q is not self.q:
+            self.q = changed["q"] = program.q
+        if program.P is not self.P:
+            self.P = program.P
+            if program.P.nnz:
+                changed["P"] = program.P.data
+        self.solver.update(**changed)
+        answer = self.solver.solve()
+        if str(answer.status) != "Solved":
+            return None
+        x, z = np.array(answer.x), np.array(answer.z)
+        return (x, z) if np.maximum.reduce(np.abs(x)) < _LARGEST else None
 
 
 @lru_cache(64)

@@ -48,6 +48,16 @@ class Cones:
             out[:, 0] = np.maximum(_length(each[:, 1:]) - each[:, 0], 0.0)
         return outside
 
+    def has_dual(self, z: Array) -> bool:
+        """Whether z (m,) lies in the dual cone; the zero cone's dual is everything."""
+        if not np.logical_and.reduce(z >= self._least):
+            return False
+        for rows, size in self._round:
+            each = z[rows].reshape(-1, size)
+            if not np.logical_and.reduce(_length(each[:, 1:]) <= each[:, 0]):
+                return False
+        return True
+
     def units(self, sizes: Array) -> Array:
         """(m,) the unit of every row: its own of ``sizes`` (m,), of a cone the length of all of its rows'."""
         if not self.has_round:

@@ -7,6 +7,7 @@ Each K_i is the zero cone, the non-negative orthant or a second-order cone {(t, 
 nothing of contacts.
 """
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +20,7 @@ from regrasp.errors import InvalidInput
 from regrasp.programs.archive import read_arrays, write_arrays
 from regrasp.programs.blocks import Array, Block, Cone
 from regrasp.programs.cones import Cones
-from regrasp.programs.judging.terms import Terms
+from regrasp.programs.judging.terms import Terms, floors_of, is_small
 
 __all__ = ["Array", "Block", "Cone", "Program"]
 
@@ -75,6 +76,20 @@ class Program:
         same = object.__new__(Program)
         same.__dict__.update(self.__dict__)
         object.__setattr__(same, "b", b)
+        return same
+
+    def with_entries(self, entries: Array) -> "Program":
+        """The same program with other numbers at the places of A, (k,) finite ones in their order.
+
+        Args:
+            entries: (k,) finite ones in their order.
+        """
+        same = object.__new__(Program)
+        A = copy(self.A)  # shares the places
+        A.data = entries
+        same.__dict__.update(
+            P=self.P, q=self.q, A=A, b=self.b, blocks=self.blocks, size=self.size, is_quick=self.is_quick
+        )
         return same
 
     def without_objective(self) -> "Program":
@@ -146,6 +161,17 @@ class Program:
     def given_units(self) -> tuple[Array, Array, Array]:
         """Units of unknowns (n,), rows (m,) and columns (n,) where ``size`` gives the first."""
         return self.terms.given_units(self.size, self.q)
+
+    @cached_property
+    def is_quick(self) -> bool:
+        """Whether a kept solver may answer it: small, in one unit, of squares alone if of any."""
+        is_diagonal = not np.any(np.diff(self.P.indptr) > 1)
+        return self.size > 0 and is_small(self.P, self.A) and is_diagonal and not self.why_not_convex
+
+    @cached_property
+    def floors(self) -> tuple[float, float, float, float]:
+        """The least units that measures of an answer are in, where ``size`` gives units; see ``quick``."""
+        return floors_of(self.terms, self.cones, self.given_units, self.q)
 
     @cached_property
     def why_not_convex(self) -> str:

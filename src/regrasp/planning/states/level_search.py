@@ -1,6 +1,5 @@
 """The highest level of a narrowing that forces reach, from below and from above; see ``narrowing``."""
 
-from collections.abc import Collection, Iterable
 from math import inf
 from typing import NamedTuple
 
@@ -8,7 +7,8 @@ import numpy as np
 
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
-from regrasp.mechanics.grasp import Grasp
+from regrasp.planning.states.levels.climbing import climbed
+from regrasp.planning.states.levels.depths import of_all, of_some
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
 from regrasp.planning.states.objectives import FORCE
 from regrasp.planning.states.solving import FEASIBLE, Chooser, Found
@@ -23,15 +23,6 @@ _CLEAR = 1e-6
 # A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
 # root of its tolerance, where the optimum is flat.
 _NOISE = 1e-4
-# Of the largest normal force: what the first step asks for at every finger at least.
-_FIRST = 0.05
-_STEPS = 12
-# The level from which on a motion is a proof is found to this.
-_NARROW = 1e-10
-# No level is so far from another: a slope that says so is rounding.
-_FARTHEST = 1e3
-# Where the level is not known well yet, this part of what it is too high by is enough.
-_ROUGHLY = 0.05
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -45,7 +36,7 @@ def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[
         straight = _along_normals(chooser, narrowing, limits)
         if straight is not None and narrowing.level(straight) > narrowing.level(forces):
             forces = straight
-        forces, lost, is_widest = _by_newton(chooser, narrowing, forces, limits)
+        forces, lost, is_widest = climbed(chooser, narrowing, forces, limits)
         if is_widest:
             forces = _without_noise(chooser, narrowing, forces, limits)
             return Found(forces, max(lost - narrowing.level(forces), 0.0))
@@ -92,62 +83,10 @@ def _along_normals(chooser: Chooser, narrowing: Narrowing, limits: list[float]) 
         return None
     used, bound = chooser.of(cones), [limits[i] for i in cones]
     step = used.depth(list(cones.values()), bound, None)
-    found = None if step is None else used.settled(step.forces, list(cones.values()), bound)
-    return None if found is None else _whole(chooser.grasp, cones, found)
-
-
-def _by_newton(
-    chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]
-) -> tuple[Array, float, bool]:
-    """Forces of a high level, a level proven out of reach, and whether both are near and the margin widest.
-
-    The depth t to which forces reach inside the cones of a level falls with it; the duals say how fast, so
-    that Newton's method finds the level where it is zero. Where cones are too narrow the duals are a motion
-    that proves so. Once the level is known well, one program just above it and one just below end with the
-    proof and with the forces. Nothing of it needs answers audited: forces are moved into equilibrium inside
-    the cones, and what the motion is worth is decided by itself.
-    """
-    grasp, top, tolerance = chooser.grasp, narrowing.top, LEVEL_TOLERANCE
-    held, lost, motion, bounds = max(narrowing.level(forces), 0.0), top, np.zeros(0), np.array(limits)
-    known = np.maximum(grasp.cones.normal(forces), 0.0) / chooser.unit
-    known = np.maximum(known, _FIRST * known.max())  # a finger idle so far may be needed
-    level, is_near, is_widest = held, False, False
-    for _ in range(_STEPS if held < lost and known.any() else 0):
-        cones = narrowing.narrowed(level)
-        used = _of(chooser, cones)
-        mu, bound = list(cones.values()), [limits[i] for i in cones]
-        step = used.depth(mu, bound, None if is_near else known[list(cones)])
-        if step is None:
-            break
-        fall = narrowing.falls(level)[list(cones)] @ (step.weights * step.normals)
-        change = step.depth / float(fall) if fall > 0 else 0.0
-        best = level + min(max(change, -_FARTHEST), _FARTHEST)
-        found = used.shifted(step.forces, mu, bound) if step.depth > -FEASIBLE else None
-        if found is not None:
-            forces, is_widest = _whole(grasp, cones, found), is_near
-            held = max(narrowing.level(forces), level)
-            known = np.maximum(grasp.cones.normal(forces), 0.0) / chooser.unit
-            best = max(best, held)
-            error = (best - level) ** 2
-            following = best + max(error, tolerance / 4)
-        else:
-            within = max(_NARROW, _ROUGHLY * (level - best))
-            ceiling = narrowing.ceiling(chooser.load.vector, step.motion, bounds, held, lost, within)
-            if ceiling >= lost:
-                break
-            lost, motion = ceiling, step.motion
-            error = (best - level) ** 2
-            following = best - tolerance / 2 if error < tolerance / 16 else best + error
-        is_near = bool(error < tolerance / 16)
-        if lost - held <= tolerance:
-            break
-        level = following if held < following < lost else (held + lost) / 2
-    if motion.size:
-        sure = min(lost + _NARROW, top)
-        cones = narrowing.narrowed(sure)
-        if _of(chooser, cones).proves(motion, list(cones.values()), [limits[i] for i in cones]):
-            return forces, sure, is_widest and lost - held <= tolerance
-    return forces, top, False
+    if step is None or step.depth < -FEASIBLE:
+        return None
+    found = used.settled(step.forces, list(cones.values()), bound)
+    return None if found is None else of_all(chooser.grasp, cones, found)
 
 
 def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
@@ -177,7 +116,7 @@ def _of_those_that_push(
     mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
     some = chooser.of(used)
     rest = some.shifted(forces[used][:, : some.grasp.width], mu, bounds)
-    return None if rest is None else _whole(chooser.grasp, used, rest)
+    return None if rest is None else of_all(chooser.grasp, used, rest)
 
 
 def _lowest_proof(
@@ -212,7 +151,7 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     pressed = chooser.least is not None and any(chooser.least[i] > 0 for i in idle)
     if pressed or (idle and chooser.demand is not None):
         return _Level(None, True, True)  # a finger that must push has no cone left
-    used = _of(chooser, cones)
+    used = of_some(chooser, cones)
     frictions, bounds = list(cones.values()), [limits[i] for i in cones]
     weights = None
     if known is not None:
@@ -226,10 +165,10 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
         if forces is None and chooser.least is None:
             forces = _of_those_that_push(used, used.wanted(answer), frictions, bounds)
         if forces is not None:
-            return _Level(_whole(grasp, cones, forces))
+            return _Level(of_all(grasp, cones, forces))
         if answer.status is Status.SOLVED and answer.value[-1] > _CLEAR and chooser.least is None:
             return _Level(None, False, True)  # a solver sees forces, and rounding lets none near them balance
-    twist = used.twist_of(answer)
+    twist = used.twist_of(answer.duals)
     is_twist = bool(np.isfinite(twist).all() and twist.any())
     if is_twist and used.proves(twist, frictions, bounds):
         return _Level(None, True, True)
@@ -243,16 +182,4 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     forces = None
     if known is not None and chooser.least is None:
         forces = used.nearest(known[list(cones)][:, :width], frictions, bounds)
-    return _Level(None if forces is None else _whole(grasp, cones, forces))
-
-
-def _of(chooser: Chooser, contacts: Collection[int]) -> Chooser:
-    """The same for some contacts, itself for all."""
-    return chooser if len(contacts) == len(chooser.grasp) else chooser.of(contacts)
-
-
-def _whole(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
-    """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
-    whole = np.zeros((len(grasp), grasp.width))
-    whole[list(contacts), : forces.shape[1]] = forces
-    return whole
+    return _Level(None if forces is None else of_all(grasp, cones, forces))

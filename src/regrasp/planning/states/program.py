@@ -156,7 +156,7 @@ def _rows(
     """Kept, with what audits need: loads change more often than grasps."""
     rows = _new_rows(grasp, objective, unit, frictions, limited, facets)
     program = rows.program
-    _ = program.has_second_order, program.given_units, program.why_not_convex
+    _ = program.has_second_order, program.why_not_convex, program.is_quick, program.floors
     return rows
 
 

@@ -20,7 +20,7 @@ from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Solution, Status, solve
-from regrasp.programs.backends import asked
+from regrasp.programs.backends import answered_quickly, asked, solved_quickly
 
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
 # 1e-10 and less, is inside the reserve and not beyond it.
@@ -55,7 +55,7 @@ class Polish(NamedTuple):
     at_once: from an answer as it is; None where that is not sure. searched: from forces in equilibrium.
     """
 
-    at_once: Callable[["Chooser", ConvexObjective, Array, list[float], list[float]], Array | None]
+    at_once: Callable[["Chooser", ConvexObjective, Solution, list[float], list[float]], Array | None]
     searched: Callable[["Chooser", ConvexObjective, Array, list[float], list[float]], Array]
 
 
@@ -117,42 +117,52 @@ class Chooser:
         weights: Array | None = None,
         *,
         slack: float = SLACK,
+        quick: bool = True,
     ) -> Solution:
         """The back end's answer to one of the convex objectives, in units of ``unit``.
 
-        Where it has none and stopped at forces far larger than the load, it is asked again with their size
-        as the unit.
+        quick: whether that of a kept solver will do. Where the back end has none and stopped at forces far
+        larger than the load, it is asked again with their size as the unit.
         """
+        program = self.program(objective, frictions, limits, weights, slack)
+        if quick and self.backend == "clarabel":
+            found = solved_quickly(program)
+            if found is not None:
+                return found
         try:
-            return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+            return solve(program, self.backend)
         except SolverFailed as failed:
             size = float(abs(self.wanted(failed.solution)).max())
             if not _FAR * self.unit < size < _DIVERGED * self.unit:
                 raise
             self.unit = size
-        return solve(self._program(objective, frictions, limits, weights, slack), self.backend)
+        return solve(self.program(objective, frictions, limits, weights, slack), self.backend)
 
     def depth(self, frictions: list[float], limits: list[float], weights: Array | None) -> Depth | None:
         """How deep inside the cones forces reach, as the back end says it, not audited; None if it does not.
 
         weights: (n,) how deep a unit is at each contact; sqrt(1 + mu^2) if not given: a distance.
         """
-        program = self._program(FORCE, frictions, limits, weights, SLACK)
-        answer = asked(program, self.backend, {})
-        if not (np.isfinite(answer.value).all() and np.isfinite(answer.duals).all()):
+        program = self.program(FORCE, frictions, limits, weights, SLACK)
+        quick = answered_quickly(program) if self.backend == "clarabel" else None
+        if quick is None:
+            answer = asked(program, self.backend, {})
+            quick = answer.value, answer.duals
+        x, duals = quick
+        if not (np.isfinite(x).all() and np.isfinite(duals).all()):
             return None
         rows = program.A.indices[program.A.indptr[-2] :]  # of the cones: those that the depth stands in
-        forces = self.wanted(answer)
+        forces = self.in_newtons(x)
         normals = self.grasp.cones.normal(forces) / self.unit
         rough = np.array(frictions) > NEGLIGIBLE
         shares = np.zeros(len(self.grasp))
         if rough.any():
-            shares[rough] = answer.duals[rows].reshape(int(rough.sum()), -1).sum(axis=1)
+            shares[rough] = duals[rows].reshape(int(rough.sum()), -1).sum(axis=1)
         if self.facets is not None and self.grasp.dimension == 3:
             shares *= cos(pi / self.facets)  # the faces are nearer to the axis than the cone
-        return Depth(float(answer.value[-1]), forces, normals, shares, self.twist_of(answer))
+        return Depth(float(x[-1]), forces, normals, shares, self.twist_of(duals))
 
-    def _program(
+    def program(
         self,
         objective: ConvexObjective,
         frictions: list[float],
@@ -160,6 +170,10 @@ class Chooser:
         weights: Array | None,
         slack: float,
     ) -> Program:
+        """The program of a convex objective, of which a part ``slack`` of frictions and limits is kept back.
+
+        weights: as ``state_program``.
+        """
         kept = 1 - slack
         program = state_program(
             self.grasp,
@@ -194,7 +208,36 @@ class Chooser:
 
         polish: takes the answer's forces to the last digits, before they are moved into equilibrium or after.
         """
-        answer = self.solved(objective, frictions, limits)
+        for quick in (True, False):
+            answer = self._claimed(objective, frictions, limits, quick)
+            if answer is None:
+                return None
+            if polish is not None:
+                exact = polish.at_once(self, objective, answer, frictions, limits)
+                if exact is not None:
+                    return Found(exact, answer.absolute_gap * objective.scale(self.unit))
+            wanted = self.wanted(answer)
+            forces = self.settled(wanted, frictions, limits)
+            moved = inf if forces is None else float(abs(forces - wanted).max())
+            if forces is not None and moved <= _MOVED * max(self.unit, float(abs(forces).max())):
+                break
+        if forces is None or answer is None:
+            return None
+        if not moved <= _MOVED * max(self.unit, float(abs(forces).max())):
+            raise SolverFailed(
+                f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
+                answer.program,
+                answer,
+            )
+        if polish is not None:
+            forces = polish.searched(self, objective, forces, frictions, limits)
+        return Found(forces, answer.absolute_gap * objective.scale(self.unit))
+
+    def _claimed(
+        self, objective: ConvexObjective, frictions: list[float], limits: list[float], quick: bool
+    ) -> Solution | None:
+        """The answer with forces; None where the back end says there are none."""
+        answer = self.solved(objective, frictions, limits, quick=quick)
         if answer.status is Status.INFEASIBLE:  # at the limit of what can be held the slack may be missed
             answer = self.solved(objective, frictions, limits, slack=0.0)
         if answer.status is Status.INFEASIBLE:
@@ -209,24 +252,7 @@ class Chooser:
             raise SolverFailed(f"{self.backend}: {answer.status.advice}", answer.program, answer)
         if objective.bound is Bound.MARGIN and answer.value[-1] < -FEASIBLE:
             return None  # the least distance to the cones' boundaries is negative: some force is outside
-        wanted = self.wanted(answer)
-        if polish is not None:
-            exact = polish.at_once(self, objective, wanted, frictions, limits)
-            if exact is not None:
-                return Found(exact, answer.absolute_gap * objective.scale(self.unit))
-        forces = self.settled(wanted, frictions, limits)
-        if forces is None:
-            return None
-        moved = float(abs(forces - wanted).max())
-        if moved > _MOVED * self.unit and moved > _MOVED * float(abs(forces).max()):
-            raise SolverFailed(
-                f"{self.backend} answered forces {moved:.2g} away from equilibrium inside the cones",
-                answer.program,
-                answer,
-            )
-        if polish is not None:
-            forces = polish.searched(self, objective, forces, frictions, limits)
-        return Found(forces, answer.absolute_gap * objective.scale(self.unit))
+        return answer
 
     def exact(self, answer: Solution, frictions: list[float], limits: list[float]) -> Array | None:
         """The answer's forces (n, d) moved into equilibrium, inside cones and limits; None if none are."""
@@ -263,9 +289,9 @@ class Chooser:
         mu, limit = np.array(frictions), np.array(limits)
         return nearest_equilibrium(forces, cones.matrix, self.load.vector, cones.normals, mu, limit, size)
 
-    def twist_of(self, answer: Solution) -> Array:
+    def twist_of(self, duals: Array) -> Array:
         """The motion that the duals of the balance are, (3,) or (6,)."""
-        twist: Array = -answer.duals[: self.load.vector.size] / self.grasp.lengths
+        twist: Array = -duals[: self.load.vector.size] / self.grasp.lengths
         return twist
 
     def proves(self, twist: Array, frictions: list[float], limits: list[float]) -> bool:

@@ -23,7 +23,7 @@ class Terms:
     """
 
     def __init__(self, P: sparse.csc_matrix, A: sparse.csc_matrix, cones: Cones) -> None:
-        self.is_dense = (A.shape[0] + P.shape[0]) * A.shape[1] <= _SMALL
+        self.is_dense = is_small(P, A)
         self.P, self.A = (_dense(M) if self.is_dense else M.tocsr() for M in (P, A))
         self.abs_P, self.abs_A = abs(self.P), abs(self.A)
         self.of_rows = cones.largest(self.in_rows(np.ones(A.shape[1])))
@@ -71,6 +71,25 @@ class Terms:
             scaled = matrix @ sparse.diags(factors) if axis else sparse.diags(factors) @ matrix
             found = scaled.max(axis=axis).toarray().ravel()
         return found
+
+
+def is_small(P: sparse.csc_matrix, A: sparse.csc_matrix) -> bool:
+    """Whether products are fastest by dense matrices."""
+    return bool((A.shape[0] + P.shape[0]) * A.shape[1] <= _SMALL)
+
+
+def floors_of(
+    terms: Terms, cones: Cones, units: tuple[Array, Array, Array], q: Array
+) -> tuple[float, float, float, float]:
+    """The least unit of a row, of a column, of a product s z and of the gap.
+
+    units: of unknowns, rows and columns, as ``given_units``.
+    """
+    unknowns, rows, columns = units
+    per_dual = most(cones.units(terms.in_rows(reciprocal(columns))))
+    gap = float(unknowns @ (terms.abs_P @ unknowns + np.abs(q)))
+    row = float(cones.units(rows).min(initial=np.inf))
+    return row, float(columns.min(initial=np.inf)), 1 / per_dual, gap
 
 
 def _dense(matrix: sparse.csc_matrix) -> Any:

@@ -6,18 +6,23 @@ in loops that search for those. Forces are taken only if they are no worse.
 """
 
 from itertools import count
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from regrasp.closed_form.least import at_once, face_newton
+from regrasp.closed_form.least import at_once, by_duals, face_newton
+from regrasp.closed_form.least.face_newton import INSIDE
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import NEGLIGIBLE
+from regrasp.mechanics.value import kept
 from regrasp.planning.states.objectives import Bound, ConvexObjective
 from regrasp.planning.states.solving import Chooser, Polish
+from regrasp.programs import Solution
 
 _KINDS = {Bound.NONE: 0, Bound.FORCE: 1, Bound.NORMAL: 2, Bound.MARGIN: 3}
 """The words of ``faces``."""
+_UNEVEN = 1e6  # squares that differ by more are left to others
 PATIENCE = 5_000
 """Calls of arrays or interpreted loops, at a millisecond each at most: then compiled ones pay."""
 _calls = count()
@@ -30,12 +35,21 @@ def _refined() -> Any:
 
 
 def at_first_sight(
-    chooser: Chooser, objective: ConvexObjective, forces: Array, frictions: list[float], limits: list[float]
+    chooser: Chooser,
+    objective: ConvexObjective,
+    answer: Solution,
+    frictions: list[float],
+    limits: list[float],
 ) -> Array | None:
     """The forces (n, w) at the minimum, in equilibrium inside cones and limits, of the face in sight.
 
     None where that is not the right one, and where compiled loops are faster: in space, and for peaks.
     """
+    if objective.bound is Bound.NONE and chooser.least is None:
+        exact = _by_duals(chooser, objective, answer.duals, frictions, limits)
+        if exact is not None:
+            return exact
+    forces = chooser.wanted(answer)
     is_plain = chooser.grasp.dimension == 2 and objective.bound in (Bound.NONE, Bound.NORMAL)
     if not is_plain and next(_calls) >= PATIENCE:
         return None
@@ -45,6 +59,66 @@ def at_first_sight(
     with np.errstate(all="ignore"):  # guesses that lead nowhere end in numbers that are none
         found = at_once.refined(*given)
     return found[0] if found is not None and found[1] else None
+
+
+def _by_duals(
+    chooser: Chooser, objective: ConvexObjective, duals: Array, frictions: list[float], limits: list[float]
+) -> Array | None:
+    """The least squares within cones, where no limit is beyond its finger's force."""
+    grasp, unit = chooser.grasp, chooser.unit
+    task = kept(grasp, (objective, tuple(frictions), unit if objective.follows_unit else 1.0), _least_squares)
+    if task is None:
+        return None
+    r = chooser.vector.size
+    load = chooser.vector / unit
+    if task.fingers is None:
+        found = by_duals.least(-duals[:r], task.matrix, load, task.frictions, task.soft, task.linear)
+        if found is None:
+            return None
+        best = unit * np.einsum("ij,ijk->ik", found, task.frames)
+    else:
+        pairs = by_duals.least_in_plane((-duals[:r]).tolist(), task.fingers, load.tolist())
+        if pairs is None:
+            return None
+        best = unit * np.array(pairs)
+    if max(limits) < np.inf or min(limits) < np.inf:
+        sizes = np.sqrt((best * best).sum(axis=1))
+        if not (sizes <= limits).all():
+            return None
+    result: Array = best
+    return result
+
+
+class _Task(NamedTuple):
+    """What ``by_duals`` takes besides a load; ``fingers`` in the plane.
+
+    frames: (n, w, w) normal and tangents of each finger, in which matrix and linear are.
+    """
+
+    frictions: Array
+    soft: Array
+    linear: Array
+    matrix: Array
+    frames: Array
+    fingers: list[tuple[float, ...]] | None
+
+
+def _least_squares(grasp: Grasp, key: tuple[ConvexObjective, tuple[float, ...], float]) -> _Task | None:
+    """None for a cost that is not of squares alone."""
+    objective, frictions, unit = key
+    squares, linear = objective.squares(grasp), objective.linear(grasp, unit)
+    if squares is None or not 0 < squares.min() <= squares.max() < _UNEVEN * squares.min():
+        return None
+    mu = np.array([INSIDE * friction if friction > NEGLIGIBLE else 0.0 for friction in frictions])
+    linear = np.zeros((len(grasp), grasp.width)) if linear is None else linear
+    soft, fingers, cones = 1 / (2 * squares), None, grasp.cones
+    if grasp.dimension == 2:
+        torques = grasp.scaled_matrix[2].reshape(-1, 2)
+        fingers = np.column_stack([torques, cones.normals, mu, soft, linear]).tolist()
+    frames = np.concatenate([cones.normals[:, None], cones.tangents], axis=1)
+    matrix = np.einsum("rij,ikj->rik", grasp.scaled_matrix.reshape(-1, *linear.shape), frames)
+    linear = np.einsum("ij,ikj->ik", linear, frames)
+    return _Task(mu, soft, linear, matrix.reshape(len(matrix), -1), frames, fingers)
 
 
 def polished(

@@ -40,7 +40,7 @@ class Squeezer(Chooser):
         """The same, for some of the contacts."""
         return Squeezer(self.grasp.subset(contacts), self.load, self.backend, self.facets, [])
 
-    def _program(
+    def program(
         self,
         objective: ConvexObjective,
         frictions: list[float],
@@ -48,6 +48,7 @@ class Squeezer(Chooser):
         weights: Array | None,
         slack: float,
     ) -> Program:
+        """That of ``squeeze_program``; objective and limits are its own."""
         mu = (1 - slack) * np.array(frictions)
         return squeeze_program(
             self.grasp, mu, np.sqrt(1 + mu**2) if weights is None else weights, self.facets
@@ -82,7 +83,7 @@ class Squeezer(Chooser):
         mu = np.array(frictions)
         program = squeeze_program(self.grasp, mu, np.sqrt(1 + mu**2), self.facets)
         answer = solve(program, self.backend, throw=False)
-        return self.proves(self.twist_of(answer), frictions, limits)
+        return self.proves(self.twist_of(answer.duals), frictions, limits)
 
 
 def _if_left(wanted: Array, found: Array | None) -> Array | None:

@@ -1,0 +1,1 @@
+"""The highest level of narrowed cones, climbed by Newton's method."""

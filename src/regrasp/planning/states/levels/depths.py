@@ -1,0 +1,96 @@
+"""How deep inside narrowed cones forces reach: one program whose cones change from call to call.
+
+All entries of A are linear in the friction of a contact, so that they are filled in at once.
+"""
+
+from collections.abc import Collection, Iterable
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import NEGLIGIBLE
+from regrasp.planning.states.objectives import FORCE
+from regrasp.planning.states.solving import SLACK, Chooser, Depth
+from regrasp.programs import Program
+from regrasp.programs.backends import answered_quickly
+
+
+class Depths:
+    """The depths of forces within ``limits`` of a chooser's contacts, inside cones of any friction."""
+
+    def __init__(self, chooser: Chooser, limits: list[float]) -> None:
+        self.chooser, self.limits = chooser, limits
+        self._is_plain = chooser.backend == "clarabel" and chooser.facets is None and chooser.least is None
+        self._tables: dict[tuple[int, ...], _Table] = {}
+
+    def of(self, cones: dict[int, float], weights: Array | None) -> Depth | None:
+        """The depth in cones of some contacts, the others idle; None where the back end fails.
+
+        weights: (n,) of all contacts how deep a unit is there; for None depths are distances.
+        """
+        chosen = tuple(cones)
+        mu = np.array(list(cones.values()))
+        asked = None if weights is None else weights[list(chosen)]
+        if self._is_plain and mu.min(initial=inf) > NEGLIGIBLE:
+            table = self._tables.get(chosen)
+            if table is None:
+                some = of_some(self.chooser, chosen)
+                table = self._tables[chosen] = _Table(some, [self.limits[i] for i in chosen])
+            found = table.depth(mu, asked)
+            if found is not None:
+                return found
+        some = of_some(self.chooser, chosen)
+        return some.depth(mu.tolist(), [self.limits[i] for i in chosen], asked)
+
+
+class _Table:
+    """A = base + friction slope entry by entry, but for the last column, where the weights are."""
+
+    def __init__(self, chooser: Chooser, limits: list[float]) -> None:
+        n, w = len(chooser.grasp), chooser.grasp.width
+        self.chooser, self._unit = chooser, chooser.unit
+        ones, kept = np.ones(n), 1 - SLACK
+        self.program: Program = chooser.program(FORCE, [1 / kept] * n, limits, ones, SLACK)
+        twice = chooser.program(FORCE, [2 / kept] * n, limits, ones, SLACK).A.data
+        A = self.program.A
+        self._last = int(A.indptr[-2])
+        self._slope = kept * (twice - A.data)[: self._last]
+        self._base = (2 * A.data - twice)[: self._last]
+        columns = np.repeat(np.arange(w * n), np.diff(A.indptr)[:-1])
+        self._contact: NDArray[np.intp] = columns // w
+        self._rows = A.indices[self._last :]
+        self._each = self._rows.size // n
+
+    def depth(self, mu: Array, weights: Array | None) -> Depth | None:
+        """For frictions (n,) and weights (n,), or those of distances."""
+        n, chooser = mu.size, self.chooser
+        units = np.sqrt(1 + mu * mu) if weights is None else weights
+        entries = np.concatenate([self._base + self._slope * mu[self._contact], units.repeat(self._each)])
+        answer = answered_quickly(self.program.with_entries(entries))
+        if answer is None:
+            return None
+        x, duals = answer
+        forces = chooser.in_newtons(x)
+        shares = duals[self._rows].reshape(n, -1)
+        return Depth(
+            float(x[-1]),
+            forces,
+            chooser.grasp.cones.normal(forces) / self._unit,
+            np.add.reduce(shares, axis=1) if self._each > 1 else shares[:, 0],
+            chooser.twist_of(duals),
+        )
+
+
+def of_some(chooser: Chooser, contacts: Collection[int]) -> Chooser:
+    """The same for some contacts, itself for all."""
+    return chooser if len(contacts) == len(chooser.grasp) else chooser.of(contacts)
+
+
+def of_all(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
+    """Forces (n, d) of all contacts, those of ``contacts`` given and the others idle."""
+    whole = np.zeros((len(grasp), grasp.width))
+    whole[list(contacts), : forces.shape[1]] = forces
+    return whole
