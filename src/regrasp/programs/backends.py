@@ -159,14 +159,14 @@ def solved_quickly(program: Program) -> Solution | None:
     return solution
 
 
-def answered_quickly(program: Program) -> tuple[Array, Array] | None:
-    """Its value and duals, not audited."""
+def answered_quickly(program: Program, entries: Array | None = None) -> tuple[Array, Array] | None:
+    """Its value and duals, not audited; entries (k,), finite, stand at the places of A if given."""
     if not program.is_quick:
         return None
     from regrasp.programs.clarabel_backend import solved_again
 
     try:
-        return solved_again(program)
+        return solved_again(program, program.A.data if entries is None else entries)
     except KeyboardInterrupt:
         raise
     except BaseException:  # Rust's panics are no exceptions

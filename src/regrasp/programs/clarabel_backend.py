@@ -56,11 +56,11 @@ _LARGEST = 1e50  # unknowns of order one do not end beyond
 _memory = local()  # solvers are of the thread that made them
 
 
-def solved_again(program: Program) -> tuple[Array, Array] | None:
+def solved_again(program: Program, entries: Array) -> tuple[Array, Array] | None:
     """Value and duals by a solver kept for this pattern, without the steps that buy nothing there.
 
-    The answer does not depend on what was asked before. For programs that are quick (``Program.is_quick``)
-    and whose places are shared (``Pattern``). None where it does not say that it solved the program.
+    entries: (k,) of A. The answer does not depend on what was asked before. For programs that are quick
+    (``Program.is_quick``) and whose places are shared (``Pattern``). None where it is no solution.
     """
     P, A = program.P, program.A
     solvers: dict[Any, _Kept] = _memory.__dict__.setdefault("solvers", {})
@@ -70,7 +70,7 @@ def solved_again(program: Program) -> tuple[Array, Array] | None:
         if len(solvers) >= _MOST_KEPT:
             solvers.clear()
         kept = solvers[key] = _Kept(program)
-    return kept.answer(program)
+    return kept.answer(program, entries)
 
 
 class _Kept:
@@ -85,11 +85,11 @@ class _Kept:
         self.places = program.A.indices, program.A.indptr
         self.P, self.q, self.A = program.P, program.q, program.A.data
 
-    def answer(self, program: Program) -> tuple[Array, Array] | None:
+    def answer(self, program: Program, entries: Array) -> tuple[Array, Array] | None:
         """Value and duals."""
         changed: dict[str, Array] = {"b": program.b}
-        if program.A.data is not self.A:
-            self.A = changed["A"] = program.A.data
+        if entries is not self.A:
+            self.A = changed["A"] = entries
         if program.q is not self.q:
             self.q = changed["q"] = program.q
         if program.P is not self.P:

@@ -7,7 +7,6 @@ Each K_i is the zero cone, the non-negative orthant or a second-order cone {(t, 
 nothing of contacts.
 """
 
-from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -76,20 +75,6 @@ class Program:
         same = object.__new__(Program)
         same.__dict__.update(self.__dict__)
         object.__setattr__(same, "b", b)
-        return same
-
-    def with_entries(self, entries: Array) -> "Program":
-        """The same program with other numbers at the places of A, (k,) finite ones in their order.
-
-        Args:
-            entries: (k,) finite ones in their order.
-        """
-        same = object.__new__(Program)
-        A = copy(self.A)  # shares the places
-        A.data = entries
-        same.__dict__.update(
-            P=self.P, q=self.q, A=A, b=self.b, blocks=self.blocks, size=self.size, is_quick=self.is_quick
-        )
         return same
 
     def without_objective(self) -> "Program":

@@ -20,6 +20,8 @@ from regrasp.planning.states.solving import FEASIBLE, Chooser, Depth
 # Of the largest normal force: what the first step asks for at every finger at least.
 _FIRST = 0.05
 _STEPS = 14
+# A normal force below this fraction of the largest is a solver's noise at a finger that carries none.
+_IDLE = 1e-7
 # From a level not known well to one known, in parts of the tolerance.
 _NEAR = LEVEL_TOLERANCE / 16
 # The level from which on a motion is a proof is found to this, and then a little above.
@@ -105,8 +107,12 @@ class _Climb:
         elif step.depth > 0:
             self.known = np.zeros(len(self.limits))
             self.known[places] = np.maximum(step.normals, 0.0)
-            self.low, self._low_cones = level, frozenset(places)
-            return best
+            self._low_cones = frozenset(places)
+            # Steps from far below are short of what their forces reach.
+            at_work = (step.normals > _IDLE * step.normals.max())[:, None]
+            reached = narrowing.level(of_all(self.chooser.grasp, cones, step.forces * at_work))
+            self.low = min(max(level, reached), self.high)
+            return max(best, self.low)
         if is_near or step.depth < -FEASIBLE:
             self.high, self._high_cones = min(self.high, level), frozenset(places)
         if is_near or abs(best - level) < sqrt(_NEAR):
@@ -125,7 +131,7 @@ class _Climb:
         """A level just below the best one for the forces, or just above it for the proof."""
         target = min(best, self.lost)
         if self.found is None or target - self.held > LEVEL_TOLERANCE:
-            return target - LEVEL_TOLERANCE / 2
+            return target - 0.3 * LEVEL_TOLERANCE
         above, self._above = self._above, 0.8 * LEVEL_TOLERANCE  # the first one may still be reached
         return best + above
 

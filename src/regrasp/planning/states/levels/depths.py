@@ -52,16 +52,14 @@ class _Table:
     def __init__(self, chooser: Chooser, limits: list[float]) -> None:
         n, w = len(chooser.grasp), chooser.grasp.width
         self.chooser, self._unit = chooser, chooser.unit
-        ones, kept = np.ones(n), 1 - SLACK
-        self.program: Program = chooser.program(FORCE, [1 / kept] * n, limits, ones, SLACK)
-        twice = chooser.program(FORCE, [2 / kept] * n, limits, ones, SLACK).A.data
+        self.program: Program = chooser.program(FORCE, [1.0] * n, limits, None, SLACK)
+        twice = chooser.program(FORCE, [2.0] * n, limits, None, SLACK).A
         A = self.program.A
-        self._last = int(A.indptr[-2])
-        self._slope = kept * (twice - A.data)[: self._last]
-        self._base = (2 * A.data - twice)[: self._last]
-        columns = np.repeat(np.arange(w * n), np.diff(A.indptr)[:-1])
-        self._contact: NDArray[np.intp] = columns // w
-        self._rows = A.indices[self._last :]
+        last = int(A.indptr[-2])
+        self._slope = (twice.data - A.data)[:last]
+        self._base = A.data[:last] - self._slope
+        self._contact: NDArray[np.intp] = np.repeat(np.arange(w * n) // w, A.indptr[1:-1] - A.indptr[:-2])
+        self._rows = A.indices[last:]
         self._each = self._rows.size // n
 
     def depth(self, mu: Array, weights: Array | None) -> Depth | None:
@@ -69,7 +67,7 @@ class _Table:
         n, chooser = mu.size, self.chooser
         units = np.sqrt(1 + mu * mu) if weights is None else weights
         entries = np.concatenate([self._base + self._slope * mu[self._contact], units.repeat(self._each)])
-        answer = answered_quickly(self.program.with_entries(entries))
+        answer = answered_quickly(self.program, entries)
         if answer is None:
             return None
         x, duals = answer
