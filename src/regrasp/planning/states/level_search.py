@@ -8,7 +8,7 @@ import numpy as np
 from regrasp.errors import SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.planning.states.levels.climbing import climbed
-from regrasp.planning.states.levels.depths import of_all, of_some
+from regrasp.planning.states.levels.depths import NOISE, of_all, of_some, of_those_that_push
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
 from regrasp.planning.states.objectives import FORCE
 from regrasp.planning.states.solving import FEASIBLE, Chooser, Found
@@ -20,9 +20,6 @@ _SURE = 1e-2
 _UNSURE = 100 * LEVEL_TOLERANCE
 # Cones so far from the forces of a solved program, in its units, hold them whatever its tolerance.
 _CLEAR = 1e-6
-# A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
-# root of its tolerance, where the optimum is flat.
-_NOISE = 1e-4
 
 
 def highest(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Found:
@@ -92,31 +89,17 @@ def _along_normals(chooser: Chooser, narrowing: Narrowing, limits: list[float]) 
 def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits: list[float]) -> Array:
     """The forces with those that are a solver's noise made zero, where the level stays as good."""
     sizes = abs(forces).max(axis=1)
-    used = set(np.flatnonzero(sizes > _NOISE * sizes.max()).tolist())
+    used = set(np.flatnonzero(sizes > NOISE * sizes.max()).tolist())
     if len(used) in (0, len(forces)):
         return forces
     level = narrowing.level(forces)
-    idle = _of_those_that_push(chooser, forces, narrowing.frictions, limits)
+    idle = of_those_that_push(chooser, forces, narrowing.frictions, limits)
     if idle is None or narrowing.level(idle) < level - LEVEL_TOLERANCE / 10:
         cones = narrowing.narrowed(max(level - LEVEL_TOLERANCE / 10, 0.0))
         idle = _at_level(chooser, {i: mu for i, mu in cones.items() if i in used}, limits, None).forces
     if idle is None or narrowing.level(idle) < level - LEVEL_TOLERANCE / 5:
         return forces
     return idle
-
-
-def _of_those_that_push(
-    chooser: Chooser, forces: Array, frictions: list[float], limits: list[float]
-) -> Array | None:
-    """Forces near these of the fingers that carry more than noise, others idle; None if there are none."""
-    sizes = abs(forces).max(axis=1)
-    used = np.flatnonzero(sizes > _NOISE * sizes.max()).tolist()
-    if len(used) in (0, len(forces)) or not np.isfinite(forces).all():
-        return None
-    mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
-    some = chooser.of(used)
-    rest = some.shifted(forces[used][:, : some.grasp.width], mu, bounds)
-    return None if rest is None else of_all(chooser.grasp, used, rest)
 
 
 def _lowest_proof(
@@ -157,13 +140,13 @@ def _at_level(chooser: Chooser, cones: dict[int, float], limits: list[float], kn
     if known is not None:
         weights = np.maximum(grasp.cones.normal(known), 0.0)[list(cones)] / chooser.unit
     try:
-        answer = used.solved(FORCE, frictions, bounds, weights)
+        answer = used.solved(FORCE, frictions, bounds, weights, quick=False)
     except SolverFailed as failed:
         answer = failed.solution  # whether it is near enough is seen below
     if answer.status is not Status.INFEASIBLE and not answer.value[-1] < -FEASIBLE:
         forces = used.exact(answer, frictions, bounds)
         if forces is None and chooser.least is None:
-            forces = _of_those_that_push(used, used.wanted(answer), frictions, bounds)
+            forces = of_those_that_push(used, used.wanted(answer), frictions, bounds)
         if forces is not None:
             return _Level(of_all(grasp, cones, forces))
         if answer.status is Status.SOLVED and answer.value[-1] > _CLEAR and chooser.least is None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import NEGLIGIBLE
-from regrasp.planning.states.levels.depths import Depths, of_all, of_some
+from regrasp.planning.states.levels.depths import Depths, of_all, of_some, of_those_that_push
 from regrasp.planning.states.narrowing import LEVEL_TOLERANCE, Narrowing
 from regrasp.planning.states.solving import FEASIBLE, Chooser, Depth
 
@@ -140,6 +140,8 @@ class _Climb:
         some = of_some(self.chooser, cones)
         moved = some.settled if min(mu) <= NEGLIGIBLE else some.shifted  # onto normals Newton's method moves
         settled = moved(step.forces, mu, bound)
+        if settled is None:
+            settled = of_those_that_push(some, step.forces, mu, bound)
         if settled is None:
             return False
         self.found = of_all(self.chooser.grasp, cones, settled)

@@ -17,6 +17,10 @@ from regrasp.planning.states.solving import SLACK, Chooser, Depth
 from regrasp.programs import Program
 from regrasp.programs.backends import answered_quickly
 
+NOISE = 1e-4
+"""A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
+root of its tolerance, where the optimum is flat."""
+
 
 class Depths:
     """The depths of forces within ``limits`` of a chooser's contacts, inside cones of any friction."""
@@ -92,3 +96,17 @@ def of_all(grasp: Grasp, contacts: Iterable[int], forces: Array) -> Array:
     whole = np.zeros((len(grasp), grasp.width))
     whole[list(contacts), : forces.shape[1]] = forces
     return whole
+
+
+def of_those_that_push(
+    chooser: Chooser, forces: Array, frictions: list[float], limits: list[float]
+) -> Array | None:
+    """Forces near these of the fingers that carry more than noise, others idle; None if there are none."""
+    sizes = abs(forces).max(axis=1)
+    used = np.flatnonzero(sizes > NOISE * sizes.max()).tolist()
+    if len(used) in (0, len(forces)) or not np.isfinite(forces).all():
+        return None
+    mu, bounds = [frictions[i] for i in used], [limits[i] for i in used]
+    some = chooser.of(used)
+    rest = some.shifted(forces[used][:, : some.grasp.width], mu, bounds)
+    return None if rest is None else of_all(chooser.grasp, used, rest)
