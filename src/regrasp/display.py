@@ -1,7 +1,6 @@
 """Pictures in notebooks for values that must not import the floor that draws them."""
 
 from collections.abc import Iterable, Sequence
-from html import escape
 from importlib import import_module
 from math import isnan
 from typing import ClassVar
@@ -37,6 +36,8 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = 
         rows: cells, as many as the head has.
         caption: a line below.
     """
+    from html import escape  # one table of all characters: notebooks alone need it
+
     titles = "".join(f"<th>{escape(title)}</th>" for title in head)
     body = "".join("<tr>" + "".join(f"<td>{_cell(cell)}</td>" for cell in row) + "</tr>" for row in rows)
     below = f'<caption style="caption-side: bottom">{escape(caption)}</caption>' if caption else ""
@@ -45,5 +46,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = 
 
 def _cell(cell: object) -> str:
     if not isinstance(cell, float):
+        from html import escape
+
         return escape(str(cell))
     return "\N{EN DASH}" if isnan(cell) else f"{cell + 0.0:.5g}".replace("-", "\N{MINUS SIGN}")

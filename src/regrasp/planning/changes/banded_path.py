@@ -28,7 +28,8 @@ def least_change(task: PathTask) -> Array | None:
     if not is_plain or min(task.limits.min(), task.rates.min()) < inf:
         return None
     smooth = np.flatnonzero(mu == 0)
-    equal, rows, offsets = [grasp.scaled_matrix], [], []
+    equal, rows = [grasp.scaled_matrix], []
+    offsets: list[float] = []
     for i, faces in enumerate(cone_faces(grasp, mu, None)):
         normal, pick = grasp.cones.normals[i], np.zeros((2, len(grasp), 2))
         if mu[i] > 0:

@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness, sti
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives import ANGLE, Objective, WithstoodFactor, objective_of
-from regrasp.planning.states.withstanding.demand import Demand
+
+if TYPE_CHECKING:
+    from regrasp.planning.states.withstanding.demand import Demand
 
 PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least peak force that holds the load."""
@@ -172,17 +174,20 @@ class Criteria:
         places = tuple(k for k, i in enumerate(at_work) if i in controlled)
         return replace(self, stiffness=stiffness, controlled=places)
 
-    def demand(self, grasp: Grasp) -> Demand | None:
+    def demand(self, grasp: Grasp) -> "Demand | None":
         """What forces must withstand, or the set whose factor is made widest; None for neither.
 
         Args:
             grasp: the contacts that hold.
         """
+        if not self.demands:
+            return None
+        from regrasp.planning.states.withstanding.demand import Demand
+
         if isinstance(self.objective, WithstoodFactor):
             loads = self.objective.deviations(grasp)
             return Demand(grasp, loads, self.stiffness, self.controlled, self.early_loss, is_kept=False)
-        if self.disturbance is None:
-            return None
+        assert self.disturbance is not None
         return Demand(grasp, self.disturbance, self.stiffness, self.controlled, self.early_loss)
 
     def least_normals(self, grasp: Grasp) -> list[float]:

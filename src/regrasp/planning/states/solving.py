@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from math import cos, inf, pi
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,9 +18,11 @@ from regrasp.planning.states.escape import escape_twist, limited_twist
 from regrasp.planning.states.objectives import FORCE, Bound, ConvexObjective, recorded
 from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
-from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Solution, Status, solve
 from regrasp.programs.backends import answered_quickly, asked, solved_quickly
+
+if TYPE_CHECKING:
+    from regrasp.planning.states.withstanding.demand import Demand
 
 # Fraction of friction and limits that programs keep back besides the reserve, so that a solver's rounding,
 # 1e-10 and less, is inside the reserve and not beyond it.
@@ -87,7 +89,7 @@ class Chooser:
         facets: int | None,
         limits: list[float],
         least: Array | None = None,
-        demand: Demand | None = None,
+        demand: "Demand | None" = None,
     ) -> None:
         self.least, self.demand = least, demand
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets

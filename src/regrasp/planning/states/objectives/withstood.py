@@ -9,7 +9,6 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.robust.stiffness import Stiffness, response
-from regrasp.mechanics.robust.withstanding import Withstanding, around_center, measured_response
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives.objective import ConvexObjective
@@ -28,6 +27,8 @@ class WithstoodFactor(ConvexObjective):
 
     def of_contacts(self, forces: Array, grasp: Grasp) -> Array:
         """(..., n) the factor of each contact at forces (..., n, w), as the cones measure them [N]."""
+        from regrasp.mechanics.robust.withstanding import Withstanding, around_center, measured_response
+
         answers = measured_response(grasp, response(grasp, self.stiffness))
         given = forces.reshape(-1, *forces.shape[-2:])
         base, loads = around_center(self.deviations(grasp))
@@ -55,6 +56,8 @@ class WithstoodFactor(ConvexObjective):
         """The least factor over the contacts, within the limits that the state was chosen under."""
         grasp = state.grasp
         limits = np.array(getattr(state, "force_limits", grasp.max_forces))
+        from regrasp.mechanics.robust.withstanding import Withstanding, around_center, measured_response
+
         answers = measured_response(grasp, response(grasp, self.stiffness))
         forces = grasp.cones.measured(state.forces)
         base, loads = around_center(self.deviations(grasp))
