@@ -25,7 +25,8 @@ def least_change(task: PathTask) -> Array | None:
     """
     grasp, mu, unit = task.grasp, task.frictions, task.unit
     is_plain = grasp.width == 2 and task.times.size >= _MANY and bool(task.active[1:-1].all())
-    if not is_plain or min(task.limits.min(), task.rates.min()) < inf:
+    has_limits = min(task.limits.min(), task.rates.min()) < inf or grasp.limit_rows is not None
+    if not is_plain or has_limits:
         return None
     smooth = np.flatnonzero(mu == 0)
     equal, rows = [grasp.scaled_matrix], []
