@@ -7,8 +7,8 @@ import regrasp as rg
 from regrasp.planning.changes import banded_path
 from regrasp.planning.changes.banded_path import least_change
 from regrasp.planning.changes.path_program import PathTask, path_program
+from regrasp.planning.changes.time_banded import solved_over_time
 from regrasp.programs import solve
-from regrasp.programs.time_banded import solved_over_time
 
 pytestmark = pytest.mark.oracle
 

@@ -1,7 +1,7 @@
 """The planar path of least change through internal forces, where instants are coupled to neighbours alone.
 
 Forces that balance a load differ by internal forces N u, so that equilibrium is kept whatever u is; what is
-left of the path program is a quadratic program whose band ``programs.time_banded`` factors.
+left of the path program is a quadratic program whose band ``time_banded`` factors.
 """
 
 from math import inf
@@ -10,8 +10,8 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.planning.changes.path_program import PathTask
+from regrasp.planning.changes.time_banded import solved_over_time
 from regrasp.planning.states.faces import cone_faces
-from regrasp.programs.time_banded import solved_over_time
 
 # From so many instants on it is faster than a program of all of them.
 _MANY = 200

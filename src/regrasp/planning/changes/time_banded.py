@@ -10,7 +10,7 @@ are.
 
 import numpy as np
 
-from regrasp.programs.blocks import Array
+from regrasp.mechanics.checks import Array
 
 _STEPS = 40
 # Constraints may miss by this part of the data, the objective by this part of its value and one.
