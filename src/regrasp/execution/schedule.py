@@ -17,7 +17,7 @@ from regrasp.plans.regrasp_plan import RegraspPlan, rotation_before
 from regrasp.plans.transition import Transition
 
 MOST_STEPS = 500_000
-"""Steps of a simulation; some twenty thousand take a second."""
+"""Steps of a simulation; some fifty thousand take a second."""
 # A finger in the air keeps this far from where it touched, as a fraction of the object's size.
 _LIFT = 0.12
 
