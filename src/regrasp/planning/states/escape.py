@@ -85,13 +85,14 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     limit = (
         _only_in_the_limit(grasp, load, frictions) if grasp.dimension == 3 and min(limits) == inf else None
     )
-    if limit is not None:
-        return Infeasible(
-            f"no forces of {names} inside their friction cones balance {shown(load)}, but only in the limit: "
+    larger = (
+        ""
+        if limit is None
+        else (
             f"forces of {_REACHES[0]:g} times the load miss it by {limit[0]:.2g} of the load, of "
-            f"{_REACHES[1]:g} times by {limit[1]:.2g}, so no motion proves it; the contacts would "
-            f"need a little more friction"
+            f"{_REACHES[1]:g} times by {limit[1]:.2g}"
         )
+    )
     kept = criteria.frictions(grasp)
     for mu in (frictions, kept):
         if any(load.plain) and _is_at_limit(grasp, load, mu, criteria.limits(grasp)):
@@ -100,9 +101,14 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
                 f"{shown(load)} is at its limit for {names}{what}: within {AT_LIMIT:g} of the "
                 "edge of what forces "
                 f"inside their friction cones and force limits balance, where rounding decides; none were "
-                f"found, and no motion proves that there are none"
+                f"found, and no motion proves that there are none{larger and '; ' + larger}"
             )
-    return None
+    if limit is None:
+        return None
+    return Infeasible(
+        f"no forces of {names} inside their friction cones balance {shown(load)}, but only in the limit: "
+        f"{larger}, so no motion proves it; the contacts would need a little more friction"
+    )
 
 
 def _is_at_limit(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> bool:
