@@ -168,7 +168,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         [
             "contacts[0].friction: a required key is missing",
             "contacts[0].friktion: unknown key; known here: "
-            "name, position, normal, friction, max_force, torsion, force, end_force",
+            "name, position, normal, friction, max_force, torsion, limits, force, end_force",
         ],
     ),
     "contacts as one table": (

@@ -63,7 +63,7 @@ def test_scale_and_smoothness(tmp_path: Path) -> None:
     found = rg.Mesh.from_file(str(path), scale=1e-3, smooth=True, crease=0.3)
     np.testing.assert_allclose(found.size, [0.06, 0.04, 0.02])
     assert (found.smooth, found.crease) == (True, 0.3)
-    assert repr(rg.Mesh.from_file(path)) == "Mesh(12 faces, size (60, 40, 20), volume 48000)"
+    assert repr(rg.Mesh.from_file(path, scale=1)) == "Mesh(12 faces, size (60, 40, 20), volume 48000)"
 
 
 def test_groups_of_one_body_are_one(tmp_path: Path) -> None:
