@@ -44,12 +44,12 @@ def measured(chromium: Any, part: str | None, width: int) -> list[float]:
 
 
 def main() -> None:
-    """A table on the paper's example and on an outline, wide and narrow."""
+    """A table on the paper's example, an outline and a mesh, wide and narrow."""
     print("| beginning | width [px] | pictures | median [ms] | 95 % [ms] | goal [ms] |")
     print("|---|---|---|---|---|---|")
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        for part in (None, "cam"):
+        for part in (None, "cam", "solid-bracket"):
             for width in (1100, 400):
                 times = sorted(measured(chromium, part, width))
                 tail = times[int(0.95 * len(times))]

@@ -51,7 +51,12 @@ FLOORS: dict[str, Set[str]] = {
         "measures",
     },
     "process_limits": set(),  # of processes that solve, for the benchmark and for studies
-    "verification": {"errors", "mechanics", "verification"},  # the checker shares no code with the planner
+    "verification": {
+        "errors",
+        "display",
+        "mechanics",
+        "verification",
+    },  # the checker shares no code with the planner
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
     "files": {

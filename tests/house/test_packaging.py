@@ -24,16 +24,16 @@ def bounds(lines: list[str]) -> dict[str, str]:
 
 
 def test_the_recipe_asks_for_what_the_package_asks_for() -> None:
-    recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
+    recipe = (ROOT / "conda" / "recipe.yaml").read_text(encoding="utf-8")
     run = re.findall(r"    - (.+)", recipe.partition("  run:\n")[2].partition("\n\n")[0])
     asked = bounds(PROJECT["dependencies"]) | {"python": PROJECT["requires-python"].removeprefix(">=")}
     assert bounds(run) == {OTHER_NAMES.get(name, name): bound for name, bound in asked.items()}
 
 
 def test_versions_agree() -> None:
-    recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
+    recipe = (ROOT / "conda" / "recipe.yaml").read_text(encoding="utf-8")
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    assert re.findall(r'set version = "(.+)"', recipe) == [regrasp.__version__]
+    assert re.findall(r'  version: "(.+)"', recipe) == [regrasp.__version__]
     assert re.findall(r"^version: (.+)$", citation, re.M) == [regrasp.__version__]
 
 

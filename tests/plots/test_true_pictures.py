@@ -100,6 +100,28 @@ def test_a_regrasp_says_its_scale_of_force(removal):
     assert float(np.ptp(bar.get_xdata())) == pytest.approx(scale * float(words.split()[0]))
 
 
+def test_grasps_loci_verdicts_and_tolerances_are_tables_in_notebooks(removal):
+    cells = re.findall(r"<td>(.*?)</td>", GRASP._repr_html_())
+    assert cells[:3] == ["P1", "\N{MINUS SIGN}4", "\N{MINUS SIGN}4"]
+    assert len(cells) == 3 * 7
+    locus = rg.EquilibriumLocus(GRASP.without("P3"), LOAD)
+    cells = re.findall(r"<td>(.*?)</td>", locus._repr_html_())
+    assert [cells[1], cells[11]] == [f"{x:.5g}" for x in locus.interval]
+    least = float(cells[4].replace("\N{MINUS SIGN}", "-"))
+    assert least == pytest.approx(0, abs=1e-9)
+    far = rg.EquilibriumLocus(
+        rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.5), rg.Contact([1, 0], [-1, 0], 0.5)]), LOAD
+    )
+    assert "without end" in far._repr_html_()
+    assert "no forces inside" in rg.EquilibriumLocus(GRASP.without("P1"), LOAD)._repr_html_()
+    assert "<th>verified</th>" in rg.verify(removal)._repr_html_()
+    assert "NOT verified" in rg.Verification(("P1 slips",), 0.0, 0.1, -0.1)._repr_html_()
+    found = rg.tolerances(removal)
+    cells = re.findall(r"<td>(.*?)</td>", found._repr_html_())
+    assert cells[:2] == ["friction", f"{found.withstood.friction:.5g}"]
+    assert "answered" not in vars(found), "which takes seconds"
+
+
 def test_states_and_margins_are_tables_in_notebooks():
     state = rg.GraspState(rg.Grasp([*GRASP.contacts[:2], GRASP.contacts[2]]), LOAD, STATE.forces)
     html = state._repr_html_()

@@ -50,7 +50,7 @@ class Explorer(anywidget.AnyWidget):
     """
 
     _esm = module(*MODULES) + _RENDER
-    _css = style()
+    _css = style(whole=False)
     begin = traitlets.Dict().tag(sync=True)
 
     def __init__(self, start: Start) -> None:

@@ -15,6 +15,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.limits.limit_rows import LimitRows, stacked
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries, listed
+from regrasp.mechanics.tables import contacts_table
 from regrasp.mechanics.value import ArrayValue, kept, one_line
 from regrasp.mechanics.wrench import torque
 
@@ -320,6 +321,9 @@ class Grasp(ArrayValue):
         if len(self) == 1:
             return f"turning about {self.names[0]}"
         return f"turning about the line through {self.names[0]} and {self.names[1]}"
+
+    def _repr_html_(self) -> str:
+        return contacts_table(self.contacts)
 
     def __repr__(self) -> str:
         inside = "".join(f"\n  {contact!r}," for contact in self.contacts)

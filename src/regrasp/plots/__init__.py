@@ -23,6 +23,7 @@ from regrasp.plots.over_time.execution import (
 )
 from regrasp.plots.over_time.load import plot_load
 from regrasp.plots.over_time.magnitudes import plot_angles, plot_magnitudes, plot_margins
+from regrasp.plots.over_time.rates import plot_rates
 from regrasp.plots.over_time.scaling import plot_scaling
 from regrasp.plots.pages.film import animate
 from regrasp.plots.pages.overview import (
@@ -92,6 +93,7 @@ __all__ = [
     "plot_outline_map",
     "plot_placement_map",
     "plot_placement_outline",
+    "plot_rates",
     "plot_regrasp",
     "plot_scaling",
     "plot_sensitivity",

@@ -1,8 +1,9 @@
 """The verdict on a plan."""
 
 from dataclasses import dataclass
-from math import isfinite
+from math import degrees, isfinite
 
+from regrasp.display import table
 from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.exact import RESOLUTION
 
@@ -45,6 +46,17 @@ class Verification(ArrayValue):
     def ok(self) -> bool:
         """Whether the plan holds the object at every instant, inside every cone and limit."""
         return not self.violations
+
+    def _repr_html_(self) -> str:
+        """The verdict and what it rests on, for notebooks."""
+        verdict, *more = str(self).splitlines()
+        rows: list[list[object]] = [["verdict", verdict]]
+        rows += [["", line.strip()] for line in more]
+        if self.ok and isfinite(self.least_angle):
+            rows.append(["least angle margin [deg]", degrees(self.least_angle)])
+        if isfinite(self.worst_residual):
+            rows.append(["worst residual, of the forces [-]", self.worst_residual])
+        return table(["", "verified" if self.ok else "NOT verified"], rows)
 
     def __str__(self) -> str:
         if not self.ok:

@@ -3,6 +3,13 @@ import { Camera, turnable } from "./turning.js";
 
 const BACK = "#bbbbbb";
 
+// The part of a segment that is near: a locus may be without end.
+function clipped([a, b], placed, reach) {
+  const along = (k) => add(a, add(b, a, -1), k), near = [];
+  for (let k = 0; k <= 200; k++) if (size(placed(along(k / 200))) <= reach) near.push(k / 200);
+  return near.length > 1 ? [along(near[0]), along(near.at(-1))] : [a, b];
+}
+
 // Wrench space in the plane: the load, then the wrenches of the fingers tail to head; that the loop closes is equilibrium.
 export function loop_look(svg) {
   const camera = new Camera(-0.9, 0.45);
@@ -18,10 +25,10 @@ export function loop_look(svg) {
     const order = list.map((c, i) => i).sort((a, b) => away.has(list[b].name) - away.has(list[a].name) || a - b);
     let at = load;
     const tails = order.map((i) => { const tail = at; at = add(at, all[i]); return tail; });
-    const segment = answer.locus ? answer.locus.wrenches.map((w) => add(load, w[0])) : [];
-    const points = [[0, 0, 0], load, ...tails, at, ...segment], reach = (axes) => Math.max(...points.flatMap((p) => axes.map((a) => Math.abs(p[a])))) || 1;
-    const forces = reach([0, 1]), torques = Math.max(...points.map((p) => Math.abs(p[2])), 0);
-    const squeezed = torques > 0 ? forces / torques : 1, placed = (w) => [w[0], w[1], w[2] * squeezed];  // an axis of its own
+    const own = [[0, 0, 0], load, ...tails, at], forces = Math.max(...own.flatMap((p) => p.slice(0, 2).map(Math.abs))) || 1;
+    const torques = Math.max(...own.map((p) => Math.abs(p[2]))), squeezed = torques > 0 ? forces / torques : 1;
+    const placed = (w) => [w[0], w[1], w[2] * squeezed];  // an axis of its own
+    const segment = answer.locus ? clipped(answer.locus.wrenches.map((w) => add(load, w[0])), placed, 1.6 * forces) : [], points = [...own, ...segment];
     const seen = points.map(placed), low = [0, 1, 2].map((i) => Math.min(...seen.map((p) => p[i]))), high = [0, 1, 2].map((i) => Math.max(...seen.map((p) => p[i])));
     const longest = Math.max(...order.map((i) => size(placed(all[i])))) || 1;
     const cones = order.map((i, k) => {
@@ -61,7 +68,7 @@ export function loop_look(svg) {
     });
     const [x, y] = camera.at([0, 0, 0]);
     node(svg, "circle", { cx: x, cy: y, r: 3.5, fill: INK });
-    node(svg, "text", { x: 4, y: 13, "font-size": 12, fill: INK }, "wrenches, tail to head; the torque's axis has a scale of its own");
+    node(svg, "text", { x: 4, y: 13, "font-size": 12, fill: INK }, "wrenches, tail to head; torque on its own scale");
     node(svg, "text", { x: 4, y: height - 6, "font-size": 12, fill: GREY }, "drag or arrow keys turn it");
   }
   return (now) => { shown = now; draw(); };

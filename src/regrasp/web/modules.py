@@ -21,9 +21,13 @@ def module(*names: str) -> str:
 
 
 @cache
-def style() -> str:
-    """The style sheet of all pages."""
-    return _text("look.css")
+def style(*, whole: bool = True) -> str:
+    """The style sheet of all pages.
+
+    Args:
+        whole: for a page of our own; otherwise only what is inside ours, as in a notebook.
+    """
+    return (_text("page.css") if whole else "") + _text("look.css")
 
 
 def _text(name: str) -> str:

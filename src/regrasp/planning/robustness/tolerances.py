@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from regrasp.display import Pictured
+from regrasp.display import table
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, ArrayLike, finite, instance, not_huge, number, read_only
 from regrasp.mechanics.loads.load_set import LoadSet
@@ -56,7 +56,7 @@ class Tolerated(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Tolerances(ArrayValue, Pictured):
+class Tolerances(ArrayValue):
     """What forces withstand, and what some forces could answer.
 
     Args:
@@ -73,8 +73,6 @@ class Tolerances(ArrayValue, Pictured):
     stiffness: float
     first: Mapping[str, Failure]
     asked: "Asked" = field(compare=False)
-
-    _drawn_by = "regrasp.plots.surveys.tolerances:tolerances_png"
 
     @cached_property
     def answered(self) -> Tolerated:
@@ -111,6 +109,19 @@ class Tolerances(ArrayValue, Pictured):
         ]
         columns = ["quantity", "withstood", "answered", "unit", "finger", "how", "when"]
         return pandas.DataFrame(rows, columns=columns).set_index("quantity")
+
+    def _repr_html_(self) -> str:
+        """What is withstood, as a table for notebooks; ``answered`` is left out, since it takes seconds."""
+        rows: list[list[object]] = []
+        for key, unit in _UNITS.items():
+            if key == "stiffness":
+                rows.append([key, self.stiffness, unit, *self._failure(key)])
+                continue
+            values = np.ravel(getattr(self.withstood, key)).tolist()
+            for name, value in zip(self.names if key == "position" else ("",), values, strict=True):
+                words = f"{key} of {name}" if name else key
+                rows.append([words, value if value < inf else "any", unit, *self._failure(key)])
+        return table(["may be off", "withstood", "unit", "fails first", "how", "when"], rows)
 
     def _rows(self) -> list[tuple[str, str, float, float]]:
         mine, other = self.withstood, self.answered

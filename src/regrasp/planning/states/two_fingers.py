@@ -9,6 +9,7 @@ import numpy as np
 
 from regrasp.closed_form.choice import best_squeeze
 from regrasp.closed_form.locus import pair_frame, squeeze_interval
+from regrasp.display import table
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, finite, instance, number
 from regrasp.mechanics.contact import Contact
@@ -188,6 +189,23 @@ class EquilibriumLocus(ArrayValue):
     def _frame(self) -> tuple[float, float, float, float, float, float]:
         first, second = self.grasp.contacts
         return pair_frame(*_plain(first)[:2], *_plain(second)[:2], *_load(self.load))
+
+    def _repr_html_(self) -> str:
+        """Both forces and the margins at the ends and in the middle of the locus, for notebooks."""
+        if self.is_empty:
+            return table(["locus"], [["empty: no forces inside the cones balance the load"]])
+        low, high = self.interval
+        places = {"low end": low, "middle": (low + high) / 2, "high end": high}
+        first, second = self.grasp.names
+        head = ["", "squeeze [N]", f"|f| of {first} [N]", f"|f| of {second} [N]", "least angle margin [deg]"]
+        rows: list[list[object]] = []
+        for name, x in places.items():
+            if not isfinite(x):
+                rows.append([name, "without end", "", "", ""])
+                continue
+            least = float(np.degrees(self.margins(x).least_angle))
+            rows.append([name, x, *np.hypot(*self.forces(x).T).tolist(), least])
+        return table(head, rows, f"under {self.load!r}")
 
     def __repr__(self) -> str:
         names = ", ".join(self.grasp.names)

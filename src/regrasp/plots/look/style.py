@@ -46,6 +46,23 @@ def contact_colours(grasp: Grasp) -> dict[str, str]:
     return dict(zip(grasp.names, cycle(PALETTE), strict=False))
 
 
+_MARKS = ("o", "s", "^", "D", "v", "P")
+
+
+def marks(number: int, count: int) -> dict[str, Any]:
+    """A few marks by which a line over ``count`` points is told from others in a grey print.
+
+    Each line has them elsewhere, so that lines that lie on each other show both.
+    """
+    step = max(1, count // 4)
+    first = int(step * (0.15 + 0.28 * (number % 3) + 0.14 * (number // 3 % 2)))
+    return {
+        "marker": _MARKS[number % len(_MARKS)],
+        "markersize": 3.4,
+        "markevery": (min(first, count - 1), step),
+    }
+
+
 def refuse_space(dimension: int) -> None:
     """Raise ``InvalidInput`` for anything that is not planar."""
     if dimension != 2:

@@ -16,6 +16,7 @@ from regrasp.plots.look.style import (
     label_axis,
     legend,
     literal,
+    marks,
     steady,
 )
 from regrasp.plots.look.units import SI, Units
@@ -41,11 +42,13 @@ def plot_force_components(transition: Transition, ax: Axes | None = None, *, uni
     axes = "xyz"[: transition.grasp.dimension]
     for i, (name, colour) in enumerate(colours.items()):
         for k, axis in enumerate(axes):
-            ax.plot(
-                t, forces[:, i, k], color=colour, linestyle=_DASHES[k], linewidth=1.3, gid=f"f{axis} {name}"
-            )
+            look = {"color": colour, "linestyle": _DASHES[k], "linewidth": 1.3} | marks(i, t.size)
+            ax.plot(t, forces[:, i, k], gid=f"f{axis} {name}", **look)
     _finish(ax, transition, forces, units)
-    keys = [Line2D([], [], color=c, linewidth=1.3, label=literal(n)) for n, c in colours.items()]
+    keys = [
+        Line2D([], [], color=c, linewidth=1.3, label=literal(n), **(marks(i, 1) | {"markevery": None}))
+        for i, (n, c) in enumerate(colours.items())
+    ]
     dashes = [
         Line2D([], [], color=INK, linestyle=_DASHES[k], linewidth=1.3, label=f"$f_{a}$")
         for k, a in enumerate(axes)
@@ -81,7 +84,7 @@ def plot_wrench_components(
     t, d = _times(transition), transition.grasp.dimension
     wrench = transition.wrenches(t)[:, i]
     for k, axis in enumerate("xyz"[:d]):
-        ax.plot(t, wrench[:, k], color=PALETTE[k], linewidth=1.4, label=f"$f_{axis}$")
+        ax.plot(t, wrench[:, k], color=PALETTE[k], linewidth=1.4, label=f"$f_{axis}$", **marks(k, t.size))
     lines = ax.get_lines()
     right = draw_torques(ax, t, wrench[:, d:], units)
     _finish(ax, transition, wrench[:, :d], units)
@@ -97,7 +100,7 @@ def draw_torques(ax: Axes, t: Array, torques: Array, units: Units, **look: Any) 
     for k, column in enumerate(torques.T):
         label, colour = (r"$\tau$", PALETTE[2]) if planar else (rf"$\tau_{'xyz'[k]}$", PALETTE[k])
         shown = label if k + 1 < len(torques.T) else f"{label} (right)"
-        base = {"color": colour, "linestyle": "--", "linewidth": 1.4, "label": shown}
+        base = {"color": colour, "linestyle": "--", "linewidth": 1.4, "label": shown} | marks(k, t.size)
         lines += right.plot(t, column, **(base | look))
     steady(right, torques)
     right.spines["right"].set_visible(True)

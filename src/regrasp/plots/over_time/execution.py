@@ -20,6 +20,7 @@ from regrasp.plots.look.style import (
     label_axis,
     legend,
     literal,
+    marks,
     new_figure,
     tidy,
 )
@@ -37,8 +38,9 @@ def plot_measured_forces(execution: Execution, ax: Axes | None = None, *, units:
     instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     measured, planned = (np.linalg.norm(f, axis=2) for f in (execution.forces, execution.planned))
-    for name, colour, column in zip(execution.names, cycle(PALETTE), measured.T, strict=False):
-        ax.plot(execution.times, column, color=colour, linewidth=1.6, label=literal(name))
+    for i, (name, colour) in enumerate(zip(execution.names, cycle(PALETTE), strict=False)):
+        own = marks(i, len(measured))
+        ax.plot(execution.times, measured[:, i], color=colour, linewidth=1.6, label=literal(name), **own)
     for column in planned.T:
         ax.plot(execution.times, column, color=INK, linewidth=0.8, linestyle=(0, (2, 2)))
     keys = [*ax.get_lines()[: len(execution.names)]]
@@ -60,8 +62,9 @@ def plot_friction_use(execution: Execution, ax: Axes | None = None, *, units: Un
     instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     measured, planned = execution.margins.friction_use, execution.planned_margins.friction_use
-    for colour, column, wanted in zip(cycle(PALETTE), measured.T, planned.T, strict=False):
-        ax.plot(execution.times, column, color=colour, linewidth=1.6)
+    for i, (column, wanted) in enumerate(zip(measured.T, planned.T, strict=True)):
+        colour = PALETTE[i % len(PALETTE)]
+        ax.plot(execution.times, column, color=colour, linewidth=1.6, **marks(i, len(column)))
         ax.plot(execution.times, wanted, color=INK, linewidth=0.8, linestyle=(0, (2, 2)))
     ax.axhline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     _over_time(ax, execution, units)
@@ -83,8 +86,9 @@ def plot_slip(execution: Execution, ax: Axes | None = None, *, units: Units = SI
     ax = axes_or_new(ax)
     size = max(float(np.linalg.norm(c.position)) for c in execution.contacts)
     least = 1e-6 * size
-    for colour, column in zip(cycle(PALETTE), execution.slip.T, strict=False):
-        ax.semilogy(execution.times, np.maximum(column, least), color=colour, linewidth=1.4)
+    for i, column in enumerate(execution.slip.T):
+        look = {"color": PALETTE[i % len(PALETTE)], "linewidth": 1.4} | marks(i, len(column))
+        ax.semilogy(execution.times, np.maximum(column, least), **look)
     ax.semilogy(execution.times, np.maximum(execution.drift, least), color=INK, linewidth=1.0, label="drift")
     ax.axhline(SLIPPED * size, color=GREY, linewidth=0.9, linestyle="--")
     _over_time(ax, execution, units)

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import instance
 from regrasp.plans.transition import Transition
-from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend, steady
+from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend, marks, steady
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.over_time.components import draw_torques
 
@@ -38,7 +38,8 @@ def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = 
     look: dict[str, Any] = {"linewidth": 1.4, "marker": "." if t.size <= 60 else "", "markersize": 4}
     d = transition.grasp.dimension
     for axis, name in enumerate("xyz"[:d]):
-        ax.plot(t, load[:, axis], color=PALETTE[axis], label=f"$f_{name}$", **look)
+        own = look if look["marker"] else look | marks(axis, t.size)
+        ax.plot(t, load[:, axis], color=PALETTE[axis], label=f"$f_{name}$", **own)
     lines = draw_torques(ax, t, load[:, d:], units, **look)
     ax.set_xlim(0, transition.duration)
     label_axis(ax.xaxis, "$t$", units.time, transition.duration)

@@ -7,7 +7,16 @@ from matplotlib.axes import Axes
 
 from regrasp.mechanics.checks import Array, choice, instance
 from regrasp.plans.transition import Transition
-from regrasp.plots.look.style import GREY, INK, axes_or_new, contact_colours, label_axis, legend, literal
+from regrasp.plots.look.style import (
+    GREY,
+    INK,
+    axes_or_new,
+    contact_colours,
+    label_axis,
+    legend,
+    literal,
+    marks,
+)
 from regrasp.plots.look.units import SI, Units
 
 _SAMPLES = 201
@@ -30,7 +39,7 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
     ax = axes_or_new(ax)
     t = _times(transition)
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
-    _lines(ax, transition, t, magnitudes, units)
+    draw_lines(ax, transition, t, magnitudes, units)
     largest = float(magnitudes.max())
     _linear_limits(ax, transition, t, magnitudes, _SHOWN * largest)
     _limits(ax, transition, force_limits(transition), _SHOWN * largest)
@@ -53,7 +62,7 @@ def plot_angles(transition: Transition, ax: Axes | None = None, *, units: Units 
     ax = axes_or_new(ax)
     t = _times(transition)
     limits = np.array([contact.half_angle for contact in transition.grasp])
-    _lines(ax, transition, t, np.degrees(limits - transition.margins(t).angle), units)
+    draw_lines(ax, transition, t, np.degrees(limits - transition.margins(t).angle), units)
     one = len(set(limits)) == 1
     colours = contact_colours(transition.grasp)
     for name, limit in zip(transition.grasp.names, np.degrees(limits), strict=True):
@@ -94,7 +103,7 @@ def plot_margins(
         values, least = np.degrees(margins.angle), np.degrees(known.least_angle)
     else:
         values, least = margins.force, known.least_force
-    _lines(ax, transition, t, values, units)
+    draw_lines(ax, transition, t, values, units)
     ends = [0.0, transition.duration]
     ax.plot(ends, [least, least], color=INK, linewidth=0.9, linestyle="--", gid="least", zorder=2.5)
     ax.relim()
@@ -113,10 +122,10 @@ def _times(transition: Transition) -> Array:
     return np.linspace(0, transition.duration, _SAMPLES)
 
 
-def _lines(ax: Axes, transition: Transition, t: Array, values: Array, units: Units) -> None:
+def draw_lines(ax: Axes, transition: Transition, t: Array, values: Array, units: Units) -> None:
     """A line per contact from (m, n) values, the axis of time and the legend."""
-    for (name, colour), column in zip(contact_colours(transition.grasp).items(), values.T, strict=True):
-        ax.plot(t, column, color=colour, linewidth=1.4, label=literal(name))
+    for i, (name, colour) in enumerate(contact_colours(transition.grasp).items()):
+        ax.plot(t, values[:, i], color=colour, linewidth=1.4, label=literal(name), **marks(i, t.size))
     longest = max(float(np.max(line.get_xdata())) for line in ax.get_lines())  # of all plans on these axes
     ax.set_xlim(0, longest)
     label_axis(ax.xaxis, "$t$", units.time, longest)

@@ -24,6 +24,7 @@ from regrasp.plots.look.view import facing_view
 from regrasp.plots.over_time.components import plot_force_components, plot_wrench_components
 from regrasp.plots.over_time.load import plot_load
 from regrasp.plots.over_time.magnitudes import plot_angles, plot_magnitudes, plot_margins
+from regrasp.plots.over_time.rates import plot_rates
 from regrasp.plots.over_time.scaling import plot_scaling
 from regrasp.plots.wrench_space.iso_torque import plot_iso_torque
 from regrasp.plots.wrench_space.locus import plot_locus
@@ -82,9 +83,10 @@ def figures(
 ) -> dict[str, Figure]:
     """Every figure of a transition by file stem.
 
-    ``overview``, ``states``, ``object``, ``time_scaling``, ``magnitudes``, ``angles``, ``margins``; ``load``
-    where it varies. In the plane, of a removal or an addition, ``iso_torque``, ``wrench_loop``,
-    ``wrench_paths``, and ``locus`` where two contacts remain; in space ``components`` and ``wrenches``.
+    ``overview``, ``states``, ``object``, ``time_scaling``, ``magnitudes``, ``angles``, ``margins``; ``rates``
+    where they were limited, ``load`` where it varies. In the plane, of a removal or an addition,
+    ``iso_torque``, ``wrench_loop``, ``wrench_paths``, and ``locus`` where two contacts remain; in space
+    ``components`` and ``wrenches``.
 
     Args:
         transition: the transition to draw.
@@ -102,6 +104,8 @@ def figures(
         "angles": plot_angles(transition, units=units).figure,
         "margins": plot_margins(transition, units=units).figure,
     }
+    if transition.record.rate_limits:
+        drawn["rates"] = plot_rates(transition, units=units).figure
     if transition.load_varies:
         drawn["load"] = plot_load(transition, units=units).figure
     if transition.grasp.dimension == 3:

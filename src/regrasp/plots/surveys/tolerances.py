@@ -1,15 +1,12 @@
 """How far things may be off, withstood beside answered."""
 
 from math import degrees, inf, isfinite, pi
-from typing import cast
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from regrasp.mechanics.checks import instance
 from regrasp.planning.robustness.tolerances import Tolerances
-from regrasp.plots.look.png import png
 from regrasp.plots.look.style import GREY, INK, PALE, PALETTE, SMALL, axes_or_new, legend, literal
 from regrasp.plots.look.units import SI, Units
 
@@ -47,11 +44,6 @@ def plot_tolerances(tolerances: Tolerances, ax: Axes | None = None, *, units: Un
     ]
     legend(ax, handles, ncols=2, alignment="left")
     return ax
-
-
-def tolerances_png(tolerances: Tolerances) -> bytes:
-    """``plot_tolerances`` as a PNG image, for display in notebooks."""
-    return png(cast(Figure, plot_tolerances(tolerances).figure))
 
 
 def _rows(tolerances: Tolerances, units: Units) -> list[tuple[str, float, float, str]]:

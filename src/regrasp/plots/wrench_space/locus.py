@@ -21,6 +21,7 @@ from regrasp.plots.look.style import (
     label_axis,
     legend,
     literal,
+    marks,
 )
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.wrench_space.force_limits import draw_limits, limited_interval, limits_of
@@ -75,8 +76,8 @@ def plot_locus(
     ax.plot(
         x, combine.reduce(values, axis=1), color=INK, linewidth=4, alpha=0.25, label=sought.together, zorder=1
     )
-    for name, column in zip(locus.grasp.names, values.T, strict=True):
-        ax.plot(x, column, color=colours[name], linewidth=1.3, label=literal(name))
+    for i, (name, column) in enumerate(zip(locus.grasp.names, values.T, strict=True)):
+        ax.plot(x, column, color=colours[name], linewidth=1.3, label=literal(name), **marks(i, len(x)))
     if sought.maximise:
         ax.axhline(0, color=GREY, linewidth=0.7)
         bottom, top = ax.get_ylim()
