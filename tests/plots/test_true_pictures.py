@@ -64,6 +64,18 @@ def test_force_limits_are_drawn_where_they_are_near(removal):
     assert line.get_ydata()[0] <= 9.0
 
 
+def test_rate_limits_are_drawn_in_figures_and_pages(tmp_path):
+    bent = rg.plan_removal(STATE, "P3", duration=1.0, rate_limit=5.0)
+    ax = plots.plot_rates(bent)
+    (line,) = artists(ax, "limit")
+    assert line.get_ydata()[0] == 5.0
+    assert max(np.max(each.get_ydata()) for each in ax.get_lines()) <= 5.0 * (1 + 1e-9)
+    page = tmp_path / "bent.html"
+    plots.html(bent, page)
+    assert '"rate_limit":5.0' in page.read_text(encoding="utf-8").replace(" ", "")
+    assert artists(plots.plot_rates(bent, rate_limit=[5, 6, 1e9]), "limit P3") == [], "far above"
+
+
 def test_two_plans_on_one_axes_keep_their_own_limits(removal):
     longer = rg.plan_removal(STATE, "P3", duration=2.0, objective="effort")
     ax = plots.plot_margins(removal)

@@ -17,7 +17,7 @@ const drawing = (name, kind = "") => {
 // A plan in the plane, playing. shown: title, caption, units, rings, frames, steps, times, lines; see the page's writer.
 function open_player(root, shown) {
   let k = 0, playing = 0, charts = [];
-  const stage = drawing("The object and its fingers in the world", "stage"), margins = drawing("Angle margins over time"), forces = drawing("Forces over time");
+  const stage = drawing("The object and its fingers in the world", "stage"), margins = drawing("Angle margins over time"), forces = drawing("Forces over time"), rates = drawing("Rates of force over time");
   const play = make("button", { type: "button", id: "play", textContent: "Play" });
   const slider = make("input", { type: "range", id: "time", min: 0, max: shown.frames.length - 1, step: 1, value: 0 });
   slider.setAttribute("aria-label", "time");
@@ -32,7 +32,7 @@ function open_player(root, shown) {
   });
   const key = make("p", { className: "key", textContent: shown.key });
   const left = make("div", {}, stage, shown.frames.length > 1 ? make("div", { className: "row" }, play, make("span", { className: "grow" }, slider), now) : "", fingers, key);
-  const right = make("div", {}, margins, forces, steps);
+  const right = make("div", {}, margins, forces, rates, steps);
   root.replaceChildren(make("div", { className: "regrasp" }, make("h1", { textContent: shown.title }), make("p", { className: "verdict", textContent: shown.caption }), left, right));
 
   let view = null;
@@ -43,13 +43,15 @@ function open_player(root, shown) {
     view = new View(width, height, [-shown.reach, -shown.reach, shown.reach, shown.reach], 30);
   }
   function sides() {
-    margins.replaceChildren(); forces.replaceChildren(); charts = [];
-    margins.style.display = forces.style.display = shown.times.length > 1 ? "" : "none";
+    for (const svg of [margins, forces, rates]) { svg.replaceChildren(); svg.style.display = shown.times.length > 1 ? "" : "none"; }
+    charts = [];
     if (shown.times.length < 2) return;
     const width = right.clientWidth || 400, lines = (key) => shown.lines.map((l, i) => ({ values: l[key], colour: colour(i), name: l.name, dash: DASHES[i % 4] }));
-    const rules = shown.lines.flatMap((l, i) => (l.limit === null ? [] : [{ value: l.limit, colour: colour(i) }]));
+    const of = (key) => shown.lines.flatMap((l, i) => ((l[key] ?? null) === null ? [] : [{ value: l[key], colour: colour(i) }])), rules = of("limit");
     charts.push(chart(margins, { width, height: 190, xs: shown.times, title: "angle margin", unit: "deg", xunit: shown.units.time, lines: lines("margins") }));
     charts.push(chart(forces, { width, height: 190, xs: shown.times, title: rules.length ? "force, dashed its limit" : "force", unit: shown.units.force, xunit: shown.units.time, lines: lines("forces"), rules }));
+    if (shown.lines.every((l) => l.rates)) charts.push(chart(rates, { width, height: 150, xs: shown.times, title: "rate of force, dashed its limit", unit: `${shown.units.force}/${shown.units.time}`, xunit: shown.units.time, lines: lines("rates"), rules: of("rate_limit") }));
+    else rates.style.display = "none";
   }
   function draw() {
     if (!view) frame();
