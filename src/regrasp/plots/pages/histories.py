@@ -13,8 +13,8 @@ _SAMPLES, _MOST = 41, 1200  # of a step, and of a plan
 class Histories(NamedTuple):
     """times [s], and for each finger its ``name``, ``margins`` [deg], ``forces`` [N] and ``limit`` [N].
 
-    Where any step was planned under rate limits ``rates`` and ``rate_limit`` [N/s], too. None where a finger is
-    in the air, has no force and so no angle, or has no limit.
+    Where any step was planned under rate limits ``rates`` and ``rate_limit`` [N/s], too. None where a finger
+    is in the air, has no force and so no angle, or has no limit.
     """
 
     times: list[float]
