@@ -42,7 +42,7 @@ def drawn() -> dict[str, Any]:
     )
     plan = rg.plan_regrasp(ellipse, *ends, rg.Wrench([0, -3.0]), friction=0.5, goal_orientation=1.5)
     found["regrasp"] = plots.plot_regrasp(plan, ellipse)
-    found["rates"] = plots.plot_rates(removal, rate_limit=18.0).figure
+    found["rates"] = plots.plot_rates(removal, rate_limit=8.0).figure
     found["components"] = plots.plot_force_components(removal).figure
     return found
 

@@ -628,7 +628,7 @@ def test_labels_name_the_units_they_are_told(removal, locus):
         ax = function(value, units=units)
         labels = [ax.get_xlabel(), ax.get_ylabel(), *([ax.get_zlabel()] if isinstance(ax, Axes3D) else [])]
         named = {label.split("[")[1].rstrip("]") for label in labels}
-        assert named <= {"mm", "kN", "ms", "kN mm", "deg", "-"}, function
+        assert named <= {"mm", "kN", "ms", "kN mm", "kN/ms", "deg", "-"}, function
     ax = plots.plot_iso_torque(removal.grasp["P1"], torques=[3.0], units=units)
     assert "3 kN mm" in {text.get_text() for text in ax.texts}
     for figure in plots.figures(removal, units=units).values():
