@@ -39,6 +39,7 @@ class Grasp(ArrayValue):
     """
 
     contacts: tuple[Contact, ...]
+    _repr_html_ = contacts_table
 
     def __init__(self, contacts: Iterable[Contact]) -> None:
         given = items(contacts, "contacts of a grasp")
@@ -111,9 +112,8 @@ class Grasp(ArrayValue):
             contact: name or index; a negative one counts from the end.
         """
         if isinstance(contact, str):
-            for i, known in enumerate(self.contacts):
-                if known.name == contact:
-                    return i
+            if contact in self.names:
+                return self.names.index(contact)
             names = ", ".join(map(one_line, self.names))
             raise InvalidInput(f"no contact {shown(contact)} in this grasp; it has {names}")
         if isinstance(contact, bool) or not isinstance(contact, (int, np.integer)):
@@ -321,9 +321,6 @@ class Grasp(ArrayValue):
         if len(self) == 1:
             return f"turning about {self.names[0]}"
         return f"turning about the line through {self.names[0]} and {self.names[1]}"
-
-    def _repr_html_(self) -> str:
-        return contacts_table(self.contacts)
 
     def __repr__(self) -> str:
         inside = "".join(f"\n  {contact!r}," for contact in self.contacts)
