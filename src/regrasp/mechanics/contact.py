@@ -1,6 +1,6 @@
 """A frictional point contact."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan, hypot
@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from regrasp.display import table
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number, point, read_only
 from regrasp.mechanics.limits.force_limits import ForceLimits
@@ -216,3 +217,16 @@ def _check_name(name: object) -> None:
         raise InvalidInput(f"a contact's name must be a non-empty string, got {shown(name)}")
     if not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name):
         raise InvalidInput(f"a contact's name must be Unicode text, got {shown(name)} with half a character")
+
+
+def contacts_table(contacts: Iterable[Contact]) -> str:
+    """Names, places, normals and limits, a row for each contact."""
+    given = tuple(contacts)
+    axes = "xyz"[: given[0].position.size]
+    head = ["finger", *(f"{a} [m]" for a in axes), *(f"n{a}" for a in axes), "friction", "max force [N]"]
+    limits = ["none" if c.max_force is None else c.max_force for c in given]
+    rows = [
+        [c.name, *c.position.tolist(), *c.normal.tolist(), c.friction, limit]
+        for c, limit in zip(given, limits, strict=True)
+    ]
+    return table(head, rows)

@@ -11,11 +11,10 @@ import numpy as np
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, finite, items, read_only
 from regrasp.mechanics.cones import Cones
-from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.contact import Contact, contacts_table
 from regrasp.mechanics.limits.limit_rows import LimitRows, stacked
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries, listed
-from regrasp.mechanics.tables import contacts_table
 from regrasp.mechanics.value import ArrayValue, kept, one_line
 from regrasp.mechanics.wrench import torque
 
