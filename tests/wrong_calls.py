@@ -88,6 +88,7 @@ KINDS: dict[str, Sequence[Any]] = {
     "some or all": tuple(wrong for wrong in NOT_A_COUNT if wrong is not None),
     "seed": [value for value in NOT_A_COUNT if value is not HUGE],
     "value": NOT_A_VALUE,
+    "end": tuple(wrong for wrong in NOT_A_VALUE if wrong is not None),
     "word": (*ANYTHING, None, 3, nan, HUGE, True, [], ["angle"], "Angle", b"angle"),
     "name": ("", " ", b"x", OBJECT, {}, 1j, 3, nan, HUGE, True, [], ["a"]),
     "contact of": (*ANYTHING, None, 1.0, nan, HUGE, -HUGE, 99, -99, [], True, "Q"),
@@ -555,6 +556,8 @@ def rows() -> dict[str, Row]:
             rg.plan_regrasp,
             {"outline": outline, **asked, **small, "motions": True, "tip_radius": 0.01, "clearance": 0.01},
             {
+                "start": "end",
+                "goal": "end",
                 "motions": "flag",
                 "tip_radius": "positive",
                 "clearance": "positive",

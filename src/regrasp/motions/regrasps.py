@@ -12,6 +12,7 @@ from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.motions.open_ends import End, best_between, is_open
 from regrasp.motions.shut_in import ShutIn
 from regrasp.plans.regrasp_plan import RegraspPlan
 
@@ -29,8 +30,8 @@ _SAME = 1e-6  # of the size of the grasps: points nearer than that are one
 @overload
 def plan_regrasp(
     outline: "Outline | Mesh",
-    start: Grasp,
-    goal: Grasp,
+    start: End,
+    goal: End,
     load: Wrench,
     *,
     motions: Literal[False] = False,
@@ -41,8 +42,8 @@ def plan_regrasp(
 @overload
 def plan_regrasp(
     outline: "Outline | Mesh",
-    start: Grasp,
-    goal: Grasp,
+    start: End,
+    goal: End,
     load: Wrench,
     *,
     motions: Literal[True],
@@ -58,8 +59,8 @@ def plan_regrasp(
 
 def plan_regrasp(
     outline: "Outline | Mesh",
-    start: Grasp,
-    goal: Grasp,
+    start: End,
+    goal: End,
     load: Wrench,
     *,
     motions: bool = False,
@@ -85,6 +86,10 @@ def plan_regrasp(
     contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan has
     ``rotations``.
 
+    An end may be left open, as several grasps or None: the regrasp of fewest moves is taken, and of these the
+    one of the widest margin. None stands for the few grasps of least largest normal force that
+    ``choose_grasp`` finds under the load, in the orientation asked for.
+
     With ``motions`` the best sequence is taken whose free fingers have ways (``plan_motions``). Where a
     finger of one finds none, those are next that lack the hold meanwhile, or those before it, or after it.
 
@@ -96,8 +101,9 @@ def plan_regrasp(
 
     Args:
         outline: an ``Outline``, or a ``Mesh`` in space.
-        start: three contacts, in space four, relative to the centre of mass [m].
-        goal: as many, at the end.
+        start: three contacts, in space four, relative to the centre of mass [m]; several such grasps, or on
+            an outline None, of which one is chosen.
+        goal: as many, at the end; as ``start``.
         load: a force through the centre of mass, seen from the object before it turns [N].
         motions: whether the fingers' ways through the air are planned, too; the best regrasp that has them is
             then ``plan`` of what is returned.
@@ -128,6 +134,14 @@ def plan_regrasp(
     given: dict[str, Any] = {name: value for name, value in ways.items() if value is not None}
     if not isinstance(motions, bool):
         raise InvalidInput(f"motions must be True or False, got {shown(motions)}")
+    if is_open(start) or is_open(goal):
+
+        def between(one: Grasp, other: Grasp) -> Any:
+            return plan_regrasp(outline, one, other, load, motions=motions, **given, **options)  # type: ignore[call-overload]
+
+        found: RegraspPlan | Motions = best_between(between, outline, start, goal, load, options)
+        return found
+    assert isinstance(start, Grasp) and isinstance(goal, Grasp)
     if not motions:
         if given:
             raise InvalidInput(f"{next(iter(given))} is of ways through the air; give motions=True with it")

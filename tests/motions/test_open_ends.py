@@ -1,0 +1,88 @@
+"""Regrasps of which an end is left open, against those between every two grasps."""
+
+from math import pi
+
+import pytest
+
+import regrasp as rg
+from refusals import refusal
+
+pytestmark = pytest.mark.laws
+
+ELLIPSE = rg.Outline.ellipse(2, 1)
+LOAD = rg.Wrench([0, -3])
+OPTIONS = {"friction": 0.5, "candidates": 16, "orientations": 1}
+
+
+def grasp(*shares: float) -> rg.Grasp:
+    return rg.Grasp(ELLIPSE.contact_at(s * ELLIPSE.length, friction=0.5, name=f"{s:g}") for s in shares)
+
+
+START = grasp(0.1, 0.45, 0.8)
+GOALS = [grasp(0.2, 0.55, 0.9), grasp(0.1, 0.4, 0.7), grasp(0.1, 0.45, 0.7)]
+
+
+def rank(plan: rg.RegraspPlan) -> tuple[int, float]:
+    return len(plan.moves), -plan.margin
+
+
+def test_of_several_goals_the_one_of_fewest_moves_and_widest_margin_is_taken() -> None:
+    each = [rg.plan_regrasp(ELLIPSE, START, goal, LOAD, **OPTIONS) for goal in GOALS]  # type: ignore[arg-type]
+    assert len({rank(plan) for plan in each}) > 1
+    found = rg.plan_regrasp(ELLIPSE, START, GOALS, LOAD, **OPTIONS)  # type: ignore[arg-type]
+    assert found == min(each, key=rank)
+
+
+def test_of_several_starts_too_and_those_without_a_way_do_not_count() -> None:
+    found = rg.plan_regrasp(ELLIPSE, [*GOALS, START], START, LOAD, **OPTIONS)  # type: ignore[arg-type]
+    assert len(found.moves) == 0
+    impossible = {**OPTIONS, "least_margin": 0.44}
+    with pytest.raises(rg.Infeasible) as one:
+        rg.plan_regrasp(ELLIPSE, START, GOALS[0], LOAD, **impossible)  # type: ignore[arg-type]
+    with pytest.raises(rg.Infeasible) as three:
+        rg.plan_regrasp(ELLIPSE, START, GOALS, LOAD, **impossible)  # type: ignore[arg-type]
+    assert str(three.value) == f"{one.value}; nor for 2 other pairs of grasps"
+
+
+@pytest.mark.parametrize("angle", [0.0, pi / 2])
+def test_a_goal_left_out_is_chosen_and_holds_in_the_orientation_asked_for(angle: float) -> None:
+    found = rg.plan_regrasp(ELLIPSE, START, None, LOAD, friction=0.5, goal_orientation=angle)
+    assert rg.verify(found).ok
+    assert float(found.orientation(found.duration)) % (2 * pi) == pytest.approx(angle)
+    last = found.steps[-1].end
+    assert len([f for f in last.forces if f.any()]) >= 2
+    assert last.load.force == pytest.approx(LOAD.rotated(-angle).force)
+
+
+def test_fingers_move_through_the_air_to_the_goal_that_is_taken() -> None:
+    found = rg.plan_regrasp(
+        ELLIPSE,
+        START,
+        GOALS[1:],
+        LOAD,
+        motions=True,
+        tip_radius=0.05,
+        clearance=0.02,
+        **OPTIONS,  # type: ignore[arg-type]
+    )
+    assert (
+        rank(found.plan)
+        == min(
+            rank(rg.plan_regrasp(ELLIPSE, START, goal, LOAD, min_distance=0.12, **OPTIONS))  # type: ignore[arg-type]
+            for goal in GOALS[1:]
+        )
+    )
+
+
+def test_open_ends_that_mean_nothing_are_refused() -> None:
+    box = rg.Mesh.box(1, 1, 1)
+    for given, words in (
+        ({"goal": []}, "goal must be a Grasp, several of them, or None for any; got []"),
+        ({"goal": [START, 3]}, "goal must be a Grasp, several of them"),
+        ({"start": "any"}, "start must be a Grasp, several of them"),
+        ({"goal": None, "weights": rg.RegraspWeights()}, "give one start and one goal"),
+        ({"goal": [START] * 101}, "1 starts and 101 goals are more than 100 pairs"),
+        ({"outline": box, "goal": None}, "goal is chosen on outlines only"),
+    ):
+        call = {"outline": ELLIPSE, "start": START, "goal": START, "load": LOAD, **OPTIONS, **given}
+        assert words in str(refusal(lambda call=call: rg.plan_regrasp(**call)))  # type: ignore[misc]
