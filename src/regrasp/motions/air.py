@@ -8,7 +8,7 @@ import numpy as np
 from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mesh.mesh import Mesh
-from regrasp.motions.apart import apart
+from regrasp.motions.geometry.apart import apart
 from regrasp.motions.planar_space import PlanarSpace
 from regrasp.motions.shut_in import ShutIn
 from regrasp.motions.solid_space import SolidSpace

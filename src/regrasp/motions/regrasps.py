@@ -141,7 +141,8 @@ def plan_regrasp(
 
         found: RegraspPlan | Motions = best_between(between, outline, start, goal, load, options)
         return found
-    assert isinstance(start, Grasp) and isinstance(goal, Grasp)
+    assert isinstance(start, Grasp)
+    assert isinstance(goal, Grasp)
     if not motions:
         if given:
             raise InvalidInput(f"{next(iter(given))} is of ways through the air; give motions=True with it")

@@ -9,10 +9,10 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mesh.closest import at, touching
 from regrasp.mesh.mesh import Mesh
-from regrasp.motions.apart import apart
 from regrasp.motions.bounds import Distance, keeps, least, segments
+from regrasp.motions.geometry.apart import apart
+from regrasp.motions.geometry.tightening import tightened
 from regrasp.motions.roadmap import Roadmap
-from regrasp.motions.tightening import tightened
 
 _ROOM = 1 / 4  # of the clearance, kept besides it for roundings of corners
 _FINE = 1e-3  # of the clearance: a tip that touches may be inside the object by as much

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.motions.apart import apart
 from regrasp.motions.bounds import keeps, least, segments
+from regrasp.motions.geometry.apart import apart
 from regrasp.motions.rounded import FASTEST, RoundedWay
 
 _STARTS = 24  # tried between the earliest and the one after everything else

@@ -1,0 +1,1 @@
+"""Distances and paths, whoever goes there."""
