@@ -7,13 +7,15 @@
     objective  x'P x + q'x + b'z = 0   the same sum with every term positive
 
 X and Z are the ``units`` of unknowns and duals: sizes that matter where these are themselves near zero. The
-weight w leaves little of the terms: an answer far away, where 1e9 - 1e9 is to be 1, is
-not right because the miss is small beside 1e9. A second-order cone is one row: its unit is the length of
-those of its rows, and s_i z_i its s'z. So each measure is the same whatever the units of rows, unknowns and
-objective, and no number elsewhere makes a miss look small. z is taken where it is put inside K*: what that
-moves shows in the columns.
+weight w leaves of the terms no more than their rounding: an answer far away, where 1e9 - 1e9 is to be 1, is
+not right because the miss is small beside 1e9. Where rounding of the terms is all that is left of a unit,
+nothing can be said of an answer, and primal is infinite. A second-order cone is one row: its unit is the
+length of those of its rows, and s_i z_i its s'z. So each measure is the same whatever the units of rows,
+unknowns and objective, and no number elsewhere makes a miss look small. z is taken where it is put inside
+K*: what that moves shows in the columns.
 """
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +23,9 @@ import numpy as np
 from regrasp.programs.judging.terms import largest, most, reciprocal
 from regrasp.programs.judging.units import own_units_of_columns, units_of_unknowns, weight_of_terms
 from regrasp.programs.program import Array, Program
+
+ROUNDING = 2.0**-45
+"""Of a sum of terms; a unit below it says nothing."""
 
 
 class Audit(NamedTuple):
@@ -47,7 +52,7 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
     terms, cones, b, q = program.terms, program.cones, program.b, program.q
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         unknowns, floors = units_of_unknowns(program)
-        weight = weight_of_terms(program)
+        weight, lost = weight_of_terms(program), False
         size_x, size_b = np.abs(x), np.abs(b)
         sizes = np.maximum(size_x, unknowns)
         own_rows = terms.abs_A @ size_x
@@ -61,13 +66,15 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
         gradient = np.abs(px + q + inside @ terms.A)
         own = terms.abs_P @ size_x + size_z @ terms.abs_A
         of_columns = own_units_of_columns(program, unknowns)
+        if weight < 1:
+            lost = _has_lost(size_b + floors, own_rows) or _has_lost(of_columns, own)
         per_dual = cones.units(terms.in_rows(reciprocal(of_columns + own)))
         both = np.abs(cones.products(s, inside)) * per_dual
         quadratic, linear = float(x @ px), float(q @ x)
         gap = abs(quadratic + linear + float(b @ inside))
         of_gap = float(sizes @ (terms.abs_P @ sizes + np.abs(q)) + size_b @ size_z)
         return Audit(
-            largest(excess, of_rows),
+            inf if lost else largest(excess, of_rows),
             largest(gradient, of_columns + weight * own),
             largest(both, whole_rows),
             gap / of_gap if gap else 0.0,
@@ -77,3 +84,8 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
             most(gradient),
             gap,
         )
+
+
+def _has_lost(units: Array, sizes: Array) -> bool:
+    """Whether a unit that is known is less than the rounding of terms of these sizes."""
+    return bool(((units > 0) & (units < ROUNDING * sizes)).any())

@@ -1,0 +1,53 @@
+"""No lie gets through: random programs in random units, whose truth is known by construction."""
+
+import logging
+
+import numpy as np
+import pytest
+from test_judged_by_their_own_units import program, zero
+
+from known_programs import is_a_lie, known
+from regrasp.programs import Status, available_backends, solve
+from regrasp.programs.facts import BACKENDS
+from regrasp.programs.judging.audit import ROUNDING, audited
+from regrasp.programs.judging.units import OWN
+
+pytestmark = pytest.mark.laws
+SEEDS = {"auto": 120, "proxqp": 12, "scs": 24, "qpalm": 60, "osqp": 60, "cvxpy": 4}
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("backend", ["auto", *available_backends()])
+def test_no_back_end_is_believed_where_it_errs(backend: str, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.ERROR, "regrasp.programs")  # which back end was not believed
+    takes_cones = backend == "auto" or BACKENDS[backend].second_order
+    cases = {seed: known(seed) for seed in range(SEEDS.get(backend, 240))}
+    asked = {k: case for k, case in cases.items() if takes_cones or not case.program.has_second_order}
+    answers = {seed: solve(case.program, backend, throw=False) for seed, case in asked.items()}
+    assert {seed: str(answers[seed]) for seed, case in asked.items() if is_a_lie(case, answers[seed])} == {}
+    right = sum(answers[seed].status is case.truth for seed, case in asked.items())
+    assert right >= len(asked) * (0.9 if backend == "auto" else 0.2)
+
+
+@pytest.mark.parametrize(("beyond", "lost"), [(0.99, False), (1.01, True)])
+def test_nothing_is_said_of_a_unit_less_than_the_rounding_of_terms(beyond: float, lost: bool) -> None:
+    """x - y = 1, and x = y + 1 far away: the terms are 2 x, the unit |b| + X = 2."""
+    far = beyond / ROUNDING
+    p = program(np.zeros((2, 2)), [0.0, 0.0], [[1.0, -1.0]], [1.0], zero(1))
+    assert (audited(p, np.array([far + 1, far]), np.zeros(1)).primal == np.inf) is lost
+
+
+@pytest.mark.parametrize(("far", "sound"), [(1e3, False), (1e12, False)])
+def test_terms_count_by_their_rounding_only(far: float, sound: bool) -> None:
+    """x - y = 1 is missed by a thousandth, however large x and y are."""
+    p = program(np.zeros((2, 2)), [0.0, 0.0], [[1.0, -1.0]], [1.0], zero(1))
+    miss = audited(p, np.array([far + 1 + 2.0**-10, far]), np.zeros(1)).primal
+    assert miss == pytest.approx(2.0**-10 / (2 + OWN * 2 * far), rel=1e-3)
+    assert (miss <= 1e-7) is sound
+
+
+def test_truths_of_every_kind_come() -> None:
+    cases = [known(seed) for seed in range(60)]
+    assert {case.truth for case in cases} == {Status.SOLVED, Status.INFEASIBLE, Status.UNBOUNDED}
+    assert {case.program.has_second_order for case in cases} == {True, False}
+    assert max(abs(np.log2(case.units)).max() for case in cases) > 20
