@@ -80,9 +80,9 @@ def four_on_box() -> rg.Grasp:
 
 
 @cache
-def space_problem() -> rg.SpaceRegraspProblem:
+def space_problem() -> rg.RegraspProblem:
     load = rg.Wrench([0, 0, -1.0])
-    return rg.SpaceRegraspProblem(
+    return rg.RegraspProblem(
         mesh(), four_on_box(), four_on_box(), load, friction=0.8, candidates=4, orientations=1
     )
 
@@ -135,7 +135,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "RegraspPlan": regrasp,
     "FingerMove": lambda: regrasp().moves[0],
     "RegraspProblem": problem,
-    "SpaceRegraspProblem": space_problem,
+    "RegraspProblem in space": space_problem,
     "RegraspWeights": lambda: rg.RegraspWeights(turning=0.5),
     "Bottleneck": lambda: problem().bottleneck(),
     "HoldGraph": lambda: problem().graph,

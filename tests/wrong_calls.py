@@ -34,7 +34,6 @@ from values import (
     removal,
     rotation,
     space_grasp,
-    space_problem,
     three_on_ellipse,
 )
 
@@ -74,6 +73,7 @@ KINDS: dict[str, Sequence[Any]] = {
     "fraction": (*NOT_A_NUMBER, -0.1, 1.0, 7),
     "ratio": (*NOT_A_NUMBER, 0.5, -3),
     "small angle": (*NOT_POSITIVE, 4.0),
+    "some small angle": tuple(wrong for wrong in (*NOT_POSITIVE, 4.0) if wrong is not None),
     "vector": NOT_A_VECTOR,
     "planar vector": (*NOT_A_VECTOR, [1, 2, 3]),
     "space vector": (*NOT_A_VECTOR, [1, 2]),
@@ -127,7 +127,7 @@ NAMES: dict[str, str] = {
     "balance_tolerance": "not negative", "min_normal": "least normals", "idle_from": "not negative",
     "idle_until": "not negative", "instants": "count", "rate_limit": "limits", "count": "count",
     "seed": "seed",
-    "clearance": "not negative", "orientations": "some or all", "candidates": "count",
+    "clearance": "not negative", "orientations": "some or all", "candidates": "some or all",
     "goal_orientation": "number",
     "goal_rotation": "table", "states": "word", "max_turn": "small angle", "least_margin": "not negative",
     "min_distance": "not negative", "keep": "function", "arcs": "choices", "one_finger": "flag",
@@ -177,6 +177,7 @@ def rows() -> dict[str, Row]:
     first, last = three_on_ellipse(0.02, 0.35, 0.7), three_on_ellipse(0.2, 0.5, 0.85)
     asked = {"start": first, "goal": last, "load": rg.Wrench([0, -3]), "friction": 0.5}
     small = {"candidates": 4, "orientations": 1}
+    or_none = {"facets": "some or all", "max_turn": "some small angle"}
     solid = {"start": four_on_box(), "goal": four_on_box(), "load": WEIGHT, "friction": 0.8}
     locus, squeezes = rg.EquilibriumLocus(PAIR, LOAD), rg.SqueezeLocus(GRASP, LOAD)
     middle = float(np.mean(locus.interval))
@@ -546,12 +547,12 @@ def rows() -> dict[str, Row]:
         ),
         "RegraspPlan.orientation": Row(whole.orientation, {"t": 0.5}),
         "RegraspPlan.from_dict": Row(rg.RegraspPlan.from_dict, {"data": whole.to_dict()}),
-        "RegraspProblem": Row(rg.RegraspProblem, {"outline": outline, **asked, **small}),
+        "RegraspProblem": Row(rg.RegraspProblem, {"outline": outline, **asked, **small}, or_none),
         "RegraspProblem.sequences": Row(problem().sequences, {}),
         "RegraspProblem.plans": Row(problem().plans, {}),
         "RegraspProblem.allowing": Row(problem().allowing, {"force": 9.0}, {"force": "positive"}),
-        "SpaceRegraspProblem": Row(rg.SpaceRegraspProblem, {"mesh": box, **solid, **small}),
-        "SpaceRegraspProblem.sequences": Row(space_problem().sequences, {}),
+        "RegraspProblem in space": Row(rg.RegraspProblem, {"outline": box, **solid, **small}, or_none),
+        "RegraspProblem.asking": Row(problem().asking, {"min_normal": 0.1}, {"min_normal": "not negative"}),
         "plan_regrasp": Row(
             rg.plan_regrasp,
             {"outline": outline, **asked, **small, "motions": True, "tip_radius": 0.01, "clearance": 0.01},

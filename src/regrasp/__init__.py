@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.planning.placement.maps import PlacementMap, placement_map
     from regrasp.planning.placement.regions import ContactRegions, contact_regions
-    from regrasp.planning.regrasps.planar import RegraspProblem
-    from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
+    from regrasp.planning.regrasps.problem import RegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
     from regrasp.planning.robustness.batch import BatchTolerances, batch_tolerances
@@ -132,12 +131,11 @@ _LATER = {
     "RegraspCut": "regrasp.plans.regrasp_cut",
     "RegraspObstacle": "regrasp.planning.regrasps.why_not",
     "RegraspPlan": "regrasp.plans.regrasp_plan",
-    "RegraspProblem": "regrasp.planning.regrasps.planar",
+    "RegraspProblem": "regrasp.planning.regrasps.problem",
     "RegraspWeights": "regrasp.planning.holds.weights",
     "SampledPath": "regrasp.plans.sampled",
     "Sensitivity": "regrasp.planning.surveys.sensitivity",
     "sensitivity": "regrasp.planning.surveys.sensitivity",
-    "SpaceRegraspProblem": "regrasp.planning.regrasps.spatial",
     "SqueezeLocus": "regrasp.planning.surveys.squeeze_locus",
     "StraightPath": "regrasp.plans.straight",
     "sweep": "regrasp.studies.sweeping",
@@ -198,7 +196,6 @@ __all__ = [
     "Sensitivity",
     "SolverFailed",
     "SolverUnavailable",
-    "SpaceRegraspProblem",
     "SqueezeLocus",
     "StraightPath",
     "TimeScaling",

@@ -621,9 +621,9 @@ def test_parts_of_scenarios_are_the_parts_there_are() -> None:
 
 START_POINT = "[-0.01, -0.007]"
 TASK_KEYS = (
-    "kind, objective, states, least_margin_degrees, min_distance, max_force, peak_ratio, reserve, "
-    "step_duration, rate, orientations, goal_degrees, candidates, max_turn_degrees, one_finger, min_normal, "
-    "arcs, weights"
+    "kind, objective, states, least_margin_degrees, min_distance, min_normal, weights, max_force, "
+    "peak_ratio, reserve, step_duration, rate, orientations, goal_degrees, candidates, "
+    "max_turn_degrees, one_finger, arcs"
 )
 
 
@@ -764,7 +764,7 @@ def test_bad_weights_and_arcs(capsys: pytest.CaptureFixture[str], tmp_path: Path
     kind = 'kind = "regrasp"'
     changes = [(kind, f"{kind}\nweights = {{ moves = 0.0 }}\narcs = [[], []]")]
     lines = [
-        "task.arcs: expected at least 3 entries, got [[], []]",
         "task.weights: at least one must be greater than 0",
+        "task.arcs: expected at least 3 entries, got [[], []]",
     ]
     check_bad(changed(WHOLE, *changes), lines, capsys, tmp_path)

@@ -212,7 +212,7 @@ def test_setpoints_are_read_back_and_verify(plan: RegraspPlan, tmp_path: Path) -
             turning += 1
             off = rows.angles + 1e-4
             assert checked(plan, rows._replace(angles=off)).ok == (step.kind == "rotation")  # about the load
-    assert turning == 5
+    assert turning == 6
 
 
 BALL = rg.choose_state(
@@ -319,7 +319,7 @@ def test_the_example_plans_what_the_same_call_plans(plan: RegraspPlan) -> None:
     assert plan == same
     assert rg.verify(plan).ok
     assert np.degrees(plan.margin) > 10
-    assert sum(step.turn is not None for step in plan.steps) == 5
+    assert sum(step.turn is not None for step in plan.steps) == 6
 
 
 def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -358,7 +358,7 @@ def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
     assert options == {
         "friction": 0.6, "orientations": 17, "candidates": 21, "objective": "effort", "states": "joint",
         "min_distance": 0.02, "max_force": 9.0, "peak_ratio": 2.5, "reserve": 0.1, "step_duration": 0.5,
-        "facets": 12, "seed": 3,
+        "facets": 12, "seed": 3, "min_normal": None, "weights": None,
     }  # fmt: skip
     still = changed(TEXT, ("goal_axis", "# goal_axis"), ("goal_degrees", "# goal_degrees"))
     plan_scenario(parse_scenario(still))
@@ -367,8 +367,9 @@ def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
 
 GOAL = "goal_axis = [0.0, -1.0, 0.0]"
 TASK_KEYS = (
-    "kind, objective, states, least_margin_degrees, min_distance, max_force, peak_ratio, reserve, "
-    "step_duration, rate, orientations, goal_degrees, goal_axis, candidates, seed, max_turn_degrees, facets"
+    "kind, objective, states, least_margin_degrees, min_distance, min_normal, weights, max_force, "
+    "peak_ratio, reserve, step_duration, rate, orientations, goal_degrees, goal_axis, candidates, "
+    "seed, max_turn_degrees, facets"
 )
 
 

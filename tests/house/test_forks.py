@@ -49,8 +49,8 @@ def regrasp(seed: int) -> tuple[object, ...]:
 
 def in_space(seed: int) -> tuple[object, ...]:
     asked = space_problem()
-    fresh = rg.SpaceRegraspProblem(
-        asked.mesh, asked.start, asked.goal, asked.load, friction=0.8, candidates=4 + seed, orientations=1
+    fresh = rg.RegraspProblem(
+        asked.outline, asked.start, asked.goal, asked.load, friction=0.8, candidates=4 + seed, orientations=1
     )
     return fresh.graph.margins.tobytes(), len(fresh.sequences())
 

@@ -68,7 +68,7 @@ def test_functions_of_other_arguments_are_refused(name: str, load: Any) -> None:
     assert re.match("load must be (a|the) function of time", said)
 
 
-@pytest.mark.parametrize("shape", ["RegraspProblem", "SpaceRegraspProblem"])
+@pytest.mark.parametrize("shape", ["RegraspProblem", "RegraspProblem in space"])
 def test_filters_of_other_arguments_or_answers_are_refused(shape: str) -> None:
     for keep, words in ((lambda: True, "keep must be a function of first"), (len, "keep must be")):
         said = refusal(lambda keep=keep: called_wrongly(ROWS[shape], Case(shape, "keep", keep)))

@@ -68,7 +68,9 @@ def _planar_regrasps() -> None:
         rg.plan_regrasp(
             outline, start, goal, load, friction=0.6, candidates=12, orientations=4, weights=weights
         )
-    rg.RegraspProblem(outline, start, goal, load, friction=0.6, candidates=12).graph.widest()
+    graph = rg.RegraspProblem(outline, start, goal, load, friction=0.6, candidates=12).graph
+    assert isinstance(graph, rg.HoldGraph)
+    graph.widest()
 
 
 def _regrasps_in_space() -> None:

@@ -82,9 +82,8 @@ def plan_regrasp(
     turning. With ``weights`` the one of least cost.
 
     outline, start, goal, load and options (``friction`` is required; ``orientations``, ``arcs``, ``weights``,
-    ...) are those of ``RegraspProblem``; with a ``Mesh`` in the place of the outline and grasps of four
-    contacts those of ``SpaceRegraspProblem``: three fingers hold while the fourth moves, and the plan has
-    ``rotations``.
+    ...) are those of ``RegraspProblem``. With a ``Mesh`` in the place of the outline and grasps of four
+    contacts three fingers hold while the fourth moves, and the plan has ``rotations``.
 
     An end may be left open, as several grasps or None: the regrasp of fewest moves is taken, and of these the
     one of the widest margin. None stands for the few grasps of least largest normal force that
@@ -113,7 +112,7 @@ def plan_regrasp(
         acceleration: as for ``plan_motions``, 1 if not given [m/s^2].
         capsules: as for ``plan_motions`` [m].
         attempts: with ``motions``, how many sequences are tried, 50 if not given.
-        **options: of ``RegraspProblem`` or ``SpaceRegraspProblem``; ``friction`` [-] is required.
+        **options: of ``RegraspProblem``; ``friction`` [-] is required.
 
     Returns:
         The plan, or with ``motions`` a ``Motions``, whose ``plan`` it is.

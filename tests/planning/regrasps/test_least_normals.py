@@ -105,7 +105,7 @@ def test_a_share_of_the_load_unless_it_takes_more_moves(monkeypatch):
     strong = rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **careful, min_normal=6.0)
     assert len(strong.moves) > len(weak.moves)
     for share in (2.0, 1e3):
-        monkeypatch.setattr("regrasp.planning.regrasps.planar.LEAST_SHARE", share)
+        monkeypatch.setattr("regrasp.planning.regrasps.planned.LEAST_SHARE", share)
         assert rg.plan_regrasp(ELLIPSE, START, GOAL, WEIGHT, **careful) == weak
 
 

@@ -13,7 +13,7 @@ from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 from regrasp.planning.holds.sequences import MAX_TURN
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.options import RegraspOptions
-from regrasp.planning.regrasps.planar import RegraspProblem
+from regrasp.planning.regrasps.problem import RegraspProblem
 
 pytestmark = pytest.mark.laws
 

@@ -14,7 +14,6 @@ from regrasp.mesh import Mesh, parts
 from regrasp.planning.holds.sequences import preferred
 from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.triples import TripleGraph, directions
-from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
 
 pytestmark = pytest.mark.oracle
 
@@ -187,7 +186,7 @@ def test_a_part_is_regrasped_and_every_hold_confirmed_with_exact_cones():
     for chosen in combinations(range(12), 4):
         start = rg.Grasp([contacts[i] for i in chosen])
         goal = rg.Grasp([contacts[i + 12] for i in chosen])
-        problem = SpaceRegraspProblem(mesh, start, goal, load, 0.7, orientations=1, candidates=30)
+        problem = rg.RegraspProblem(mesh, start, goal, load, 0.7, orientations=1, candidates=30)
         if problem.sequences():
             break
     plan = problem.plans()[0]
@@ -221,14 +220,22 @@ def test_units_change_nothing(length, force):
     [
         ({"start": rg.Grasp(list(START)[:3])}, "start must be a Grasp of four contacts in space"),
         ({"friction": None}, "friction is missing"),
-        ({"weights": None}, "unknown option 'weights'; a regrasp on a mesh takes friction"),
+        ({"weight": None}, "unknown option 'weight'; a regrasp takes friction"),
+        ({"weights": rg.RegraspWeights(effort=1), "orientations": 1}, "effort is of holds of two fingers"),
+        (
+            {"goal_orientation": 1.0},
+            "goal_orientation is an angle in the plane; on a mesh give goal_rotation",
+        ),
+        ({"one_finger": True}, "one_finger is of pairs of fingers on an outline"),
+        ({"arcs": [None] * 3}, "arcs must have an entry for each of four fingers"),
+        ({"arcs": [lambda points: [True], None, None, None]}, "arcs: finger 1 must return which of"),
         ({"goal_rotation": 2 * np.eye(3)}, "goal_rotation must be a rotation matrix"),
         ({"goal_rotation": np.eye(2)}, "goal_rotation must have shape"),
         (
             {"orientations": 1, "goal_rotation": rotation_matrix([1, 0, 0], 1.0)},
             "orientations=1 forbids turning",
         ),
-        ({"orientations": 0}, "orientations must be at least 1"),
+        ({"orientations": 0}, "orientations must be a whole number of at least 1"),
         ({"max_turn": pi}, "max_turn must be above 0 and below pi"),
         ({"load": rg.Wrench([0, 0, -1], [0, 0.1, 0])}, "a force in space through the centre of mass"),
         ({"facets": 5}, "facets must be an even whole number"),
@@ -258,12 +265,12 @@ def test_what_is_impossible_says_why():
     with pytest.raises(rg.Infeasible, match="the fingers of the start cannot hold the load there"):
         rg.plan_regrasp(BOX, *slippery, WEIGHT, friction=0.01, orientations=1)
     for options, words in (
-        ({"keep": lambda a, b, c: np.zeros(len(a), dtype=bool)}, "with keep; without it they do"),
-        ({"min_distance": 1.0}, "with min_distance=1; without it they do"),
+        ({"keep": lambda a, b, c: np.zeros(len(a), dtype=bool)}, "there would be one without keep"),
+        ({"min_distance": 1.0}, "there would be one without min_distance"),
         ({"max_force": 0.1}, "the fingers of the start cannot hold the load there"),
-        ({"max_force": 0.7}, "with these force limits; without it they do"),
+        ({"max_force": 0.7}, "or with force limits of"),
     ):
         with pytest.raises(rg.Infeasible, match=words):
             rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, **options)
-    with pytest.raises(rg.Infeasible, match="with a margin of 1 rad"):
+    with pytest.raises(rg.Infeasible, match="keeps angle margins of 1 rad; the widest worst margin"):
         rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, least_margin=1.0)

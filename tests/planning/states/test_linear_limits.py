@@ -208,7 +208,7 @@ REFUSES: dict[str, Callable[[], Any]] = {
     "RegraspProblem": lambda: rg.RegraspProblem(
         SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5
     ),
-    "SpaceRegraspProblem": lambda: rg.SpaceRegraspProblem(
+    "RegraspProblem in space": lambda: rg.RegraspProblem(
         rg.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
         _SPACE, _SPACE, rg.Wrench([0, 0, -1]), friction=0.5,
     ),

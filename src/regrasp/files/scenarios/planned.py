@@ -42,6 +42,7 @@ _REGRASP_OPTIONS = (
     "objective",
     "states",
     "min_distance",
+    "min_normal",
     *described(LimitOptions),
     "step_duration",
 )
@@ -123,11 +124,9 @@ def regrasp_by(scenario: RegraspScenario | SpaceRegraspScenario, verb: Callable[
         shape: Outline | Mesh = scenario.outline.value
         options: dict[str, Any] = {
             "goal_orientation": radians(task.goal_degrees),
-            "weights": None if task.weights is None else task.weights.value,
             "arcs": None if task.arcs is None else [arc or None for arc in task.arcs],
             "max_turn": MAX_TURN if task.max_turn_degrees is None else radians(task.max_turn_degrees),
             "one_finger": task.one_finger,
-            "min_normal": task.min_normal,
             **_taken(task, _REGRASP_OPTIONS),
         }
     else:
@@ -141,6 +140,7 @@ def regrasp_by(scenario: RegraspScenario | SpaceRegraspScenario, verb: Callable[
         Wrench(scenario.load.force),
         friction=scenario.friction,
         least_margin=radians(task.least_margin_degrees),
+        weights=None if task.weights is None else task.weights.value,
         **options,
     )
 

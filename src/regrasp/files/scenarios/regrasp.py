@@ -17,7 +17,6 @@ from regrasp.outline.outline import Outline
 from regrasp.outline.parts import PARTS
 from regrasp.planning.holds.pairs import MOST_ORIENTATIONS
 from regrasp.planning.holds.sequences import MAX_TURN
-from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.options import MOST_CANDIDATES
 
 Ring = Annotated[list[Vector], Field(min_length=3)]
@@ -127,28 +126,6 @@ class Places(Strict):
         return self
 
 
-class Weights(Strict):
-    """What a sequence costs; the least cost is then looked for, not the fewest moves."""
-
-    moves: float = Field(1.0, ge=0, description="for each finger move")
-    turning: float = Field(0.0, ge=0, description="per radian that the object turns")
-    time: float = Field(0.0, ge=0, description="per second of the plan")
-    effort: float = Field(0.0, ge=0, description="for each hold times its least largest force, in loads")
-
-    @property
-    def value(self) -> RegraspWeights:
-        """The weights."""
-        return RegraspWeights(self.moves, self.turning, self.time, self.effort)
-
-    @model_validator(mode="after")
-    def _not_all_zero(self) -> "Weights":
-        try:
-            _ = self.value
-        except InvalidInput as error:
-            raise ValueError(str(error).removeprefix("weights: ")) from None
-        return self
-
-
 class RegraspTask(CommonTask):
     """How to get from the start to the goal."""
 
@@ -166,18 +143,11 @@ class RegraspTask(CommonTask):
         None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"
     )
     one_finger: bool = Field(False, description="whether one finger of a hold may carry the whole load")
-    min_normal: float | None = Field(
-        None,
-        ge=0,
-        description="least normal force of fingers that hold [N]; if absent a hundredth of the load "
-        "where that needs no more moves",
-    )
     arcs: Annotated[list[list[Vector]], Field(min_length=3, max_length=3)] | None = Field(
         None,
         description="[m], for each finger the arcs it may touch, counter-clockwise from one arc length to "
         "another; an empty list is the whole outline",
     )
-    weights: Weights | None = None
 
     @model_validator(mode="after")
     def _goal_is_tried(self) -> "RegraspTask":

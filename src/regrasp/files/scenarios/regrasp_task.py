@@ -4,15 +4,38 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from regrasp.errors import InvalidFile, InvalidInput
 from regrasp.files.scenarios.keys import Positive, option
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.states.objectives import ObjectiveName
 from regrasp.planning.states.options import LimitOptions
+
+
+class Weights(Strict):
+    """What a sequence costs; the least cost is then looked for, not the fewest moves."""
+
+    moves: float = Field(1.0, ge=0, description="for each finger move")
+    turning: float = Field(0.0, ge=0, description="per radian that the object turns")
+    time: float = Field(0.0, ge=0, description="per second of the plan")
+    effort: float = Field(0.0, ge=0, description="for each hold times its least largest force, in loads")
+
+    @property
+    def value(self) -> RegraspWeights:
+        """The weights."""
+        return RegraspWeights(self.moves, self.turning, self.time, self.effort)
+
+    @model_validator(mode="after")
+    def _not_all_zero(self) -> "Weights":
+        try:
+            _ = self.value
+        except InvalidInput as error:
+            raise ValueError(str(error).removeprefix("weights: ")) from None
+        return self
 
 
 class CommonTask(Strict):
@@ -23,6 +46,13 @@ class CommonTask(Strict):
     states: Literal["each", "joint"] = Field("each", description="chosen each by itself, or all together")
     least_margin_degrees: float = Field(0.0, ge=0, description="angle margin every hold must have")
     min_distance: float = Field(0.0, ge=0, description="[m], between two fingers that hold the object")
+    min_normal: float | None = Field(
+        None,
+        ge=0,
+        description="least normal force of fingers that hold [N]; if absent a hundredth of the load "
+        "where that needs no more moves",
+    )
+    weights: Weights | None = None
     max_force: Positive | None = option(LimitOptions, "max_force")
     peak_ratio: float = option(LimitOptions, "peak_ratio", ge=1)
     reserve: float = option(LimitOptions, "reserve", ge=0, lt=1)

@@ -20,7 +20,7 @@ from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
 from regrasp.planning.holds.pairs import MOST_ORIENTATIONS
 from regrasp.planning.holds.triples import FACETS
 from regrasp.planning.regrasps.options import MOST_CANDIDATES
-from regrasp.planning.regrasps.spatial import MAX_TURN
+from regrasp.planning.regrasps.settings.spatial import MAX_TURN
 from regrasp.planning.states.choosing import MOST_FACETS
 
 # Loads that differ by less than this fraction are one.

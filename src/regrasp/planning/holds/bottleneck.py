@@ -1,12 +1,13 @@
 """What limits the way between two grasps in the hold graph, however many finger moves it takes.
 
-Points and orientations are nodes, one for each contact that has a hold there. A hold joins its two points
-with its margin; a turn joins two orientations of a point, less than pi apart, with the smaller of the widest
-margins that the point has at both: three fingers hold everything between. The widest way is then the one in a
-maximum spanning tree.
+Parts of holds and orientations are nodes: contacts in the plane, pairs of contacts in space. A hold joins its
+parts with its margin; a turn joins two orientations of a part, less than pi apart, with the smaller of the
+widest margins that the part has at both: all fingers hold everything between. The widest way is then the one
+in a maximum spanning tree.
 """
 
 from dataclasses import dataclass, field
+from itertools import combinations
 from math import degrees, pi
 from typing import NamedTuple
 
@@ -15,9 +16,11 @@ from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, whole
+from regrasp.planning.holds.graphs import AnyGraph, Part, Parts, holding, place_of, turns_between
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.sequences import Hold
 from regrasp.planning.holds.stances import REACH
+from regrasp.planning.holds.triples import TripleGraph
 
 # Above every margin: the tree of least weights wants them positive.
 _ABOVE = 4.0
@@ -29,35 +32,40 @@ class Bottleneck:
 
     Args:
         margin: the widest least margin of any way [rad].
-        hold: two contacts and an orientation, by their places in the graph, where the widest way found is
+        hold: its contacts and an orientation, by their places in the graph, where the widest way found is
             that narrow; no way does without a hold as narrow.
         points: contacts, by their places in the graph, without which no way is left, at whatever orientation.
-        pairs: pairs of contacts, at whatever orientation, without which no way is left.
+        pairs: pairs of contacts, in space triples, at whatever orientation, without which no way is left.
         graph: the holds among which was looked.
     """
 
     margin: float
     hold: Hold
     points: tuple[int, ...]
-    pairs: tuple[tuple[int, int], ...]
-    graph: HoldGraph = field(repr=False, compare=False)
+    pairs: tuple[tuple[int, ...], ...]
+    graph: AnyGraph = field(repr=False, compare=False)
 
     def __str__(self) -> str:
         def name(i: int) -> str:
             return str(self.graph.contacts[i].name)
 
-        i, j, o = self.hold
-        pairs = ", ".join(f"{name(a)} with {name(b)}" for a, b in self.pairs)
+        *most, last, o = self.hold
+        graph, pairs = self.graph, ", ".join(" with ".join(map(name, pair)) for pair in self.pairs)
+        if isinstance(graph, HoldGraph):
+            what, where = "pairs", f"at {degrees(graph.angles[o]):.4g} deg"
+        else:
+            x, y, z = np.round(graph.loads[o, :3] / np.linalg.norm(graph.loads[o, :3]), 9) + 0.0
+            what, where = "triples", f"with the load along ({x:.3g}, {y:.3g}, {z:.3g})"
         return (
-            f"the widest way keeps {degrees(self.margin):.2f} deg, limited by the hold of {name(i)} and "
-            f"{name(j)} at {degrees(self.graph.angles[o]):.4g} deg\n"
+            f"the widest way keeps {degrees(self.margin):.2f} deg, limited by the hold of "
+            f"{', '.join(map(name, most))} and {name(last)} {where}\n"
             f"points that every way needs: {', '.join(map(name, self.points)) or 'none'}\n"
-            f"pairs that every way needs: {pairs or 'none'}"
+            f"{what} that every way needs: {pairs or 'none'}"
         )
 
 
 def bottleneck(
-    graph: HoldGraph,
+    graph: AnyGraph,
     start: tuple[int, ...],
     goal: tuple[int, ...],
     goal_orientation: int = 0,
@@ -66,62 +74,71 @@ def bottleneck(
 ) -> Bottleneck | None:
     """What limits the way from a hold of three contacts to a hold of three; None where there is no way.
 
-    Every finger may touch everywhere. Where the object turns by more than one step may, three fingers hold it
+    Every finger may touch everywhere. Where the object turns by more than one step may, all fingers hold it
     in between.
 
     Args:
-        graph: of planar contacts.
-        start: three contacts by their places in the graph, held at its first angle.
-        goal: three contacts by their places in the graph, held at the angle of place ``goal_orientation``.
-        goal_orientation: the place of the last angle in the graph's angles.
+        graph: of planar contacts, or of triples in space.
+        start: three contacts, in space four, by their places in the graph, held at its first angle or load.
+        goal: as many, held at the angle or under the load of place ``goal_orientation``.
+        goal_orientation: the place of the last angle in the graph's angles, or of the last load.
         max_turn: largest turn of the object from one hold to the next, in however many steps, below pi [rad].
 
     Raises:
         InvalidInput: For what are no places.
     """
-    instance(graph, "graph", HoldGraph)
-    whole(goal_orientation, "goal_orientation", least=0, most=len(graph.angles) - 1)
+    if not isinstance(graph, TripleGraph):
+        instance(graph, "graph", HoldGraph)
+    fingers = 3 if isinstance(graph, HoldGraph) else 4
+    whole(goal_orientation, "goal_orientation", least=0, most=len(graph.loads) - 1)
     if not 0 < number(max_turn, "max_turn") < pi:
         raise InvalidInput(f"max_turn must be above 0 and below pi, got {shown(max_turn)}")
     for what, places in (("start", start), ("goal", goal)):
         try:
             given = [whole(place, what, least=0) for place in places]
-            valid = len(set(given)) == 3 and max(given) < len(graph.contacts)
+            valid = len(given) == len(set(given)) == fingers and max(given) < len(graph.contacts)
         except TypeError:
             valid = False
         if not valid:
             raise InvalidInput(
-                f"{what} must be three contacts by their places in the graph, 0 to "
-                f"{len(graph.contacts) - 1}, got {shown(places)}"
+                f"{what} must be {'three' if fingers == 3 else 'four'} contacts by their places in the "
+                f"graph, 0 to {len(graph.contacts) - 1}, got {shown(places)}"
             )
     ends = _Ends(graph, start, goal, goal_orientation, max_turn)
     way = ends.widest(graph.margins)
     if way is None:
         return None
-    points = sorted({v for hold in way for v in hold[:2]})
-    pairs = sorted({(hold[0], hold[1]) for hold in way})
-    narrow = min(way, key=lambda hold: graph.margin(*hold))
+    members, margins = ends.parts.members, graph.margins
+    points = sorted({v for hold in way for v in hold[:-1]})
+    pairs = sorted({hold[:-1] for hold in way})
+
+    def margin(hold: Hold) -> float:
+        return float(margins[hold[-1], place_of(graph, hold[:-1])])
 
     def needed(without: NDArray[np.bool_]) -> bool:
-        return not ends.connected(np.where(without, np.float32(-1.0), graph.margins))
+        return not ends.connected((margins >= 0) & ~without)
 
-    first, second = graph.pairs
+    def only(pair: tuple[int, ...]) -> NDArray[np.bool_]:
+        which: NDArray[np.bool_] = np.arange(len(members)) == place_of(graph, pair)
+        return which
+
+    narrow = min(way, key=margin)
     return Bottleneck(
-        graph.margin(*narrow),
+        margin(narrow),
         narrow,
-        tuple(v for v in points if needed((first == v) | (second == v))),
-        tuple(pair for pair in pairs if needed((first == pair[0]) & (second == pair[1]))),
+        tuple(v for v in points if needed((members == v).any(axis=1))),
+        tuple(pair for pair in pairs if needed(only(pair))),
         graph,
     )
 
 
-def connected(graph: HoldGraph, start: tuple[int, ...], goal: tuple[int, ...], goal_orientation: int) -> bool:
+def connected(graph: AnyGraph, start: tuple[int, ...], goal: tuple[int, ...], goal_orientation: int) -> bool:
     """Whether any sequence of holds leads from the start to the goal."""
-    return _Ends(graph, start, goal, goal_orientation).connected(graph.margins)
+    return _Ends(graph, start, goal, goal_orientation).connected(holding(graph))
 
 
 class _Links(NamedTuple):
-    """Links between nodes: (E,) ends and margins. best: (V, O) the other point of each node's widest hold."""
+    """Links between nodes: (E,) ends and margins. best: (parts * O,) the widest hold of each node."""
 
     a: NDArray[np.int64]
     b: NDArray[np.int64]
@@ -130,26 +147,25 @@ class _Links(NamedTuple):
 
 
 class _Ends:
-    """Node v * O + o is contact v at orientation o; the last two nodes are the start and the goal."""
+    """Node p * O + o is part p at orientation o; the last two nodes are the start and the goal."""
 
     def __init__(
-        self, graph: HoldGraph, start: tuple[int, ...], goal: tuple[int, ...], o: int, reach: float = REACH
+        self, graph: AnyGraph, start: tuple[int, ...], goal: tuple[int, ...], o: int, reach: float = REACH
     ) -> None:
-        self.points, self.turns = len(graph.contacts), len(graph.angles)
-        apart = abs((graph.angles[:, None] - graph.angles + pi) % (2 * pi) - pi)
+        self.graph, self.parts, self.turns = graph, Parts(graph), len(graph.loads)
+        apart = turns_between(graph)
         self.near = np.nonzero(np.triu(apart <= reach + 1e-9, 1))
-        self.graph = graph
         self.ends = tuple(
             (places, np.flatnonzero(apart[end] <= reach + 1e-9)) for places, end in ((start, 0), (goal, o))
         )
-        self.nodes = self.points * self.turns + 2
+        self.nodes = self.parts.count * self.turns + 2
 
-    def connected(self, margins: NDArray[np.float32]) -> bool:
-        """Whether the goal can be reached over holds of these (O, P) margins."""
+    def connected(self, holds: NDArray[np.bool_]) -> bool:
+        """Whether the goal can be reached over holds (O, P)."""
         from scipy.sparse import coo_matrix
         from scipy.sparse.csgraph import connected_components
 
-        links = self._links(margins)
+        links = self._links(np.where(holds, np.float32(0.0), np.float32(-1.0)))
         ones = np.ones(links.a.size, dtype=np.int8)
         joined = coo_matrix((ones, (links.a, links.b)), (self.nodes, self.nodes))
         _, labels = connected_components(joined, directed=False)
@@ -170,42 +186,51 @@ class _Ends:
         while before[node] >= 0:
             way.append((int(before[node]), node))
             node = int(before[node])
-        return [hold for link in way for hold in self._holds(link, links)]
+        return [hold for link in way for hold in self._holds(link, margins, links)]
 
     def _links(self, margins: NDArray[np.float32]) -> _Links:
-        first, second = (ends.astype(np.int64) for ends in self.graph.pairs)
         o, p = np.nonzero(margins >= 0)
-        a, b, width = first[p] * self.turns + o, second[p] * self.turns + o, margins[o, p].astype(np.float64)
+        width = margins[o, p].astype(np.float64)
+        nodes = self.parts.of[p] * self.turns + o[:, None]
         top, best = np.full(self.nodes, -1.0), np.full(self.nodes, -1, dtype=np.int64)
         order = np.argsort(width, kind="stable")  # the widest is written last
-        for here, there in ((a, b), (b, a)):
+        for here in nodes.T:
             wider = width[order] > top[here[order]]
-            top[here[order][wider]], best[here[order][wider]] = width[order][wider], there[order][wider]
-        table = top[:-2].reshape(self.points, self.turns)
+            top[here[order][wider]], best[here[order][wider]] = width[order][wider], p[order][wider]
+        table = top[:-2].reshape(self.parts.count, self.turns)
         v, k = np.nonzero(np.minimum(table[:, self.near[0]], table[:, self.near[1]]) >= 0)
         from_, to = self.near[0][k], self.near[1][k]
-        parts = [
-            (a, b, width),
-            (v * self.turns + from_, v * self.turns + to, np.minimum(table[v, from_], table[v, to])),
-        ]
+        links = [(a, b, width) for a, b in zip(nodes.T[:-1], nodes.T[1:], strict=True)]
+        links.append((v * self.turns + from_, v * self.turns + to, np.minimum(table[v, from_], table[v, to])))
         for end, (places, at) in enumerate(self.ends):
-            for i in places:
-                width = np.max([margins[at, self.graph.pair(i, j)] for j in places if j != i], axis=0)
+            for part in combinations(sorted(places), self.parts.of.shape[1] - 1):
+                width = self._of_end(places, part, at, margins).max(axis=0)
                 held = width >= 0
                 node = np.full(int(held.sum()), self.nodes - 2 + end)
-                parts.append((node, i * self.turns + at[held], width[held].astype(np.float64)))
-        a, b, width = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+                number = self.parts.number(part)
+                links.append((node, number * self.turns + at[held], width[held].astype(np.float64)))
+        a, b, width = (np.concatenate(arrays) for arrays in zip(*links, strict=True))
         return _Links(a, b, width, best)
 
-    def _holds(self, link: tuple[int, int], links: _Links) -> list[Hold]:
-        """The hold of a link, or both of a turn: the widest of its point at either orientation."""
+    def _of_end(
+        self, places: tuple[int, ...], part: Part, at: NDArray[np.int64], margins: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """(holds, orientations) margins of an end's holds with a part."""
+        rest = [j for j in places if j not in part]
+        return np.array([margins[at, place_of(self.graph, (*part, j))] for j in rest])
+
+    def _holds(self, link: tuple[int, int], margins: NDArray[np.float32], links: _Links) -> list[Hold]:
+        """The hold of a link, or both of a turn: the widest of its part at either orientation."""
         (v, o), (w, p) = (divmod(node, self.turns) for node in link)
         if max(link) >= self.nodes - 2:
             places, _ = self.ends[max(link) - self.nodes + 2]
-            i, at = divmod(min(link), self.turns)
-            j = max((j for j in places if j != i), key=lambda j: self.graph.margin(i, j, at))
-            return [(min(i, j), max(i, j), at)]
+            number, at = divmod(min(link), self.turns)
+            part = self.parts.contacts(number)
+            values = self._of_end(places, part, np.array([at]), margins)[:, 0]
+            j = [j for j in places if j not in part][int(values.argmax())]
+            return [(*sorted((*part, j)), at)]
         if v != w:
-            return [(min(v, w), max(v, w), o)]
-        others = [int(links.best[node]) // self.turns for node in link]
-        return [(min(v, u), max(v, u), k) for u, k in zip(others, (o, p), strict=True)]
+            return [(*sorted({*self.parts.contacts(v), *self.parts.contacts(w)}), o)]
+        return [
+            (*self.parts.members[links.best[node]].tolist(), k) for node, k in zip(link, (o, p), strict=True)
+        ]

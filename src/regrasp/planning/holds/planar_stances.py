@@ -41,7 +41,7 @@ class Fingering(Stances):
         reach: float = REACH,
     ) -> None:
         self.allowed = allowed
-        self.margins = np.ascontiguousarray(graph.margins.T)
+        self.margins = graph.margins.T.copy(order="C")
         if least > 0:
             self.margins[self.margins < least] = -1.0
         self.count = len(graph.contacts)

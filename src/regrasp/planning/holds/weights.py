@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number
 from regrasp.planning.holds.cost_search import Costs
+from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.states.batch import best_squeezes
 
@@ -44,16 +45,18 @@ class RegraspWeights:
         """The largest weight."""
         return max(self.moves, self.turning, self.time, self.effort)
 
-    def costs(self, graph: HoldGraph, margins: NDArray[np.float32], step_duration: float) -> Costs:
+    def costs(self, graph: AnyGraph, margins: NDArray[np.float32], step_duration: float) -> Costs:
         """What the search adds up.
 
         Args:
-            graph: the holds of P pairs at O orientations.
-            margins: (P, O) [rad], -1 where a pair must not hold.
+            graph: P holds at O orientations.
+            margins: (P, O) [rad], -1 where one must not hold.
             step_duration: [s] of each step.
         """
         worth = np.where(margins >= 0, 0.0, inf)
         if self.effort:
+            if not isinstance(graph, HoldGraph):
+                raise InvalidInput("weights: effort is of holds of two fingers; leave it out in space")
             worth += self.effort * efforts(graph, margins >= 0)
         return Costs(worth, self.moves, self.turning, self.time * step_duration + _TIE * self.largest)
 

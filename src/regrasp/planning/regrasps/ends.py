@@ -1,6 +1,8 @@
 """The contacts of the grasps where a regrasp starts and ends."""
 
+from collections.abc import Sequence
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +14,6 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.value import numbers
 from regrasp.planning.changes.given_ends import with_limit
-from regrasp.planning.regrasps.arcs import Arcs
 
 # Two contacts nearer than this fraction of the object are one.
 _SAME = 1e-9
@@ -27,11 +28,10 @@ class Ends:
     """
 
     def __init__(
-        self, start: Grasp, goal: Grasp, max_force: float | None, *, fingers: int = 3, dimension: int = 2
+        self, start: Grasp, goal: Grasp, max_force: float | None, *, fingers: int, wanted: str
     ) -> None:
-        wanted = "three planar contacts" if fingers == 3 else "four contacts in space"
         for what, grasp in (("start", start), ("goal", goal)):
-            if not isinstance(grasp, Grasp) or len(grasp) != fingers or grasp.dimension != dimension:
+            if not isinstance(grasp, Grasp) or len(grasp) != fingers or grasp.dimension != fingers - 1:
                 raise InvalidInput(f"{what} must be a Grasp of {wanted}, got {shown(grasp)}")
             refuse_limits(grasp, "a regrasp")
         self._limit = max_force
@@ -72,7 +72,7 @@ class Ends:
         ]
         return (*self.contacts, *others)
 
-    def check(self, allowed: NDArray[np.bool_], arcs: Arcs) -> None:
+    def check(self, allowed: NDArray[np.bool_], arcs: Sequence[Any]) -> None:
         """Raise ``InvalidInput`` unless fingers stand on their arcs and can take the contacts of the goal."""
         for finger, place in enumerate(self.start):
             if not allowed[finger, place]:
@@ -85,10 +85,10 @@ class Ends:
                 raise InvalidInput(f"{self.contacts[place].name} is on no finger's arc: {shown(list(arcs))}")
         if not any(all(allowed[f, v] for f, v in enumerate(way)) for way in permutations(self.goal)):
             raise InvalidInput(
-                "three fingers cannot take the contacts of the goal: "
+                f"{'three' if len(self.goal) == 3 else 'four'} fingers cannot take the contacts of the goal: "
                 + "; ".join(
                     f"{self.contacts[v].name} is on the arc of finger "
-                    + " and ".join(str(f + 1) for f in range(3) if allowed[f, v])
+                    + " and ".join(str(f + 1) for f in range(len(allowed)) if allowed[f, v])
                     for v in self.goal
                 )
             )

@@ -8,7 +8,8 @@ from regrasp.mechanics.checks import ArrayLike, choice, number
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.weights import RegraspWeights
-from regrasp.planning.regrasps.arcs import Arcs
+from regrasp.planning.regrasps.settings.arcs import Arcs
+from regrasp.planning.regrasps.settings.regions import Regions
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import LimitOptions, criteria_of, described
@@ -20,29 +21,25 @@ MOST_EXTRA = 1000
 
 
 class RegraspOptions(LimitOptions, total=False):
-    """The options of a regrasp; what they mean stands in ``RegraspProblem`` and ``SpaceRegraspProblem``.
-
-    ``goal_rotation``, ``facets`` and ``seed`` are of solids; ``goal_orientation``, ``arcs``, ``one_finger``
-    and ``weights`` of outlines.
-    """
+    """The options of a regrasp; what they mean stands in ``RegraspProblem``."""
 
     friction: Required[float]
     orientations: int | None
     goal_orientation: float
-    candidates: int
+    candidates: int | None
     objective: str | Objective | Criteria
     states: str
-    max_turn: float
+    max_turn: float | None
     least_margin: float
     min_distance: float
     keep: Filter | TripleFilter | None
-    arcs: Arcs | None
+    arcs: Arcs | Regions | None
     one_finger: bool
     weights: RegraspWeights | None
     min_normal: float | None
     step_duration: float
     goal_rotation: ArrayLike | None
-    facets: int
+    facets: int | None
     seed: int
 
 
@@ -63,17 +60,15 @@ def settled(problem: Any) -> Criteria:
     given = {name: getattr(problem, name) for name in entries}
     defaults = {name: option.default for name, (_, option) in entries.items()}
     changed = {k: v for k, v in given.items() if not isinstance(v, float | None) or v != defaults[k]}
-    asked = getattr(problem, "min_normal", None)
+    asked = problem.min_normal
     if asked is not None and number(asked, "min_normal", least=0):
         changed["min_normal"] = asked
     criteria = criteria_of(problem.objective, changed)
-    if criteria.demands and getattr(problem, "states", "each") == "joint":
+    if criteria.demands and problem.states == "joint":
         raise InvalidInput(
             "states='joint' has one margin for all states and withstands no disturbance; use states='each'"
         )
-    if not hasattr(problem, "min_normal"):
-        criteria.refuse_pressing("a regrasp in space")
-    elif asked is not None or isinstance(problem.objective, Criteria):
+    if asked is not None or isinstance(problem.objective, Criteria):
         object.__setattr__(problem, "min_normal", criteria.least_normal)
     for name in ("objective", *entries):
         object.__setattr__(problem, name, getattr(criteria, name))

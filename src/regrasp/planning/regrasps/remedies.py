@@ -15,8 +15,10 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import with_limit
 from regrasp.planning.holds.bottleneck import bottleneck, connected
+from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import HoldGraph
-from regrasp.planning.holds.sequences import sequences
+from regrasp.planning.holds.sequences import preferred
+from regrasp.planning.holds.stances import REACH, Stances
 from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.turning import turning_sequences
 
@@ -26,12 +28,16 @@ _MOST_LOADS = 1e4  # and force limits up to so many loads
 _DIGITS = 3
 
 
-def possible_on(problem: Asked, graph: HoldGraph, arcs: bool = True) -> bool:
+def possible_on(problem: Asked, graph: AnyGraph, arcs: bool = True) -> bool:
     """Whether any sequence exists on another graph of the same contacts, whatever its margins."""
     start, goal, last = problem.places
     if problem.allowed is None or not arcs:
         return connected(graph, start, goal, last)
-    return bool(sequences(graph, start, goal, last, max_turn=problem.max_turn, allowed=problem.allowed))
+    return bool(preferred(_stances(problem, graph), start, goal, last))
+
+
+def _stances(problem: Asked, graph: AnyGraph) -> Stances:
+    return problem.setting.stances(graph, problem.largest_turn, REACH, problem.allowed, 0.0)
 
 
 def widest_margin(problem: Asked) -> float:
@@ -43,10 +49,7 @@ def widest_margin(problem: Asked) -> float:
         found = bottleneck(problem.graph, start, goal, last)
         assert found is not None
         return found.margin
-    every = sequences(
-        problem.graph, start, goal, last, max_turn=problem.max_turn, allowed=problem.allowed, extra=10**6
-    )
-    return every[-1].margin
+    return preferred(_stances(problem, problem.graph), start, goal, last, 10**6)[-1].margin
 
 
 def friction_needed(problem: Asked) -> float | None:
@@ -80,14 +83,21 @@ def force_needed(problem: Asked) -> float | None:
 def least_force(possible: Callable[[float], bool], contacts: Iterable[Contact], load: Wrench) -> float | None:
     """The least force limit [N] with which it is possible, of contacts some of which are limited; or None."""
     limits = [c.max_force for c in contacts if c.max_force is not None]
-    return least_value(possible, min(limits), _MOST_LOADS * float(np.hypot(*load.force))) if limits else None
+    return (
+        least_value(possible, min(limits), _MOST_LOADS * float(np.linalg.norm(load.force)))
+        if limits
+        else None
+    )
 
 
 def in_the_way(problem: Asked) -> Iterator[str]:
     """Options that stand in the way, each by itself."""
     graph = problem.graph
-    if not problem.one_finger and possible_on(problem, replace(graph, one_finger=True)):
-        yield "asking that both fingers push (one_finger=True)"
+    if isinstance(graph, HoldGraph):
+        if not problem.one_finger and possible_on(problem, replace(graph, one_finger=True)):
+            yield "asking that both fingers push (one_finger=True)"
+        if problem.min_normal and possible_on(problem, replace(graph, min_normal=0.0)):
+            yield "min_normal"
     if problem.min_distance > 0 and possible_on(problem, replace(graph, min_distance=0.0)):
         yield "min_distance"
     if problem.keep is not None and possible_on(problem, replace(graph, keep=None)):

@@ -1,27 +1,25 @@
 """From a sequence of holds to the steps of a regrasp: states chosen, and joined by transitions."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import atan, ceil, cos, pi, tan
-from typing import Literal
+from math import atan, ceil, cos, tan
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import eased
 from regrasp.planning.changes.lost_loads import refuse_lost_load
-from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.holds.stances import Places
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import ANGLE, FORCE, recorded
 from regrasp.plans.record import Choice, Record
-from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
@@ -32,8 +30,7 @@ from regrasp.plans.turning import TurningPath
 class Chosen:
     """A state of a regrasp and how it was chosen.
 
-    places: (n,) of its contacts among all. forces: (n, d) [N]; limits: (n,) [N]. angle: of the object [rad],
-    in the plane.
+    places: (n,) of its contacts among all. forces: (n, d) [N]; limits: (n,) [N].
     """
 
     places: tuple[int, ...]
@@ -43,7 +40,6 @@ class Chosen:
     limits: tuple[float, ...]
     objective: str
     method: str
-    angle: float = 0.0
 
     def among(self, places: tuple[int, ...]) -> Array:
         """(m, d) forces of other contacts, zero for those that this state does not have."""
@@ -63,52 +59,61 @@ class Chosen:
 
 
 def chosen_states(
-    sequence: Sequence,
+    nodes: Sequence[tuple[Places, Any]],
     contacts: tuple[Contact, ...],
-    start: tuple[int, ...],
-    goal: tuple[int, ...],
-    load: Wrench,
-    angles: Array,
-    goal_angle: float,
+    way: "Way",
     criteria: Criteria,
     one_finger: bool,
-    least: float = 0.0,
-    max_turn: float = pi,
-) -> list[Chosen]:
-    """The first grasp's state, that of every hold, and the last grasp's, each chosen by itself.
+    least: float,
+    max_turn: float,
+) -> tuple[list[Chosen], list[Any]]:
+    """The first grasp's state, that of every hold, and the last grasp's, with the orientation of each.
 
-    goal_angle: of the object in the end [rad]. Where the object turns by more than ``max_turn`` [rad] from
-    one to the next, states of the contacts of both are between.
+    nodes: contacts and orientation of each. Where the object turns by more than ``max_turn`` [rad] from one
+    to the next, states of the contacts of both are between.
 
     Holds are chosen for the objective, whole grasps for the widest force margin: every finger works. So are
     holds of which the objective would leave one finger idle, unless ``one_finger`` may hold. least: angle
     margin [rad] that every hold keeps, whatever it is chosen for.
     """
-    turned = _unwrapped([0.0, *(float(angles[o]) for _, _, o in sequence.holds), goal_angle])
-    whole = replace(criteria, objective=FORCE)
-    pieces = [pieces_of(b - a, max_turn) for a, b in pairwise(turned)]
-    sizes = [abs(b - a) / n for (a, b), n in zip(pairwise(turned), pieces, strict=True)]
+    whole, fingers = replace(criteria, objective=FORCE), len(nodes[0][0])
+    turns = [way.turn(a, b) for (_, a), (_, b) in pairwise(nodes)]
+    pieces = [pieces_of(turn, max_turn) for turn in turns]
+    sizes = [0.0, *(turn / n for turn, n in zip(turns, pieces, strict=True)), 0.0]
+    states: list[Chosen] = []
+    orientations: list[Any] = []
 
-    def at(places: Places, angle: float, criteria: Criteria, ease: float) -> Chosen:
-        return replace(chosen_state(places, contacts, turned_load(load, angle), criteria, ease), angle=angle)
+    def add(places: Places, at: Any, criteria: Criteria, ease: float) -> None:
+        state = chosen_state(places, contacts, way.seen(at), criteria, ease)
+        if len(places) < fingers:
+            if not one_finger and not state.all_work:
+                state = chosen_state(places, contacts, way.seen(at), whole, ease)
+            state = kept(state, contacts, criteria, ease, least)
+        states.append(state)
+        orientations.append(at)
 
-    def between(before: Places, after: Places, k: int) -> list[Chosen]:
-        """States on the way to the state of place k."""
-        a, step = turned[k - 1], (turned[k] - turned[k - 1]) / pieces[k - 1]
-        every = tuple(dict.fromkeys((*before, *after)))
-        ease = eased_by(sizes[k - 1])
-        return [at(every, a + q * step, whole, ease) for q in range(1, pieces[k - 1])]
+    for k, (places, at) in enumerate(nodes):
+        if k:
+            before, last = nodes[k - 1]
+            every = tuple(dict.fromkeys((*before, *places)))
+            for q in range(1, pieces[k - 1]):
+                share = q / pieces[k - 1]
+                add(every, way.between(last, at, share), whole, eased_by(sizes[k]))
+        add(places, at, criteria if len(places) < fingers else whole, eased_by(max(sizes[k : k + 2])))
+    return states, orientations
 
-    states = [at(start, 0.0, whole, eased_by(sizes[0]))]
-    for k, (i, j, _) in enumerate(sequence.holds, 1):
-        ease = eased_by(max(sizes[k - 1 : k + 1]))
-        state = at((i, j), turned[k], criteria, ease)
-        if not one_finger and not state.all_work:
-            state = at((i, j), turned[k], whole, ease)
-        way = between(states[-1].places, (i, j), k)
-        states += [*way, replace(kept(state, contacts, criteria, ease, least), angle=turned[k])]
-    way = between(states[-1].places, goal, len(turned) - 1)
-    return [*states, *way, at(goal, turned[-1], whole, eased_by(sizes[-1]))]
+
+class Way(Protocol):
+    """How an object turns, as ``Setting`` says."""
+
+    def seen(self, orientation: Any) -> Wrench:
+        """The load, seen from the object."""
+
+    def turn(self, before: Any, after: Any) -> float:
+        """How far it turns [rad]."""
+
+    def between(self, before: Any, after: Any, share: float) -> Any:
+        """The orientation a share of the way from one to another."""
 
 
 def pieces_of(turn: float, max_turn: float) -> int:
@@ -165,15 +170,7 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
     ]
 
 
-def regrasp_of(
-    states: list[Chosen], contacts: tuple[Contact, ...], scaling: TimeScaling, criteria: Criteria
-) -> RegraspPlan:
-    """The steps between states that follow one another."""
-    steps = [step_between(a, b, contacts, scaling, criteria, b.angle - a.angle) for a, b in pairwise(states)]
-    return RegraspPlan(tuple(steps), tuple(s.angle for s in states), least_margin(states))
-
-
-def least_margin(states: list[Chosen]) -> float:
+def least_margin(states: Sequence[Chosen]) -> float:
     """The least angle margin [rad] of the holds, in which a finger is free."""
     return min(state.margin for state in states if len(state.places) < len(states[0].places))
 
@@ -235,12 +232,3 @@ def _in_use(forces: Array) -> tuple[bool, ...]:
 
 def _choice(label: Literal["start", "end"], state: Chosen) -> Choice:
     return Choice(label, state.objective, state.method, state.limits)
-
-
-def _unwrapped(angles: list[float]) -> list[float]:
-    """The same angles, each at most half a turn from the one before it, the first from 0."""
-    result: list[float] = []
-    for angle in angles:
-        last = result[-1] if result else 0.0
-        result.append(angle + 2 * pi * round((last - angle) / (2 * pi)))
-    return result

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Unpack
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
-from regrasp.outline import Outline
 from regrasp.planning.regrasps.options import RegraspOptions
-from regrasp.planning.regrasps.planar import RegraspProblem
-from regrasp.planning.regrasps.spatial import SpaceRegraspProblem
+from regrasp.planning.regrasps.problem import RegraspProblem
 from regrasp.plans.regrasp_plan import RegraspPlan
 
 if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
+    from regrasp.outline import Outline
 
 
 def plan_regrasp(
@@ -27,7 +26,7 @@ def plan_regrasp(
         start: three contacts, in space four, relative to the centre of mass [m].
         goal: as many, at the end.
         load: a force through the centre of mass, seen from the object before it turns [N].
-        **options: of ``RegraspProblem`` or ``SpaceRegraspProblem``; ``friction`` [-] is required.
+        **options: of ``RegraspProblem``; ``friction`` [-] is required.
     """
     return _problem(outline, start, goal, load, options).plans()[0]
 
@@ -59,17 +58,11 @@ def plan_regrasps(
 
 def _problem(
     shape: "Outline | Mesh", start: Grasp, goal: Grasp, load: Wrench, options: RegraspOptions
-) -> RegraspProblem | SpaceRegraspProblem:
-    """The problem for an outline or a mesh. Raises ``InvalidInput`` for an option that it does not have."""
-    from regrasp.mesh.mesh import Mesh
-
-    if not isinstance(shape, (Outline, Mesh)):
-        raise InvalidInput(f"a regrasp needs an Outline or a Mesh, got {shown(shape)}")
-    kind = RegraspProblem if isinstance(shape, Outline) else SpaceRegraspProblem
-    known = [field.name for field in fields(kind)][4:]
+) -> RegraspProblem:
+    """The problem. Raises ``InvalidInput`` for an option that it does not have."""
+    known = [field.name for field in fields(RegraspProblem)][4:]
     unknown = [name for name in options if name not in known]
     if unknown or "friction" not in options:
         wrong = f"unknown option {shown(unknown[0])}" if unknown else "friction is missing"
-        where = "an outline" if kind is RegraspProblem else "a mesh"
-        raise InvalidInput(f"{wrong}; a regrasp on {where} takes {', '.join(known)}")
-    return kind(shape, start, goal, load, **options)  # type: ignore[arg-type, misc]
+        raise InvalidInput(f"{wrong}; a regrasp takes {', '.join(known)}")
+    return RegraspProblem(shape, start, goal, load, **options)

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import partial
-from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +9,8 @@ from numpy.typing import NDArray
 from regrasp.errors import Infeasible, RegraspError, SolverFailed
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.planning.holds.graphs import AnyGraph, Parts, holding, holds_within
 from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.cut import cut_of
 from regrasp.planning.regrasps.remedies import (
@@ -38,8 +36,8 @@ class RegraspObstacle:
     """Why no sequence of holds leads from a start to a goal; the ``certificate`` of its ``Infeasible``.
 
     Args:
-        start: components of the hold graph, over all orientations, of the contacts that hold at each end; -1
-            stands for contacts without any hold.
+        start: components of the hold graph, over all orientations, of the contacts that hold at each end, in
+            space of the pairs of contacts; -1 stands for contacts without any hold.
         goal: components of the hold graph, over all orientations, of the contacts that hold at each end; -1
             stands for contacts without any hold.
         friction: with at least this coefficient at every contact there is a sequence [-].
@@ -93,26 +91,28 @@ def _proven(cut: RegraspCut | None) -> str:
     return "" if cut is None else "; none at any orientation is proven, by the cut of the certificate"
 
 
-def _components(graph: HoldGraph, places: tuple[int, ...]) -> tuple[int, ...]:
-    """The components of an end's points that hold at any orientation, or of all its points if none do."""
-    margins = graph.margins.max(axis=0)
-    held = {v for i in places for j in places if i != j and margins[graph.pair(i, j)] >= 0 for v in (i, j)}
-    component = graph.components()
-    return tuple(sorted({int(component[i]) for i in held or places}))
+def _components(graph: AnyGraph, places: tuple[int, ...]) -> tuple[int, ...]:
+    """The components of an end's holds over all orientations, or of all its points if none holds."""
+    parts = Parts(graph)
+    holds: NDArray[np.bool_] = np.any(holding(graph), axis=0)
+    within = holds_within(graph, places)
+    held = [place for place in within if holds[place]]
+    component = parts.components(holds)
+    return tuple(sorted({int(component[part]) for part in parts.of[held or within].ravel()}))
 
 
 def _reason(problem: Asked, start: tuple[int, ...], goal: tuple[int, ...]) -> str:
-    graph, (*ends, last) = problem.graph, problem.places
+    graph, (*ends, last), setting = problem.graph, problem.places, problem.setting
+    few, whole, holds = ("two", "three", "pairs") if setting.fingers == 3 else ("three", "four", "triples")
     for what, places, o in (("start", ends[0], 0), ("goal", ends[1], last)):
-        pairs = [graph.pair(i, j) for k, i in enumerate(places) for j in places[k + 1 :]]
-        held: NDArray[np.bool_] = np.any(graph.margins[:, pairs] >= 0, axis=1)
+        held: NDArray[np.bool_] = np.any(holding(graph)[:, holds_within(graph, places)], axis=1)
         if not held.any():
-            others = f", nor at any of {len(held) - 1} others that all three may turn the object to"
+            others = f", nor at any of {len(held) - 1} others that all {whole} may turn the object to"
             return (
-                f"no two fingers of the {what} hold the load at {degrees(graph.angles[o]):.4g} deg"
+                f"no {few} fingers of the {what} hold the load {setting.where(setting.orientations[o])}"
                 f"{others if len(held) > 1 else ''}, so none of its fingers can leave or arrive"
             )
-    count = int((graph.margins.max(axis=0) >= 0).sum())
+    count = int(holding(graph).any(axis=0).sum())
     common = tuple(sorted(set(start) & set(goal) - {-1}))
     apart = "the turns between are too large" if problem.allowed is None else "the arcs keep them apart"
     where = (
@@ -122,7 +122,7 @@ def _reason(problem: Asked, start: tuple[int, ...], goal: tuple[int, ...]) -> st
     )
     return (
         f"no sequence of holds leads from the start to the goal: on {len(graph.contacts)} points and "
-        f"{len(graph.angles)} orientations ({count} pairs hold at one of them) {where}"
+        f"{len(graph.loads)} orientations ({count} {holds} hold at one of them) {where}"
     )
 
 
@@ -140,15 +140,20 @@ def _remedy(problem: Asked, obstacle: RegraspObstacle) -> str:
         ways.append(f"with force limits of {obstacle.max_force:g}")
     ways += [f"without {option}" for option in obstacle.without]
     if not ways:
-        return f"no friction up to {MOST_FRICTION:g} would do; try more candidates or orientations"
+        more = (
+            "candidates or orientations"
+            if problem.setting.fingers == 3
+            else "candidates, orientations or facets"
+        )
+        return f"no friction up to {MOST_FRICTION:g} would do; try more {more}"
     return f"there would be one {', or '.join(ways)}"
 
 
 def unheld_end(problem: Asked) -> Infeasible | None:
     """The error of an end that even three fingers cannot hold."""
-    graph, (start, goal, last) = problem.graph, problem.places
+    setting, (start, goal, last) = problem.setting, problem.places
     for what, places, o in (("start", start, 0), ("goal", goal, last)):
-        load = turned_load(problem.load, float(graph.angles[o]))
+        load = setting.seen(setting.orientations[o])
         contacts = [problem.contacts[i] for i in places]
         reason = _refusal(contacts, load, problem.criteria)
         if isinstance(reason, Infeasible):
@@ -165,7 +170,7 @@ def unheld_end(problem: Asked) -> Infeasible | None:
                 f"they would {' or '.join(ways)}" if ways else f"no friction up to {MOST_FRICTION:g} would do"
             )
             return Infeasible(
-                f"the fingers of the {what} cannot hold the load at {degrees(graph.angles[o]):.4g} deg: "
+                f"the fingers of the {what} cannot hold the load {setting.where(setting.orientations[o])}: "
                 f"{reason}; {needs}",
                 reason.certificate,
             )

@@ -1,0 +1,1 @@
+"""What differs between the plane and space in a regrasp: shapes, orientations and holds."""

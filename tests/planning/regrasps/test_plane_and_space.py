@@ -1,0 +1,199 @@
+"""Every option of a regrasp, on an outline and on a mesh."""
+
+from collections import deque
+from itertools import combinations, pairwise, permutations
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from box import BOX, GOAL, MU, START, WEIGHT
+from regrasp.mechanics.orientation.rotations import rotation_matrix
+from regrasp.planning.holds.sequences import preferred
+from regrasp.planning.holds.spatial_stances import Quads
+from regrasp.planning.holds.triples import TripleGraph
+from regrasp.planning.regrasps import planned
+
+pytestmark = pytest.mark.oracle
+
+ELLIPSE = rg.Outline.ellipse(2, 1)
+
+
+def on_ellipse(*places):
+    return rg.Grasp(ELLIPSE.contact_at(p * ELLIPSE.length, friction=0.5) for p in places)
+
+
+PLANE = (ELLIPSE, on_ellipse(0.02, 0.35, 0.7), on_ellipse(0.2, 0.5, 0.85), rg.Wrench([0, -3.0]))
+SPACE = (BOX, START, GOAL, WEIGHT)
+ASKED = {
+    "plane": (PLANE, {"friction": 0.5, "candidates": 24, "orientations": 24}),
+    "space": (SPACE, {"friction": MU, "candidates": 10, "orientations": 20}),
+}
+TURNED = {
+    "plane": {"goal_orientation": np.pi / 2},
+    "space": {"goal_rotation": rotation_matrix([1, 0, 0], 1.2)},
+}
+
+
+def problem(where, **options):
+    ends, usual = ASKED[where]
+    return rg.RegraspProblem(*ends, **{**usual, **options})
+
+
+def checked(plan):
+    assert rg.verify(plan).ok
+    return plan
+
+
+def staying(step):
+    return [step.grasp.index(n) for n in step.grasp.names if n not in (*step.leaving, *step.arriving)]
+
+
+def turned(plan):
+    return sum(abs(step.turn.angle) for step in plan.steps if step.turn is not None)
+
+
+both = pytest.mark.parametrize("where", ["plane", "space"])
+
+
+@both
+def test_moves_are_traded_for_margin_up_to_the_bottleneck(where):
+    asked = problem(where, orientations=1)
+    plans = [checked(plan) for plan in asked.plans(extra=3)]
+    moves, margins = [len(p.moves) for p in plans], [p.margin for p in plans]
+    assert moves == sorted(set(moves))
+    assert margins == sorted(margins)
+    limit = asked.bottleneck()
+    assert limit.margin >= asked.sequences(extra=3)[-1].margin - 1e-6
+    assert "limited by the hold of" in str(limit)
+    assert len(limit.hold) == len(plans[0].steps[0].grasp)  # all fingers but one, and an orientation
+    graph = asked.graph
+    assert problem(where, orientations=1, least_margin=limit.margin * (1 - 1e-6)).plans()
+    with pytest.raises(rg.Infeasible, match="the widest worst margin"):
+        problem(where, orientations=1, least_margin=limit.margin + 1e-3).plans()
+    assert limit.graph is graph
+
+
+@both
+def test_turns_are_made_smaller_where_a_step_is_refused(where, monkeypatch):
+    chosen, refused = planned.chosen_states, []
+
+    def strict(nodes, contacts, way, *rest):
+        if max(way.turn(a, b) for (_, a), (_, b) in pairwise(nodes)) > 0.8:
+            refused.append(nodes)
+            raise rg.Infeasible("too far")
+        return chosen(nodes, contacts, way, *rest)
+
+    monkeypatch.setattr(planned, "chosen_states", strict)
+    plan = checked(problem(where, **TURNED[where], orientations=60).plans()[0])
+    assert refused
+    assert max(abs(step.turn.angle) for step in plan.steps if step.turn is not None) <= 0.8 + 1e-9
+
+
+@both
+def test_weights(where):
+    usual = problem(where, **TURNED[where]).plans()[0]
+    lazy = checked(problem(where, **TURNED[where], weights=rg.RegraspWeights(moves=0, turning=1)).plans()[0])
+    few = problem(where, **TURNED[where], weights=rg.RegraspWeights(moves=1)).plans()[0]
+    assert turned(lazy) <= turned(usual) + 1e-9
+    assert len(few.moves) == len(usual.moves)
+    short = problem(where, **TURNED[where], weights=rg.RegraspWeights(moves=0, time=1)).plans()[0]
+    assert len(short.steps) <= len(usual.steps)
+
+
+@both
+def test_fingers_keep_to_their_arcs(where):
+    ends = ASKED[where][0]
+    if where == "plane":
+        arcs = [(0.85 * ELLIPSE.length, 0.3 * ELLIPSE.length), None, None]
+
+        def may(point):
+            place = ELLIPSE.nearest(point + ELLIPSE.centre_of_mass) / ELLIPSE.length
+            return place >= 0.85 - 1e-6 or place <= 0.3 + 1e-6
+    else:
+        arcs = [[[0.0, -1, -1], [1, 1, 1]], lambda points: points[:, 0] <= 0.01, None, None]
+
+        def may(point):
+            return point[0] >= -1e-9
+
+    plan = checked(problem(where, arcs=arcs).plans()[0])
+    for step, names in zip(plan.steps, plan.fingers, strict=True):
+        if names[0] is not None:
+            assert may(step.grasp[names[0]].position)
+    assert may(ends[1].positions[0])
+    away = (0.5, 0.6) if where == "plane" else (lambda points: points[:, 0] < 0)
+    with pytest.raises(rg.InvalidInput, match="is not on the arc of finger 1"):
+        problem(where, arcs=[away, *[None] * (len(ends[1]) - 1)])
+
+
+@both
+def test_refusals_say_what_would_make_it_possible(where):
+    ends, usual = ASKED[where]
+    friction, force = (0.3, 40.0) if where == "plane" else (MU, 0.7)
+    slippery = [rg.Grasp(c.changed(friction=friction) for c in grasp) for grasp in ends[1:3]]
+    options = usual | {"friction": friction, "orientations": 1, "max_force": force}
+    with pytest.raises(rg.Infeasible, match="there would be one with friction") as caught:
+        rg.plan_regrasp(ends[0], *slippery, ends[3], **options)
+    obstacle = caught.value.certificate
+    assert isinstance(obstacle, rg.RegraspObstacle)
+    enough = [rg.Grasp(c.changed(friction=obstacle.friction) for c in grasp) for grasp in ends[1:3]]
+    assert rg.plan_regrasps(ends[0], *enough, ends[3], **options | {"friction": obstacle.friction})
+    nothing = {"keep": lambda a, b, c: np.zeros(len(a), dtype=bool), "min_distance": 99.0}
+    for name, value in nothing.items():
+        with pytest.raises(rg.Infeasible, match=f"without {name}") as caught:
+            problem(where, orientations=1, **{name: value}).plans()
+        assert name in caught.value.certificate.without
+
+
+@both
+@pytest.mark.parametrize("states", ["each", "joint"])
+def test_fingers_push(where, states):
+    free = problem(where, min_normal=0.0, states=states).plans()[0]
+    load = np.linalg.norm(ASKED[where][0][3].force)
+    asked = problem(where, min_normal=0.2 * load, states=states)
+    plan = checked(asked.plans()[0])
+    for step in plan.steps:
+        for state in (step.start, step.end):
+            normal = (state.forces * step.grasp.normals).sum(axis=1)
+            assert normal[staying(step)].min() >= 0.2 * load * (1 - 1e-9)
+    assert len(plan.moves) >= len(free.moves)
+    if states == "each":
+        assert len(plan.moves) > len(free.moves) or plan.margin <= free.margin + 2e-3
+        usual = problem(where, states=states).plans()[0]
+        assert not [note for note in usual.notes if "pushes with" in note]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_regions_in_space_against_every_move(seed):
+    """Fewest moves where each finger may touch some points only, breadth first over all placements."""
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(8, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    contacts = tuple(
+        rg.Contact(p, -p + 0.3 * rng.normal(size=3), 0.6, name=f"c{i}") for i, p in enumerate(points)
+    )
+    down = np.array([[0, 0, -1.0]])
+    graph = TripleGraph(contacts, np.pad(down, ((0, 0), (0, 3))))
+    start, goal = (tuple(rng.choice(8, 4, replace=False).tolist()) for _ in range(2))
+    allowed = rng.random((4, 8)) < 0.7
+    allowed[range(4), start] = True
+
+    def holds(three):
+        return graph.margins[0, graph.triple(*three)] >= 0
+
+    ends = {way for way in permutations(goal) if all(allowed[f, v] for f, v in enumerate(way))}
+    able = any(holds(t) for t in combinations(start, 3)) and any(holds(t) for t in combinations(goal, 3))
+    found, queue, fewest = {start: 0}, deque([start] if able else []), None
+    while queue and fewest is None:
+        here = queue.popleft()
+        if here in ends:
+            fewest = found[here]
+        for f in range(4):
+            if holds(here[:f] + here[f + 1 :]):
+                for v in set(np.flatnonzero(allowed[f]).tolist()) - set(here):
+                    new = (*here[:f], v, *here[f + 1 :])
+                    if new not in found:
+                        found[new] = found[here] + 1
+                        queue.append(new)
+    best = preferred(Quads(graph, down, 1.0, allowed=allowed), start, goal, 0) if ends else []
+    assert [s.moves for s in best] == ([] if fewest is None else [fewest])
