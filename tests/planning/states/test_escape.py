@@ -217,3 +217,14 @@ def test_a_motion_the_fingers_oppose_is_no_proof() -> None:
             assert not back.is_proof
             assert not proves(back)
             assert back.load_power == -twist.load_power < 0
+
+
+def test_a_motion_that_no_friction_stops_is_said_to_be_one() -> None:
+    """Tipping about a foot, however rough it is; sliding needs friction."""
+    feet = rg.Grasp(rg.Contact([x, -1], [0, 1], 0.5) for x in (-1, 1))
+    for r in (1e-2, 1e-4, 1e-6):
+        with pytest.raises(rg.Infeasible, match=r"turning clockwise about \(1, -1\); no friction helps$"):
+            rg.choose_state(feet, rg.Wrench([0, -1], -(1 + r)))
+    with pytest.raises(rg.Infeasible, match="sliding along") as slides:
+        rg.choose_state(feet, rg.Wrench([0.6, -1]))
+    assert "no friction" not in str(slides.value)

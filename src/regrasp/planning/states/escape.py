@@ -26,6 +26,8 @@ _LOOSE = 1e6
 # Forces this many times the load, and how much nearer the larger ones must come, to call it a limit only.
 _REACHES = (1e2, 1e4)
 _NEARER = 0.1
+_STRAIGHT = 1e-6  # of the largest speed of a contact
+_ROUGH = 1e4  # friction beyond which none is met
 # A load that does less than this fraction of work along a free motion does none.
 _WORK = 1e-9
 
@@ -62,7 +64,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     if twist is not None:
         return Infeasible(
             f"no forces of {names} inside their friction cones balance {shown(load)}: "
-            f"the object escapes by {twist}",
+            f"the object escapes by {twist}{_whatever_friction(twist)}",
             twist,
         )
     twist = escape_twist(grasp, load, frictions, limits) if min(limits) < inf else None
@@ -109,6 +111,18 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
         f"no forces of {names} inside their friction cones balance {shown(load)}, but only in the limit: "
         f"{larger}, so no motion proves it; the contacts would need a little more friction"
     )
+
+
+def _whatever_friction(twist: EscapeTwist) -> str:
+    """Words for a motion that no friction stops: every contact leaves straight, or stands still."""
+    u, n = twist.velocities, twist.grasp.normals
+    away = (u * n).sum(axis=1)
+    across, speed = np.linalg.norm(u - away[:, None] * n, axis=1), np.linalg.norm(u, axis=1).max()
+    if max(across.max(), -away.min()) > _STRAIGHT * speed:
+        return ""
+    rough = [_ROUGH] * len(twist.frictions)
+    is_proof = proven(twist.grasp, twist.load, twist.twist, rough, list(twist.limits)) is not None
+    return "; no friction helps" if is_proof else ""
 
 
 def _is_at_limit(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> bool:
