@@ -35,7 +35,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     ),
     "rotation": (
         ["planning/**/rotation.py", "planning/**/turn_states.py", "planning/**/lost_loads.py"],
-        ["**/test_rotation.py", "**/test_lost_loads.py", "**/test_limits_of_both_ends.py"],
+        ["**/test_rotation*.py", "**/test_lost_loads.py", "**/test_limits_of_both_ends.py"],
         0.85,
     ),
     "files": (
