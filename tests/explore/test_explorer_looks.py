@@ -88,10 +88,27 @@ def test_tolerances_are_those_of_the_plan_in_words() -> None:
     assert all(len(row) == 4 for row in stays["rows"])
 
 
-def test_a_map_needs_two_that_hold_alone_and_an_outline() -> None:
+def test_a_map_of_two_beside_a_third_that_stays() -> None:
     start = of_shape(BRACKET)
-    with pytest.raises(InvalidInput, match="two fingers that hold alone; here 3 do"):
-        pair_map(replace(start.question, leaves=None), BRACKET)
+    asked = replace(start.question, leaves=None, objective="peak")
+    found = pair_map(asked, BRACKET)
+    assert found["title"] == "least peak beside P3"
+    values = np.array([[np.nan if v is None else v for v in row] for row in found["values"]])
+    j, i = np.unravel_index(np.nanargmin(values), values.shape)
+    points = np.array(found["places"])[[i, j]] + BRACKET.centre_of_mass
+    third = asked.on(BRACKET).grasp["P3"]
+    mu = third.friction
+    pair = [BRACKET.contact_at(BRACKET.nearest(p), friction=mu) for p in points]
+    state = rg.choose_state(rg.Grasp([*pair, third]), asked.wrench, "peak")
+    assert state.value == pytest.approx(values[j, i], rel=1e-5)
+
+
+def test_a_map_needs_an_outline_and_of_more_fingers_one_friction() -> None:
+    start = of_shape(BRACKET)
+    first, *others = start.question.contacts
+    rough = replace(start.question, leaves=None, contacts=(first | {"friction": 0.9}, *others))
+    with pytest.raises(InvalidInput, match="of one friction and without force limits"):
+        pair_map(rough, BRACKET)
     solid = start_of("solid-bracket")
     said = reply(solid, {"question": solid.question.to_dict(), "look": "places"})
     assert said["says"].startswith("needs an outline")

@@ -15,6 +15,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_removal
+from regrasp.planning.placement.maps import placement_map
 from regrasp.planning.placement.regions import contact_regions
 from regrasp.planning.robustness.tolerances import tolerances
 from regrasp.planning.states.batch import best_squeezes
@@ -23,6 +24,8 @@ from regrasp.plans.transition import Transition
 
 CELLS = 96
 """Of a map, along each side."""
+_COARSE = 48  # where others stay
+_NORMS = ("sum_normal", "peak_normal", "peak", "effort")
 _TRIED, _TRIED_TOGETHER = 240, 60
 _WAY = 40  # points of a drawn region
 _RESERVE = 1 - 1e-9  # as in planning
@@ -87,7 +90,9 @@ def _staying(asked: Question) -> Grasp:
 
 
 def pair_map(question: Question, shape: Shape | None = None) -> dict[str, Any]:
-    """Of the two fingers that hold alone, the objective's value wherever on the outline they are.
+    """Of the first two fingers that hold, the objective's value wherever on the outline they are.
+
+    Others that hold stay where they are; the map is coarser then, and of forces.
 
     Args:
         question: what is asked.
@@ -96,8 +101,8 @@ def pair_map(question: Question, shape: Shape | None = None) -> dict[str, Any]:
     outline = _outline(shape)
     asked = question.on(outline)
     two = _staying(asked)
-    if len(two) != 2:
-        raise InvalidInput(f"a map is of two fingers that hold alone; here {len(two)} do: let others leave")
+    if len(two) > 2:
+        return _beside(asked, two, outline)
     s = (np.arange(CELLS) + 0.5) * outline.length / CELLS
     values = np.full((CELLS, CELLS), np.nan)
     i, j = np.nonzero(~np.eye(CELLS, dtype=bool))
@@ -112,6 +117,26 @@ def pair_map(question: Question, shape: Shape | None = None) -> dict[str, Any]:
         "title": f"{'widest' if more else 'least'} {asked.objective.replace('_', ' ')}",
         "unit": unit,
         "more": more,
+    }
+
+
+def _beside(asked: Question, rest: Grasp, outline: Outline) -> dict[str, Any]:
+    """The map of two fingers beside one or two that stay."""
+    if len(set(rest.frictions.tolist())) > 1 or any(c.max_force is not None for c in rest):
+        raise InvalidInput("a map beside fingers that stay is of one friction and without force limits")
+    word = asked.objective if asked.objective in _NORMS else "peak"
+    places = [_place(outline, p) for p in rest.positions]
+    mu, load = float(rest.frictions[0]), asked.wrench
+    found = placement_map(outline, load, friction=mu, fixed=places[2:], objective=word, count=_COARSE)
+    return {
+        "names": list(rest.names[:2]),
+        "places": plain(outline.points(found.places)),
+        "length": outline.length,
+        "at": places[:2],
+        "values": plain(found.values),
+        "title": f"least {word.replace('_', ' ')} beside {', '.join(rest.names[2:])}",
+        "unit": _VALUES[word][0],
+        "more": False,
     }
 
 

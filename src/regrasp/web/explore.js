@@ -90,7 +90,8 @@ function open_explorer(root, begin, ask) {
   // What a look depends on: a map not on where its two fingers are.
   function depends(name) {
     const { squeeze: s, duration: t, contacts: all, ...rest } = question;
-    const fixed = name === "map" ? all.map(({ position, normal, ...c }) => c) : all;
+    const stay = all.filter((c) => c.name !== question.leaves);
+    const fixed = name === "map" ? all.map(({ position, normal, ...c }, i) => (stay.indexOf(all[i]) < 2 ? c : all[i])) : all;
     return JSON.stringify([name === "answered" ? "tolerances" : name, rest, fixed]);
   }
   // Tolerances, maps and places take longer than a frame: they are asked for when nothing has changed for a while.
