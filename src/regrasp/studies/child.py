@@ -6,23 +6,14 @@ task (bytes)              -> ("ready", machine, versions) or ("cannot", words)
 After "cannot" it ends.
 """
 
-import ctypes
-import os
 import pickle
-import signal
-import sys
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from threading import Thread
-from time import sleep
 from typing import Any
 
 from regrasp.errors import InvalidInput
-from regrasp.process_limits import limit_memory
+from regrasp.process_limits import die_with, limit_memory
 from regrasp.studies.task import NotKept, Task, machine, versions
-
-_SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
-_LOOK = 1.0  # seconds between looks whether the parent lives, where the system does not tell
 
 
 def main(channel: int, parent: int, memory_limit: int) -> None:
@@ -30,7 +21,7 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
 
     memory_limit: of addresses [bytes], 0 for none.
     """
-    _die_with(parent)
+    die_with(parent)
     limit_memory(memory_limit)
     connection: Connection[Any, Any] = Connection(channel)
     with suppress(EOFError, BrokenPipeError):
@@ -52,19 +43,3 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
                     connection.send(("cannot", str(error)))
                     return
                 connection.send((number, outcome))
-
-
-def _die_with(parent: int) -> None:
-    """Leave no orphan that goes on when the run, or the worker of a cluster, is killed."""
-    if sys.platform.startswith("linux"):
-        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
-    else:
-        Thread(target=_watch, args=(parent,), daemon=True).start()
-    if os.getppid() != parent:
-        os._exit(1)
-
-
-def _watch(parent: int) -> None:
-    while os.getppid() == parent:
-        sleep(_LOOK)
-    os._exit(1)

@@ -15,10 +15,7 @@ after it are timed.
 import contextlib
 import ctypes
 import gc
-import os
 import pickle
-import signal
-import sys
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -28,14 +25,12 @@ from typing import Any
 from regrasp.bench.problems.answer import Answer, printable, understood
 from regrasp.bench.running.machine import can_limit_memory
 from regrasp.bench.running.solvers import Solver
-from regrasp.process_limits import limit_memory
+from regrasp.process_limits import die_with, limit_memory
 from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 
 Once = Callable[[], tuple[Answer, float]]
 """One solve: the answer and the seconds it took."""
-
-_SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
 
 
 def main(channel: int, parent: int, memory_limit: int) -> None:
@@ -43,7 +38,7 @@ def main(channel: int, parent: int, memory_limit: int) -> None:
 
     memory_limit: of addresses [bytes], 0 for none; a solver that wants more is refused it.
     """
-    _die_with(parent)
+    die_with(parent)
     if can_limit_memory():
         limit_memory(memory_limit)
     _serve(Connection(channel))
@@ -151,14 +146,6 @@ def _status(name: str) -> int | None:
             if line.startswith(name + ":"):
                 return int(line.split()[1]) * 1024
     return None
-
-
-def _die_with(parent: int) -> None:
-    """Leave no orphan that hangs in a solver when the runner is killed."""
-    if sys.platform.startswith("linux"):
-        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
-    if os.getppid() != parent:
-        sys.exit()
 
 
 def _words(error: BaseException) -> str:
