@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 import regrasp as rg
+from finger_moves import moved
 from regrasp.mesh import parts as solids
 from regrasp.motions import plan_motions
 from regrasp.outline import parts
-from regrasp.plans.record import Record
 from regrasp.verification import verify_motions
 
 RESULTS = Path(__file__).parent / "results" / "motions.json"
@@ -37,19 +37,6 @@ SOLIDS: dict[str, Callable[[], rg.Mesh]] = {
     "ball": lambda: rg.Mesh.sphere(0.03, divisions=4),
     "bracket": solids.bracket,
 }
-
-
-def moved(contacts: list[rg.Contact]) -> rg.RegraspPlan:
-    """The fingers of the first half of the contacts go to the second, one after the other, without forces."""
-    steps, n, d = [], len(contacts) // 2, contacts[0].dimension
-    for k in range(n + 1):
-        grasp = rg.Grasp(contacts[k : k + n])
-        state = rg.GraspState(grasp, rg.Wrench(-np.eye(d)[-1]), np.zeros((n, d)))
-        leaving = (str(grasp.names[0]),) if k < n else ()
-        arriving = (str(grasp.names[-1]),) if k > 0 else ()
-        clock, record = rg.TimeScaling.spline(1.0), Record(reserve=0.0)
-        steps.append(rg.Transition(state, state, clock, record, leaving=leaving, arriving=arriving))
-    return rg.RegraspPlan(tuple(steps), (0.0,) * (n + 2), 0.0)
 
 
 def contacts(shape: rg.Outline | rg.Mesh, seed: int) -> list[rg.Contact]:

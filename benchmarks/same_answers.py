@@ -5,10 +5,10 @@
 
 The tasks are drawn from fixed seeds, so two runs of one version on one machine are equal to the last bit.
 ``compare`` counts by kind the tasks that are, with the largest difference relative to the task's largest
-force (of other numbers: to the largest of their own). It lists the tasks whose outcome differs: an error's
-type and text, names of fingers and methods, the verdict, or which values there are. Printed text is compared
-besides ("words"). Exit status 1 where an outcome differs, or a number by more than 1e-9; words alone are left
-to the reader.
+force (of other numbers: to the largest of their own), and the largest of the objectives' values alone, since
+many forces may share one. It lists the tasks whose outcome differs: an error's type and text, names of
+fingers and methods, the verdict, or which values there are. Printed text is compared besides ("words"). Exit
+status 1 where an outcome differs, or a number by more than 1e-9; words alone are left to the reader.
 """
 
 import argparse
@@ -40,7 +40,8 @@ class Difference:
     """What differs between two answers to one task.
 
     equal: whether all values are, to the last bit. worst: the name of the value that differs most, by
-    ``amount`` relative to its scale. outcome, words: before and after, None where they are the same.
+    ``amount`` relative to its scale. optimum: by how much the value of an objective does. outcome, words:
+    before and after, None where they are the same.
     """
 
     kind: str
@@ -48,6 +49,7 @@ class Difference:
     equal: bool
     worst: str
     amount: float
+    optimum: float
     outcome: Texts | None
     words: Texts | None
 
@@ -67,22 +69,24 @@ def differences(before: Iterable[Answer], after: Iterable[Answer]) -> list[Diffe
 def _difference(kind: str, key: str, a: Told | None, b: Told | None) -> Difference:
     if a is None or b is None:
         outcome = tuple("no such task" if told is None else told.outcome for told in (a, b))
-        return Difference(kind, key, False, "", 0.0, outcome, None)
+        return Difference(kind, key, False, "", 0.0, 0.0, outcome, None)
     outcome = (a.outcome, b.outcome)
     if a.outcome == b.outcome:
         outcome = (_layout(a), _layout(b))
-    equal, amount, worst = True, 0.0, ""
+    equal, amount, worst, optimum = True, 0.0, "", 0.0
     for name in filter(b.values.__contains__, a.values):
         (x, scale), (y, _) = a.values[name], b.values[name]
         if x.shape != y.shape or x.tobytes() == y.tobytes():
             continue
         equal = False
         apart = _apart(x, y) / scale
+        if name.endswith("value"):
+            optimum = max(optimum, apart)
         if apart > amount:
             amount, worst = apart, name
     equal = equal and outcome[0] == outcome[1]
     told = (outcome, (a.words, b.words))
-    return Difference(kind, key, equal, worst, amount, *(t if t[0] != t[1] else None for t in told))
+    return Difference(kind, key, equal, worst, amount, optimum, *(t if t[0] != t[1] else None for t in told))
 
 
 def _layout(told: Told) -> str:
@@ -99,7 +103,9 @@ def _apart(x: np.ndarray, y: np.ndarray) -> float:
 
 def report(found: Sequence[Difference], most: int) -> str:
     """A line for each kind, then of each kind up to ``most`` tasks that differ, in each way."""
-    lines = [f"{'':28}{'tasks':>7}{'to the bit':>12}{'largest':>12}{'outcomes':>10}{'words':>7}"]
+    lines = [
+        f"{'':28}{'tasks':>7}{'to the bit':>12}{'largest':>12}{'outcomes':>10}{'words':>7}{'optimum':>12}"
+    ]
     for kind in dict.fromkeys(d.kind for d in found):
         lines.append(_row(kind, [d for d in found if d.kind == kind]))
     lines.append(_row("all", found))
@@ -116,8 +122,8 @@ def _row(kind: str, found: Sequence[Difference]) -> str:
     equal, outcomes, words = (
         sum(map(bool, marks)) for marks in zip(*((d.equal, d.outcome, d.words) for d in found), strict=True)
     )
-    worst = max(d.amount for d in found)
-    return f"{kind:28}{len(found):7}{equal:12}{worst:12.3g}{outcomes:10}{words:7}"
+    worst, optimum = (max(sizes) for sizes in zip(*((d.amount, d.optimum) for d in found), strict=True))
+    return f"{kind:28}{len(found):7}{equal:12}{worst:12.3g}{outcomes:10}{words:7}{optimum:12.3g}"
 
 
 def _listing(

@@ -44,6 +44,10 @@ def compared(tmp_path, before, after):
 
 def row(text, kind):
     """tasks, equal to the bit, largest difference, outcomes, words."""
+    return numbers(text, kind)[:5]
+
+
+def numbers(text, kind):
     line = next(line for line in text.splitlines() if line.startswith(kind))
     return [float(number) for number in line[28:].split()]
 
@@ -123,6 +127,14 @@ def test_another_outcome_is_listed(tmp_path, capsys, other, shown):
     assert row(text, "other ") == [1, 0, 0, 1, 0]
     assert text.splitlines()[-4:] == ["other outcome: 1", "  other: 2", *(f"    {line}" for line in shown)]
     assert compared(tmp_path, other, told()) == 1
+
+
+def test_optima_are_told_apart_from_forces(tmp_path, capsys):
+    """Where many forces are as good, they may be others."""
+    states = [Told("a state", {"forces": Value.of([4.0, x]), "end value": Value.of(v, 2.0)}) for x, v in
+              ((1.0, 2.0), (2.0, 2.001))]  # fmt: skip
+    assert compared(tmp_path, *states) == 1
+    assert numbers(capsys.readouterr().out, "other")[2::3] == [0.25, 0.0005]
 
 
 def test_words_are_counted_apart(tmp_path, capsys):

@@ -8,7 +8,7 @@ import pytest
 
 import regrasp as rg
 from executed_plans import ellipse
-from motion_checks import moved
+from finger_moves import moved
 from regrasp.motions import Motions, plan_motions
 from regrasp.outline import parts
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from motion_checks import axes, instants, moved, to_faces
+from finger_moves import moved
+from motion_checks import axes, instants, to_faces
 from regrasp.mesh import parts
 from regrasp.motions import Motions, plan_motions
 

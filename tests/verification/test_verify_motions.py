@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from motion_checks import moved, star, to_faces
+from finger_moves import moved
+from motion_checks import star, to_faces
 from regrasp.motions import Motions, plan_motions
 from regrasp.motions.rounded import RoundedWay
 from regrasp.verification import verify_motions
