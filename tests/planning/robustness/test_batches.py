@@ -157,6 +157,7 @@ def test_states_of_arrays_take_any_leading_shape_and_say_what_they_leave_open() 
         tau.reshape(2, 3), objective="effort",
     )  # fmt: skip
     assert (shaped.forces.reshape(6, 3, 2) == flat.forces)[flat.held].all()
+    assert rg.choose_states(r[:0], n[:0], mu[:0], f[:0], tau[:0]).forces.shape == (0, 3, 2)
     none = rg.choose_states(r, n, mu, np.zeros((6, 2)), objective="peak")
     assert none.held.all()
     assert not none.forces.any()

@@ -109,9 +109,12 @@ def choose_states(
         read_only(np.where(held, _values(sought.name, forces, found, given), np.nan).reshape(given.shape)),
         read_only(forces.reshape(*given.shape, *forces.shape[1:])),
         Margins(
-            *(read_only(x.reshape(*given.shape, -1)) for x in (found.angle, found.force, found.friction_use))
+            *(
+                read_only(x.reshape(*given.shape, x.shape[1]))
+                for x in (found.angle, found.force, found.friction_use)
+            )
         ),
-        read_only(twists.reshape(*given.shape, -1)),
+        read_only(twists.reshape(*given.shape, twists.shape[1])),
     )
 
 
@@ -223,7 +226,7 @@ class _Given:
         result = np.empty((m, 3 * d - 3, n, d))
         result[:, :d] = axes[:, None]
         result[:, d:] = np.moveaxis(arms, -1, 1)
-        return result.reshape(m, -1, n * d)
+        return result.reshape(m, 3 * d - 3, n * d)
 
     def holds(self, forces: Array) -> NDArray[np.bool_]:
         """(m,) whether forces are in equilibrium, inside cones and limits."""
