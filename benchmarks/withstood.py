@@ -41,18 +41,25 @@ def main() -> None:
     share = 100 if given.quick else 1
     began, rng = process_time(), np.random.default_rng(1)
     counts: Counter[str] = Counter()
-    for state, stiffness in states(rng, STATES // share):
-        judge_tolerances(state, stiffness, counts)
-    for state, _ in states(rng, LOADS // share):
-        judge_largest(state, counts)
+    given.output.mkdir(parents=True, exist_ok=True)
+
+    def save(**more: Any) -> None:
+        found: dict[str, Any] = {"processor_seconds": round(process_time() - began, 1)}
+        found |= dict(sorted(counts.items())) | more
+        text = json.dumps(found, indent=1) + "\n"
+        (given.output / "withstood.json").write_text(text, encoding="utf-8")
+
     for plan, loads in plans(rng, max(PLANS // share, 3)):
         judge_members(plan, loads, rng, MEMBERS // share, counts)
-    found: dict[str, Any] = {"processor_seconds": round(process_time() - began, 1)}
-    found |= dict(sorted(counts.items())) | {"processor time": speeds(rng, 300 // share + 1)}
-    given.output.mkdir(parents=True, exist_ok=True)
-    (given.output / "withstood.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    for key, value in found.items():
-        print(f"{key}: {value}")
+    for state, _ in states(rng, LOADS // share):
+        judge_largest(state, counts)
+    save()
+    for k, (state, stiffness) in enumerate(states(rng, STATES // share)):
+        judge_tolerances(state, stiffness, counts)
+        if k % 250 == 249:
+            save()
+    save(**{"processor time": speeds(rng, 100 // share + 1)})
+    print((given.output / "withstood.json").read_text(encoding="utf-8"))
 
 
 def speeds(rng: np.random.Generator, count: int) -> dict[str, str]:
