@@ -31,8 +31,9 @@ def executed(path: Path) -> list[tuple[str, str, str]]:
     return result
 
 
-def rewrite(path: Path) -> None:
+def rewrite(page: Path | str) -> None:
     """Put what the blocks print today into the text blocks that follow them."""
+    path = Path(page)
     text = path.read_text(encoding="utf-8")
     for code, promised, actual in executed(path):
         before = f"```python\n{code}```\n\n```text\n"
