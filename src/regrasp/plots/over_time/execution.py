@@ -1,6 +1,6 @@
 """What was planned and what physics measured, over time."""
 
-from itertools import cycle
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from regrasp.execution.measured import SLIPPED, Execution
-from regrasp.mechanics.checks import instance
+from regrasp.mechanics.checks import Array, instance
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import (
     GREY,
@@ -26,6 +26,8 @@ from regrasp.plots.look.style import (
 )
 from regrasp.plots.look.units import SI, Units
 
+_PLANNED: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (2, 2))}
+
 
 def plot_measured_forces(execution: Execution, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """|f_i| of every contact as measured, and in black dashes as planned.
@@ -38,13 +40,8 @@ def plot_measured_forces(execution: Execution, ax: Axes | None = None, *, units:
     instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     measured, planned = (np.linalg.norm(f, axis=2) for f in (execution.forces, execution.planned))
-    for i, (name, colour) in enumerate(zip(execution.names, cycle(PALETTE), strict=False)):
-        own = marks(i, len(measured))
-        ax.plot(execution.times, measured[:, i], color=colour, linewidth=1.6, label=literal(name), **own)
-    for column in planned.T:
-        ax.plot(execution.times, column, color=INK, linewidth=0.8, linestyle=(0, (2, 2)))
-    keys = [*ax.get_lines()[: len(execution.names)]]
-    dashes = Line2D([], [], color=INK, linewidth=0.8, linestyle=(0, (2, 2)), label="planned")
+    keys = _measured_and_planned(ax, execution, measured, planned)
+    dashes = Line2D([], [], **_PLANNED, label="planned")
     _over_time(ax, execution, units)
     label_axis(ax.yaxis, "$|f_i|$ measured", units.force, float(planned.max()))
     legend(ax, [*keys, dashes], ncols=4)
@@ -62,10 +59,7 @@ def plot_friction_use(execution: Execution, ax: Axes | None = None, *, units: Un
     instance(execution, "execution", Execution)
     ax = axes_or_new(ax)
     measured, planned = execution.margins.friction_use, execution.planned_margins.friction_use
-    for i, (column, wanted) in enumerate(zip(measured.T, planned.T, strict=True)):
-        colour = PALETTE[i % len(PALETTE)]
-        ax.plot(execution.times, column, color=colour, linewidth=1.6, **marks(i, len(column)))
-        ax.plot(execution.times, wanted, color=INK, linewidth=0.8, linestyle=(0, (2, 2)))
+    _measured_and_planned(ax, execution, measured, planned)
     ax.axhline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     _over_time(ax, execution, units)
     finite = planned[np.isfinite(planned)]
@@ -119,6 +113,18 @@ def execution_figure(execution: Execution, *, units: Units = SI) -> Figure:
 def execution_png(execution: Execution) -> bytes:
     """``execution_figure`` as a PNG image, for display in notebooks."""
     return png(execution_figure(execution))
+
+
+def _measured_and_planned(ax: Axes, execution: Execution, measured: Array, planned: Array) -> list[Line2D]:
+    """Lines of (m, n) values of every contact, those planned over all of them; the lines measured."""
+    lines: list[Line2D] = []
+    for i, (name, column) in enumerate(zip(execution.names, measured.T, strict=True)):
+        look: dict[str, Any] = {"color": PALETTE[i % len(PALETTE)], "linewidth": 1.6}
+        look |= marks(i, len(column))
+        lines += ax.plot(execution.times, column, label=literal(name), **look)
+    for column in planned.T:
+        ax.plot(execution.times, column, **_PLANNED)
+    return lines
 
 
 def _over_time(ax: Axes, execution: Execution, units: Units) -> None:
