@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 import regrasp as rg
-from motion_checks import moved
+from finger_moves import moved
 from regrasp import plots
 from regrasp.motions import Motions, plan_motions
 from regrasp.plots.regrasps.ways import motion_moments
