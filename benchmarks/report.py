@@ -144,7 +144,14 @@ class Report:
             f"Python {e['python']}, {versions}; "
             f"load average {load['before']} before and {load['after']} after.",
         ]
-        missed = [f"- *{row.what}* misses its goal: {row.limit}" for row in self.rows if row.met is False]
+        limits: dict[str, list[str]] = {}
+        for row in self.rows:
+            if row.met is False:
+                limits.setdefault(row.limit, []).append(f"*{row.what}*")
+        missed = [
+            f"- {'; '.join(what)} {'misses its goal' if len(what) == 1 else 'miss their goals'}: {limit}"
+            for limit, what in limits.items()
+        ]
         return "\n".join([*lines, "", *missed] if missed else lines)
 
     def write(self, folder: Path) -> None:
