@@ -120,9 +120,9 @@ def objectives(effort: Effort) -> Iterator[Row]:
             yield Row.of(
                 f"{objective}_{len(grasp)}_{grasp.dimension}", f"`choose_state`, `{objective}`, {what}",
                 "bare Clarabel, one program of effort", effort.of(one, bare), Measure.TIMES, 10.0,
-                "the least peak, then four to seven programs from level 0 to the proof: a kept solver takes a "
-                "half to a whole bare call for each, Python as much for each of few contacts; `force` spends "
-                "half of its time on the last digits",
+                "the least peak, then four to seven programs from level 0 to the proof: a kept solver takes "
+                "half of a bare call to all of it for each, Python as much for each of few contacts; `force` "
+                "spends half of its time on the last digits",
             )  # fmt: skip
 
 

@@ -60,7 +60,8 @@ def solved_again(program: Program, entries: Array) -> tuple[Array, Array] | None
     """Value and duals by a solver kept for this pattern, without the steps that buy nothing there.
 
     entries: (k,) of A. The answer does not depend on what was asked before. For programs that are quick
-    (``Program.is_quick``) and whose places are shared (``Pattern``). None where it is no solution.
+    (``Program.is_quick``) and whose places are shared (``Pattern``). NaN where it says that there is
+    none; None where it says nothing.
     """
     P, A = program.P, program.A
     solvers: dict[Any, _Kept] = _memory.__dict__.setdefault("solvers", {})
@@ -98,7 +99,10 @@ class _Kept:
                 changed["P"] = program.P.data
         self.solver.update(**changed)
         answer = self.solver.solve()
-        if str(answer.status) != "Solved":
+        said = str(answer.status)
+        if said == "PrimalInfeasible":
+            return np.full(program.q.size, np.nan), np.array(answer.z)
+        if said not in ("Solved", "AlmostSolved"):
             return None
         x, z = np.array(answer.x), np.array(answer.z)
         return (x, z) if np.maximum.reduce(np.abs(x)) < _LARGEST else None

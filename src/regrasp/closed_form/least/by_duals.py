@@ -16,6 +16,7 @@ _STEPS = 6
 # Equilibrium counts as reached at this residual relative to the largest force or load, as in ``face_newton``.
 _BALANCED = 5e-14
 _FLAT = 1e-12
+_FAST = 1e-3  # of the residual left by a step: the next one need not look at the curvature again
 
 
 def least_in_plane(
@@ -95,6 +96,7 @@ def least(
     heaviest = np.maximum.reduce(np.abs(load))
     edge, back = np.empty((n, w)), np.empty((n, w))
     edge[:, 0], back[:, 0] = 1 / root, frictions / root
+    inverse, before = None, np.inf
     for _ in range(_STEPS):
         v = -softness * (linear + (y @ matrix).reshape(n, w))
         along, beside = v[:, 0], v[:, 1:]
@@ -107,8 +109,12 @@ def least(
         f = np.where(inside[:, None], v, pushed[:, None] * edge)
         off = matrix @ f.ravel() + load
         largest = max(np.maximum.reduce(np.abs(f), axis=None), heaviest)
-        if np.maximum.reduce(np.abs(off)) <= _BALANCED * largest:
+        left = np.maximum.reduce(np.abs(off))
+        if left <= _BALANCED * largest:
             return f
+        if inverse is not None and left <= _FAST * before:  # the curvature is known well enough
+            y, before = y + inverse @ off, left
+            continue
         # How the nearest points move: with v inside, along the edge and around the rim beyond it.
         rim = np.where(inside, 1.0, pushed * frictions / beyond)
         H = (matrix * (soft * rim).repeat(w)) @ matrix.T
@@ -119,7 +125,8 @@ def least(
             moved = np.einsum("rij,ij->ri", parts, direction)
             H += (moved * share) @ moved.T
         try:
-            y = y + np.linalg.solve(H, off)
+            inverse = np.linalg.inv(H)
         except np.linalg.LinAlgError:
             return None
+        y, before = y + inverse @ off, left
     return None

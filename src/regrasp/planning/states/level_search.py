@@ -78,7 +78,7 @@ def _along_normals(chooser: Chooser, narrowing: Narrowing, limits: list[float]) 
     cones = narrowing.narrowed(narrowing.top)
     if len(cones) <= chooser.vector.size:
         return None
-    used, bound = chooser.of(cones), [limits[i] for i in cones]
+    used, bound = of_some(chooser, cones), [limits[i] for i in cones]
     step = used.depth(list(cones.values()), bound, None)
     if step is None or step.depth < -FEASIBLE:
         return None

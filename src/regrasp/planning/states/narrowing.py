@@ -55,10 +55,10 @@ class Narrowing:
         level = self.objective.level(margins(forces, self.grasp.cones.normals, np.array(self.frictions)))
         return self.top if isnan(level) else level  # nothing is used of nothing
 
-    def falls(self, level: float) -> Array:
-        """(n,) how fast the friction of each cone falls with the level."""
-        left = [self.objective.narrowed(mu, level) or 0.0 for mu in self.frictions]
-        return self.objective.slopes(np.array(self.frictions), np.array(left), level)[1]
+    def falls(self, level: float, cones: dict[int, float]) -> Array:
+        """(k,) how fast the frictions of the cones of a level fall with it."""
+        whole = np.array([self.frictions[i] for i in cones])
+        return self.objective.slopes(whole, np.array(list(cones.values())), level)[1]
 
     def ceiling(
         self, load: Array, twist: Array, limits: Array, low: float, high: float, within: float

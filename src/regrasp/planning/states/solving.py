@@ -147,12 +147,15 @@ class Chooser:
         """
         program = self.program(FORCE, frictions, limits, weights, SLACK)
         quick = answered_quickly(program) if self.backend == "clarabel" else None
+        quick_says_none = quick is not None
         if quick is None:
             answer = asked(program, self.backend, {})
             quick = answer.value, answer.duals
         x, duals = quick
-        if not (np.isfinite(x).all() and np.isfinite(duals).all()):
+        if not np.isfinite(duals).all():
             return None
+        if not np.isfinite(x).all():
+            return self.out_of_reach(duals) if quick_says_none else None
         rows = program.A.indices[program.A.indptr[-2] :]  # of the cones: those that the depth stands in
         forces = self.in_newtons(x)
         normals = self.grasp.cones.normal(forces) / self.unit
@@ -163,6 +166,12 @@ class Chooser:
         if self.facets is not None and self.grasp.dimension == 3:
             shares *= cos(pi / self.facets)  # the faces are nearer to the axis than the cone
         return Depth(float(x[-1]), forces, normals, shares, self.twist_of(duals))
+
+    def out_of_reach(self, duals: Array) -> Depth:
+        """What is known where no forces balance the load: the motion, and no depth."""
+        n = len(self.grasp)
+        none = np.zeros(n)
+        return Depth(-1.0, np.zeros((n, self.grasp.width)), none, none, self.twist_of(duals))
 
     def program(
         self,

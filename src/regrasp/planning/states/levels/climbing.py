@@ -24,6 +24,8 @@ _STEPS = 14
 _IDLE = 1e-7
 # From a level not known well to one known, in parts of the tolerance.
 _NEAR = LEVEL_TOLERANCE / 16
+# Beside the best level depths are less than this; duals of what is far out of reach know little of it.
+_SHALLOW = 1e-3
 # The level from which on a motion is a proof is found to this, and then a little above.
 _WITHIN, _ABOVE = LEVEL_TOLERANCE / 50, 1e-10
 
@@ -42,7 +44,7 @@ def climbed(
         if best is None or climb.is_done:
             break
         error = min(abs(best - level), 1.0) ** 2
-        is_near = error < _NEAR
+        is_near = error < _NEAR and abs(climb.depth) < _SHALLOW
         edge, was_at = climb.edge(), edge
         if edge is not None:
             level, is_near = edge, True
@@ -78,6 +80,7 @@ class _Climb:
         self.known = np.maximum(known, _FIRST * known.max())  # a finger idle so far may be needed
         self.low = self.held = max(narrowing.level(forces), 0.0)
         self.high = self.lost = narrowing.top
+        self.depth = np.inf
         self.found: Array | None = None
         self.motion: Array | None = None
         self._low_cones, self._high_cones = frozenset(range(len(known))), frozenset(range(len(known)))
@@ -95,8 +98,8 @@ class _Climb:
         step = self.depths.of(cones, None if is_near else self.known)
         if step is None:
             return None
-        places = list(cones)
-        fall = narrowing.falls(level)[places] @ (step.weights * step.normals)
+        places, self.depth = list(cones), step.depth
+        fall = narrowing.falls(level, cones) @ (step.weights * step.normals)
         best = float(level + step.depth / fall) if fall > 0 else level
         if is_near:
             if step.depth > -FEASIBLE and self._settles(cones, step, level):
@@ -115,7 +118,7 @@ class _Climb:
             return max(best, self.low)
         if is_near or step.depth < -FEASIBLE:
             self.high, self._high_cones = min(self.high, level), frozenset(places)
-        if is_near or abs(best - level) < sqrt(_NEAR):
+        if is_near or (abs(best - level) < sqrt(_NEAR) and self.depth > -_SHALLOW):
             self._proves(step, level)
         return best
 

@@ -75,6 +75,8 @@ class _Table:
         if answer is None:
             return None
         x, duals = answer
+        if not np.isfinite(x[-1]):
+            return chooser.out_of_reach(duals)
         forces = chooser.in_newtons(x)
         shares = duals[self._rows].reshape(n, -1)
         return Depth(
