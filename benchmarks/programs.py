@@ -7,6 +7,7 @@ Every ratio compares two things measured in turn in this one process. Answers ar
 """
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from time import process_time
 
 import clarabel
@@ -29,8 +30,9 @@ from regrasp.planning.states.degenerate import flat_minima
 from regrasp.planning.states.program import state_program
 from regrasp.programs import Cone, Program, available_backends, solve
 from report import Measure, Row
-from timing import Side
+from timing import Side as TimedSide
 
+Side = partial(TimedSide, clock=process_time)  # others have the machine, too
 PATH_SIZES = (10, 100, 1_000, 10_000)
 OVERHEAD = (
     "a solver kept for programs of one pattern takes half of a bare call, which makes its own; besides, some "
@@ -91,8 +93,8 @@ def overhead_row(
         f'`choose_state(method="clarabel")`, `{objective}`, {what}{how}',
         "bare Clarabel: construct and solve, matrices prebuilt",
         effort.of(
-            Side(lambda _: rg.choose_state(grasp, load, objective, method="clarabel"), clock=process_time),
-            Side(bare, clock=process_time),
+            Side(lambda _: rg.choose_state(grasp, load, objective, method="clarabel")),
+            Side(bare),
         ),
         Measure.TIMES,
         1.7,
@@ -155,7 +157,6 @@ def path_growth(effort: Effort, tasks: dict[int, PathTask], what: str) -> Iterat
     sides = {
         count: Side(
             lambda _, task=task: planned_path(task, "change", Criteria("effort"), "clarabel"),
-            clock=process_time,
         )
         for count, task in tasks.items()
     }
