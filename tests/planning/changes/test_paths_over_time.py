@@ -43,7 +43,7 @@ def task(rng: np.random.Generator, instants: int, least: float = 0.0, sway: floa
 def test_the_cost_and_the_forces_are_those_of_the_whole_program(monkeypatch, least) -> None:
     monkeypatch.setattr(banded_path, "_MANY", 3)
     rng, seen = np.random.default_rng(3), 0
-    for _ in range(12):
+    for _ in range(6):
         asked = task(rng, 30, least)
         found = least_change(asked)
         whole = solve(path_program(asked, "change"), "clarabel", throw=False)
@@ -60,7 +60,7 @@ def test_the_cost_and_the_forces_are_those_of_the_whole_program(monkeypatch, lea
         assert costs[0] == pytest.approx(costs[1], rel=1e-7)
         balance = np.einsum("rj,kj->kr", asked.grasp.matrix, found.reshape(len(found), -1))
         assert abs(balance + asked.loads[1:-1]).max() <= 1e-12 * asked.unit
-    assert seen > 5
+    assert seen > 2
 
 
 def test_limits_rates_and_idle_fingers_are_left_to_the_whole_program() -> None:
