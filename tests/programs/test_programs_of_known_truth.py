@@ -37,6 +37,19 @@ def test_nothing_is_said_of_a_unit_less_than_the_rounding_of_terms(beyond: float
     assert (audited(p, np.array([far + 1, far]), np.zeros(1)).primal == np.inf) is lost
 
 
+@pytest.mark.parametrize(("beyond", "lost"), [(0.9, False), (1.1, True)])
+def test_likewise_of_columns(beyond: float, lost: bool) -> None:
+    """P x + q with P x near zero: terms 16 x, the smaller unit |q| + P X = 2 + 8 (3 + 2) / 8."""
+    far = beyond * (2 + 5) / 16 / ROUNDING
+    p = program([[8.0, 8.0], [8.0, 8.0]], [3.0, 2.0], np.zeros((0, 2)), [])
+    assert (audited(p, np.array([far, -far]), np.zeros(0)).primal == np.inf) is lost
+
+
+def test_what_has_no_unit_loses_none() -> None:
+    p = program(np.zeros((2, 2)), [0.0, 0.0], [[1.0, -1.0]], [0.0], zero(1))
+    assert audited(p, np.array([1e20, 1e20]), np.zeros(1)).primal == 0
+
+
 @pytest.mark.parametrize(("far", "sound"), [(1e3, False), (1e12, False)])
 def test_terms_count_by_their_rounding_only(far: float, sound: bool) -> None:
     """x - y = 1 is missed by a thousandth, however large x and y are."""
