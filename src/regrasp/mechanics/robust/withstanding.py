@@ -29,6 +29,7 @@ SLIPS, OPENS, EXCEEDS = "slips", "opens", "exceeds its limit"
 
 _OPEN = 1e-6  # of the normal force before: what is left counts as none
 _NOTHING = 1e-14
+_STARTS = 8  # a ratio may be least at several twists
 _LEAST_FRICTION = 2.0**-40
 """Doubles do not express a direction more finely: less friction than that is none."""
 
@@ -76,7 +77,7 @@ class Withstanding:
             result: Array = factor * scaled.extreme(twist).vector
             return result
 
-        return self.worst(ratio, member)
+        return self.worst(ratio, member, _STARTS)
 
     def worst(
         self,
