@@ -20,7 +20,7 @@ test: $(VENV)/installed-dev
 	$(BIN)/regrasp bench --quick -o $(VENV)/bench
 	$(BIN)/regrasp bench report $(VENV)/bench
 
-# The inner loop: what a change most often breaks, in less than a minute on two cores.
+# The inner loop: what a change most often breaks, about a minute on two cores.
 quick: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
