@@ -66,11 +66,17 @@ def test_rows_of_a_cluster_are_the_same(fakes: Path, tmp_path: Path) -> None:
 
     expected = run(tmp_path / "one", TOYS[:2], ODD[:3])
     with (
-        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=50
+        ) as cluster,
         Client(cluster) as client,
     ):
         address: Any = client.scheduler_info()["address"]
-        rows = run_apart(tmp_path / "apart", TOYS[:2], ODD[:3], client=address)
+        board, heard = client.dashboard_link, list[str]()
+        rows = run_apart(
+            tmp_path / "apart", TOYS[:2], ODD[:3], told=lambda said, *_: heard.append(said), client=address
+        )
+    assert heard[-1] == f"on 2 threads of {address}" + (f", dashboard {board}" if board else "")
     named = {row.machine for row in rows if not row.is_lost}
     rows = [replace(row, machine=expected[0].machine) for row in rows]
     assert named == {expected[0].machine}

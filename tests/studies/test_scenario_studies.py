@@ -1,6 +1,7 @@
 """Studies of scenarios, as files and by the command line."""
 
 import json
+import logging
 import re
 from pathlib import Path
 from typing import Any
@@ -94,6 +95,22 @@ def test_a_study_file_runs_goes_on_and_says_how_far_it_is(
     facts = json.loads(regrasp(capsys, monkeypatch, "sweep", "--json", "-o", out, example, "--workers", 1)[1])
     assert (facts["rows"], facts["left"], facts["verdicts"]) == (33, 0, {"answered": 27, "invalid": 6})
     assert json.loads(regrasp(capsys, monkeypatch, "sweep", "--json", "status", out)[1]) == facts
+
+
+def test_where_no_terminal_is_the_log_says_how_far_it_is(
+    tmp_path: Path, capsys: Any, monkeypatch: Any
+) -> None:
+    log, example = logging.getLogger("regrasp"), ROOT / "examples" / "study.toml"
+    monkeypatch.setattr(log, "propagate", False)  # of pytest's own handlers
+    monkeypatch.setattr(log, "handlers", [])
+    before = log.level
+    try:
+        _, said, err = regrasp(capsys, monkeypatch, "sweep", example, "-o", tmp_path, "--workers", 0)
+    finally:
+        log.setLevel(before)
+    assert "33 of 33 rows in this process" in err
+    assert "; invalid 6" in err
+    assert "INFO" not in said
 
 
 def test_a_table_and_a_function_make_a_study(tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ def test_the_same_call_again_does_nothing_and_one_with_rows_missing_does_those(t
 
 def test_another_grid_is_refused_or_its_new_cases_are_done(tmp_path: Path) -> None:
     swept(tmp_path, {"a": [1, 2]})
-    with pytest.raises(rg.InvalidInput, match=r"its grid differ.*extend=True"):
+    with pytest.raises(rg.InvalidInput, match=r"its grid differ.*extend=True .--extend."):
         swept(tmp_path, {"a": [2, 3]})
     done = swept(tmp_path, {"a": [2, 3]}, extend=True)
     assert (done.rows, done.cases, done.earlier, done.left) == (3, 2, 1, 0)

@@ -80,10 +80,13 @@ def bench(
         progress.update(task, description="looking for solvers")
         there = chosen_solvers(solvers)
 
-        tenths = 0
+        tenths, told_where = 0, not apart
 
         def told(what: str, done: int, total: int) -> None:
-            nonlocal tenths
+            nonlocal tenths, told_where
+            if progress.disable and not told_where:
+                told_where = True
+                click.echo(what, err=True)
             progress.update(task, description=what or None, completed=done, total=total)
             if progress.disable and 10 * done // total > tenths:  # no terminal: a log wants few lines
                 tenths = 10 * done // total

@@ -1,6 +1,7 @@
 """What a command says: text for a person, or one JSON object for a program."""
 
 import json
+import logging
 import sys
 from dataclasses import fields, is_dataclass
 from math import isfinite
@@ -29,6 +30,17 @@ def say(text: object = "") -> None:
     """Text for a person."""
     if not wants_json():
         click.echo(text)
+
+
+def log_on_stderr() -> None:
+    """Send the log to standard error where that is a file or a pipe, for a run that nobody watches."""
+    log = logging.getLogger("regrasp")
+    if wants_json() or sys.stderr.isatty() or log.hasHandlers():
+        return
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("%(asctime)s %(message)s"))
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
 
 
 def say_json(facts: dict[str, Any]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from regrasp.cli.speech import called, json_option, say, wants_json
+from regrasp.cli.speech import called, json_option, log_on_stderr, say, wants_json
 
 
 class _WithRun(click.Group):
@@ -63,6 +63,7 @@ def run(
     from regrasp.studies.sweeping import sweep as swept
 
     check_folder(output)
+    log_on_stderr()
     given, grid = read_study_file(study)
     try:
         done = swept(

@@ -164,7 +164,7 @@ class Folder:
         if differs and not self._extend:
             raise InvalidInput(
                 f"the study in {self.path} was another one (its {', '.join(differs)} differs); give another "
-                "folder, or extend=True to keep the rows there and do the new cases only"
+                "folder, or extend=True (--extend) to keep the rows there and do the new cases only"
             )
 
     def _write_study(self) -> None:

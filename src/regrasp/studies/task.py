@@ -74,7 +74,7 @@ class Task:
         except InvalidInput as no:
             verdict, error = INVALID, _line(str(no))
         except MemoryError as no:
-            verdict, error = MEMORY, _line(f"MemoryError: {no}")
+            verdict, error = MEMORY, _line(f"MemoryError: {str(no) or 'no memory left'}")
         except (Exception, SystemExit) as no:
             verdict, error = FAILED, _line(f"{type(no).__name__}: {no}")
         took = perf_counter() - started

@@ -59,8 +59,9 @@ def run_apart(
     """Make every solve that has no row in ``folder`` yet, many at a time; returns all rows there.
 
     workers: processes of this machine. client: a ``dask.distributed.Client`` or the address of a scheduler,
-    in their place; its workers have the same solvers. Raises ``InvalidInput`` as ``planned`` and ``Store``
-    do, ``RegraspError`` where the scheduler goes away; what was done is kept.
+    in their place; its workers have the same solvers, and ``told`` names its dashboard. Raises
+    ``InvalidInput`` as ``planned`` and ``Store`` do, ``RegraspError`` where the scheduler goes away; what was
+    done is kept.
     """
     jobs = {key_of(_case(job.key(0))): job for job in planned(problems, solvers, settings)}
     shared = {
@@ -79,7 +80,8 @@ def run_apart(
         for job in jobs.values():
             job.missing(store.rows, 1)  # refused before any work
         rows = _Rows(folder, store, jobs, limits.time_limit, machine.name() if client is None else "")
-        reporter = Reporter(lambda now: told(now.where, now.done, now.total), quiet=False)
+        board = f", dashboard {engine.dashboard}" if engine.dashboard else ""
+        reporter = Reporter(lambda now: told(now.where + board, now.done, now.total), quiet=False)
         fill(rows, cases_of([_case(job.key(0)) for job in jobs.values()]), engine, reporter, 0.0)
         return list(store.rows.values())
 
