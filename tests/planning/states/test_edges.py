@@ -106,6 +106,17 @@ def test_a_block_on_four_corners(beyond: float) -> None:
             assert rg.choose_state(block, inside, objective).is_balanced()
 
 
+@pytest.mark.parametrize("seed", [1855, 5340, 7222, 7322, 9666])  # of ``benchmarks/edges.py``
+def test_two_contacts_at_rest_whose_motion_no_double_is(seed: int) -> None:
+    """It turns about both while others slide: opposed by 1e-16 when rounded, by nothing when cleared."""
+    rng = np.random.default_rng(seed)
+    kind = str(rng.choice(KINDS)) if rng.integers(2, 4) == 3 else ""
+    at = boundary(rng, 3, kind)
+    for beyond in (1e-6, 1e-8):
+        assert verdict(grasp_of(at), at.load(beyond), "effort") == "proven"
+        assert verdict(grasp_of(at), at.load(-beyond), "effort") == "held"
+
+
 def test_at_its_limit_is_said_with_the_reserve_that_was_kept() -> None:
     """Friction 0.5 of which a tenth is kept back, and a load at nine tenths of the cones."""
     block = rg.Grasp(

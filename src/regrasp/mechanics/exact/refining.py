@@ -7,7 +7,8 @@ oppose that much enough. Newton's method on
     u_i = 0                                        where it stands still,
 
 for the contacts that oppose the motion, in rational arithmetic, places it beyond the last bit of doubles;
-delta, a few units of rounding, is what the rounding of the twist itself may take away.
+delta, a few units of rounding, is what the rounding of the twist itself may take away. Contacts that stand
+still have no such delta: there a motion that clears all of them, where one is given, is added by a hair.
 """
 
 from collections.abc import Iterator
@@ -35,14 +36,23 @@ _FAR = 10
 _NOISE = 2.0**-46
 # Lengths of the twist at which its rounding is tried where contacts that stand still leave no other room.
 _LENGTHS = 24
+# The hair: what contacts are cleared by, as a part of the motion's speed.
+_HAIR = 2.0**-46
 
 
 def proven(
-    grasp: Grasp, load: Wrench, twist: Array, frictions: list[float], limits: list[float]
+    grasp: Grasp,
+    load: Wrench,
+    twist: Array,
+    frictions: list[float],
+    limits: list[float],
+    clear: Array | None = None,
 ) -> EscapeTwist | None:
-    """The twist, or one a hair from it, as a proof; None where none is found."""
+    """The twist, or one a hair from it, along ``clear`` if given, as a proof; None where none is found."""
     never = NEVER * (hypot(*load.force) + hypot(*load.torque) / (grasp.size or 1.0))
     for candidate in _candidates(grasp, twist, frictions, limits):
+        if clear is not None:
+            candidate = candidate + clear * (_HAIR * float(abs(candidate * grasp.lengths).max()))
         if candidate.any() and np.isfinite(candidate).all():
             found = EscapeTwist(grasp, load, candidate, tuple(frictions), tuple(limits))
             speed = float(abs(candidate * grasp.lengths).max())

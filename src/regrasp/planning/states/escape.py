@@ -17,7 +17,7 @@ from regrasp.mechanics.exact.refining import proven
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.separation import edge_of, gap_and_duals, gap_left
+from regrasp.planning.states.separation import clearing, edge_of, gap_and_duals, gap_left
 
 AT_LIMIT = 1e-6
 """A load within this fraction of the edge of what is held is at its limit: rounding may decide it."""
@@ -193,7 +193,11 @@ def escape_twist(
     edge = edge_of(grasp, load.vector, frictions, limits)  # a solver's gap is too small to show a direction
     if edge is None or edge.beyond < -AT_LIMIT:
         return None
-    return proven(grasp, load, edge.twist, frictions, limits)
+    near = proven(grasp, load, edge.twist, frictions, limits)
+    if near is not None:
+        return near
+    clear = clearing(grasp, edge.twist, frictions, limits)
+    return None if clear is None else proven(grasp, load, edge.twist, frictions, limits, clear)
 
 
 def limited_twist(

@@ -100,6 +100,44 @@ def cleared(grasp: Grasp, twist: Array, frictions: list[float], limits: list[flo
     return result
 
 
+def clearing(grasp: Grasp, twist: Array, frictions: list[float], limits: list[float]) -> Array | None:
+    """The motion (3,) or (6,) that lets a twist clear the cones it touches soonest; None if none does.
+
+        maximise s   subject to   n . u_i - mu_i e_i . u_i >= s        where contact i slides, along e_i,
+                                  n . u_i - mu_i |u_i across n| >= s   where it stands still,   |xi| <= 1
+
+    Of that length over s. Fingers that can squeeze each other leave none: s is zero.
+    """
+    from regrasp.programs import Rows, solve
+
+    w, size, cones, weight = grasp.width, twist.size, grasp.cones, 1 / grasp.lengths
+    arms = cones.matrix.T * weight  # velocities of the contacts from the twist in speeds at ``size``
+    v = twist / weight
+    speed = float(np.linalg.norm(v))
+    rows, least = Rows(size + 1), np.eye(size + 1)[size]
+    for i, (mu, limit) in enumerate(zip(frictions, limits, strict=True)):
+        at, n = arms[w * i : w * i + w], cones.normals[i]
+        across = at @ v - float(n @ at @ v) * n
+        sideways = float(np.linalg.norm(across))
+        if limit < inf or float(n @ at @ v) - mu * sideways > _TOUCHING * speed:
+            continue
+        wide = np.column_stack([at, np.zeros(w)])
+        away = n @ wide - least
+        if mu * sideways > _TOUCHING * speed:
+            rows.at_least_zero(away - mu * (across / sideways) @ wide)
+        elif w == 2:
+            rows.at_least_zero([away + s * mu * (cones.tangents[i] @ wide)[0] for s in (1, -1)])
+        else:
+            rows.second_order(np.vstack([away, mu * (cones.tangents[i] @ wide)]))
+    rows.second_order(np.vstack([np.zeros(size + 1), np.eye(size + 1)[:size]]), [1.0, *[0.0] * size])
+    try:
+        answer = solve(rows.program(-least), "clarabel").value
+    except SolverFailed:
+        return None
+    result: Array = answer[:size] * weight / max(float(answer[size]), _TOUCHING)
+    return result if answer[size] > _TOUCHING else None
+
+
 class Edge(NamedTuple):
     """How far beyond the edge of what is held a load is, and the motion along which it wins there.
 
