@@ -4,6 +4,7 @@ from math import inf, sqrt
 
 import numpy as np
 
+from regrasp.programs.judging.audit import MOST
 from regrasp.programs.judging.terms import ROUNDING
 from regrasp.programs.judging.units import OWN, PASSES
 
@@ -141,6 +142,14 @@ def _into_dual(codes, z):
     return inside
 
 
+def _counted(weight, terms, unit):
+    """What counts of terms beside a unit: the less, the more of them cancels."""
+    counted = weight * terms
+    if weight < 1 and unit > 0 and counted > MOST * unit:
+        return (MOST * unit) ** 2 / counted
+    return counted
+
+
 def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):
     """The fields of ``Audit``."""
     n, m = q.size, b.size
@@ -161,7 +170,6 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):
     pulls += np.abs(q)
     ax, of_rows = _products(ap, ai, ad, x, np.abs(x), m)
     own_rows = of_rows.copy()
-    of_rows *= weight
     inside = _into_dual(codes, z)
     largest, duals = 0.0, np.zeros(m)
     if size_of_x > 0:
@@ -190,13 +198,14 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):
         if whole != 0:
             for k in range(ap[j], ap[j + 1]):
                 per_dual[ai[k]] = max(per_dual[ai[k]], abs(ad[k]) / whole)
-        dual = _worse(dual, _ratio(abs(gradient), unit + weight * own))
+        dual = _worse(dual, _ratio(abs(gradient), unit + _counted(weight, own, unit)))
         stationarity = _worse(stationarity, abs(gradient))
         quadratic += x[j] * px[j]
         linear += q[j] * x[j]
         of_gap += sizes[j] * (of_sizes[j] + abs(q[j]))
     units = np.abs(b) + (floor if size_of_x > 0 else _inverse(floor))
-    of_rows += units
+    for i in range(m):
+        of_rows[i] = units[i] + _counted(weight, own_rows[i], units[i])
     own_rows += units
     for i in range(m):
         value += b[i] * inside[i]

@@ -269,11 +269,11 @@ def test_tolerances_hold_on_both_sides(allowed, share, sound, unit):
     right = claimed(p, [unit], [0.0], allowed=allowed)
     assert right.residual == 0
     by = np.array([unit * allowed * share])
-    T = unit * (2 + 2.0**-30)  # |b| + X
+    T = unit * (2 + 2.0**-11)  # |b| + X
     moved = audited(p, right.value + by * T / unit, np.zeros(1))
     assert moved.primal == pytest.approx(allowed * share, rel=1e-6)
     assert (moved.primal <= allowed) is sound
-    V = unit * (4 + 2.0**-30)  # |q| + P X + Z, which is as much again
+    V = unit * (4 + 2.0**-11)  # |q| + P X + Z, which is as much again
     pulled = audited(p, right.value, by * V / unit)
     assert pulled.dual == pytest.approx(allowed * share, rel=1e-6)
     assert (pulled.dual <= allowed) is sound

@@ -36,7 +36,7 @@ def least_in_plane(
         for tx, ty, nx, ny, mu, soft, cx, cy in fingers:
             x, z = -soft * (cx + y0 + tx * y2), -soft * (cy + y1 + ty * y2)
             along, across = x * nx + z * ny, z * nx - x * ny
-            if mu * along >= abs(across):
+            if mu > 0 and mu * along >= abs(across):  # a smooth finger that would pull is not inside
                 h00 += soft
                 h11 += soft
                 h02 += soft * tx
@@ -101,7 +101,7 @@ def least(
         v = -softness * (linear + (y @ matrix).reshape(n, w))
         along, beside = v[:, 0], v[:, 1:]
         across = np.sqrt(np.einsum("ij,ij->i", beside, beside))
-        inside = frictions * along >= across
+        inside = (frictions > 0) & (frictions * along >= across)
         beyond = np.where(across > 0, across, 1.0) * root
         pushed = np.maximum(along + frictions * across, 0.0) / root
         back[:, 1:] = beside / -beyond[:, None]

@@ -7,12 +7,12 @@
     objective  x'P x + q'x + b'z = 0   the same sum with every term positive
 
 X and Z are the ``units`` of unknowns and duals: sizes that matter where these are themselves near zero. The
-weight w leaves of the terms no more than their rounding: an answer far away, where 1e9 - 1e9 is to be 1, is
-not right because the miss is small beside 1e9. Where rounding of the terms is all that is left of a unit,
-nothing can be said of an answer, and primal is infinite. A second-order cone is one row: its unit is the
-length of those of its rows, and s_i z_i its s'z. So each measure is the same whatever the units of rows,
-unknowns and objective, and no number elsewhere makes a miss look small. z is taken where it is put inside
-K*: what that moves shows in the columns.
+weight w leaves little of the terms, and the less the more of them cancels: an answer far away, where
+1e12 - 1e12 is to be 1, is not right because the miss is small beside 1e12. Where rounding of the terms is
+all that is left of a unit, nothing can be said of an answer, and primal is infinite. A second-order cone is
+one row: its unit is the length of those of its rows, and s_i z_i its s'z. So each measure is the same
+whatever the units of rows, unknowns and objective, and no number elsewhere makes a miss look small. z is
+taken where it is put inside K*: what that moves shows in the columns.
 """
 
 from math import inf
@@ -24,6 +24,8 @@ from regrasp.programs.judging.terms import largest, most, reciprocal
 from regrasp.programs.judging.units import own_units_of_columns, units_of_unknowns, weight_of_terms
 from regrasp.programs.program import Array, Program
 
+MOST = 2.0**13
+"""Times its unit, that terms count for at the most; beyond, where more of them cancels, for less."""
 ROUNDING = 2.0**-45
 """Of a sum of terms; a unit below it says nothing."""
 
@@ -58,7 +60,7 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
         own_rows = terms.abs_A @ size_x
         of_rows = whole_rows = cones.units(size_b + floors + own_rows)
         if weight < 1:
-            of_rows = cones.units(size_b + floors + weight * own_rows)
+            of_rows = cones.units(_with_terms(size_b + floors, weight * own_rows))
         s = b - terms.A @ x
         excess, inside = cones.excess(s), cones.dual(z)
         size_z = np.abs(inside)
@@ -75,7 +77,7 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
         of_gap = float(sizes @ (terms.abs_P @ sizes + np.abs(q)) + size_b @ size_z)
         return Audit(
             inf if lost else largest(excess, of_rows),
-            largest(gradient, of_columns + weight * own),
+            largest(gradient, of_columns + own if weight == 1 else _with_terms(of_columns, weight * own)),
             largest(both, whole_rows),
             gap / of_gap if gap else 0.0,
             quadratic / 2 + linear,
@@ -84,6 +86,20 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
             most(gradient),
             gap,
         )
+
+
+def missed(program: Program, x: Array) -> float:
+    """How far a point (n,) is outside by units alone: where whether there is a point is the question."""
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        units = np.abs(program.b) + units_of_unknowns(program)[1]
+        return largest(program.cones.excess(program.b - program.terms.A @ x), program.cones.units(units))
+
+
+def _with_terms(units: Array, terms: Array) -> Array:
+    """Units (k,) and what counts of terms beside them; all of it where a unit is not known."""
+    most = MOST * units
+    result: Array = units + np.where(units > 0, np.minimum(terms, most * (most / terms)), terms)
+    return result
 
 
 def _has_lost(units: Array, sizes: Array) -> bool:

@@ -18,9 +18,8 @@ from regrasp.programs.program import Array, Program
 PASSES = 4
 """Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one
 only: rows that go in a circle would make units smaller and smaller."""
-OWN = 2.0**-30
-"""Part of the terms of a row or column that counts beside its unit: a few of their last bits, of what a
-tolerance allows."""
+OWN = 2.0**-11
+"""Part of the terms of a row or column that counts beside its unit, where they are not far larger."""
 
 
 def weight_of_terms(program: Program) -> float:

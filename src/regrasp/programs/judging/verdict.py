@@ -5,12 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from regrasp.programs.judging.audit import missed
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status
 
 PROVEN = 1e-8
 """Largest residual of a certificate: a feasible point would have terms 1e8 times those of b."""
+
+MISSED = 1e-6
+"""Largest distance of a point, beside which a program is unbounded, from its rows in their own units."""
 
 _HINT = 0.1
 """Residual up to which numbers that nobody called a certificate may be on their way to one."""
@@ -93,7 +97,7 @@ def _unbounded(solution: Solution, feasibility: Callable[[Program], Solution]) -
     if not program.cones.excess(program.b).any():
         return solution  # zero is a point
     point = feasibility(program)
-    if point.status is Status.SOLVED:
+    if point.status is Status.SOLVED and missed(program, point.value) <= MISSED:
         return solution
     if point.status is Status.INFEASIBLE:
         said = f"{solution.said}, but no point satisfies the constraints"
