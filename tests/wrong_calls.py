@@ -427,7 +427,7 @@ def rows() -> dict[str, Row]:
                 "normals": "finger rows",
                 "frictions": "batch lengths",
                 "force": "rows",
-                "torque": "batch torque",
+                "torque": "numbers",
                 "max_force": "batch limits",
             },
         ),
