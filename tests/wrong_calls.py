@@ -420,7 +420,7 @@ def rows() -> dict[str, Row]:
                 "positions": [[1, 0], [-1, 0]],
                 "normals": [[-1, 0], [1, 0]],
                 "frictions": 0.5,
-                "force": [0, -1.0],
+                "force": [[0, -1.0], [0, -2.0]],
             },
             {
                 "positions": "finger rows",
@@ -710,27 +710,42 @@ def file_rows() -> dict[str, Row]:
 PICTURES = {
     "ax": "value", "units": "value", "label": "text of a label", "colour": "colour", "colours": "colours",
     "force_scale": "positive", "reach": "positive", "control": "flag", "shadow": "flag", "absent": "names",
-    "order": "names", "o": "some or all", "torques": "row", "arc_lengths": "row",
-    "force_limits": "two limits",
+    "order": "names", "o": "orientation", "torques": "row", "arc_lengths": "row",
+    "force_limits": "two limits", "objective": "word", "at_value": "number", "title": "text of a label",
+    "caption": "text of a label", "path": "path", "frames_per_second": "positive",
+    "move_time": "not negative", "chosen": "value", "load_size": "positive", "force": "planar vector",
+    "contact": "contact of", "mesh": "value", "outline": "value", "plan": "value", "shape": "value",
+    "components": "two components", "rate_limit": "limits of three", "values": "row",
 }  # fmt: skip
-"""Of parameters of pictures: what they draw need not be right, since these are looked at first."""
+"""Of parameters of pictures."""
 
 
 def picture_rows() -> dict[str, Row]:
-    """What every picture draws, and how."""
+    """What every picture draws, and how; the first need not be right where the rest is seen before it."""
     import regrasp.plots as plots
 
-    more = {"load_size": 1.0, "outline": ellipse(), "values": [1.0], "contact": "P1", "shape": ellipse()}
+    firsts = {
+        "transition": removal, "plan": removal, "value": removal, "grasp": lambda: GRASP,
+        "state": lambda: STATE, "locus": lambda: rg.EquilibriumLocus(PAIR, LOAD),
+        "contact": lambda: GRASP["P1"],
+        "loads": VALUES["LoadSet"], "curve": VALUES["MarginCurve"], "graph": VALUES["HoldGraph"],
+        "directions": lambda: np.eye(3),
+    }  # fmt: skip
+    more = {
+        "load_size": 1.0, "outline": ellipse(), "values": [1.0] * 3, "contact": "P1", "shape": ellipse(),
+        "path": "none/film.gif",
+    }  # fmt: skip
     found = {}
     for name in plots.__all__:
         draw = getattr(plots, name)
-        if inspect.isfunction(draw) and name not in ("png", "html", "animate", "animate_execution"):
-            first, *others = inspect.signature(draw).parameters
-            needed = {first: None} | {key: value for key, value in more.items() if key in others}
-            kinds = {first: "table" if first == "directions" else "value"}
-            kinds |= {key: PICTURES[key] for key in others if key in PICTURES}
-            free = tuple(key for key in others if key not in PICTURES)
-            found[f"plots.{name}"] = Row(draw, needed, kinds, free)
+        if not inspect.isfunction(draw) or name == "png":
+            continue
+        first, *others = inspect.signature(draw).parameters
+        drawn = regrasp() if name == "plot_regrasp" else firsts.get(first, lambda: None)()
+        needed = {first: drawn} | {key: more[key] for key in others if key in more}
+        kinds = {key: PICTURES[key] for key in others}
+        kinds[first] = "table" if first == "directions" else "value"
+        found[f"plots.{name}"] = Row(draw, needed, kinds)
     return found
 
 
@@ -743,6 +758,9 @@ KINDS |= {
     "colours": (*NOT_A_VALUE[:4], *NOT_A_VALUE[5:], {"P1": 3}, {"P1": "no colour"}),
     "names": (*ANYTHING[:4], *ANYTHING[6:], None, 3, nan, HUGE, True, [3], [None]),
     "row": (*NOT_NUMBERS, np.zeros((2, 2))),
+    "orientation": [wrong for wrong in NOT_A_COUNT if type(wrong) is not int or wrong > 0],
+    "two components": (*NOT_A_VALUE, ["fx"], ["fx", "fx"], ["fx", "fz"], ["fx", 1], "fx"),
+    "limits of three": (*NOT_NUMBERS, 0, -1, [1, 2], [0, 0, 0], [[1, 1, 1]]),
     "two limits": (*NOT_NUMBERS, 5, [1], [0, 1], [-1, 1], [1, 2, 3]),
     "rows": (*NOT_NUMBERS, 5, [1], [1, 2, 3], np.zeros((2, 3)), np.zeros((7, 2))),
     "entries": (*NOT_NUMBERS, -1, [0.5, -0.5], np.ones(7)),

@@ -103,6 +103,11 @@ def test_bad_requests(tmp_path, monkeypatch):
     monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
     with pytest.raises(rg.InvalidInput, match="MP4 needs the program ffmpeg, which is not found"):
         plots.animate(removal, path=tmp_path / "film.mp4")
-    with pytest.raises(rg.InvalidInput, match="frames_per_second must be greater than 0"):
+    with pytest.raises(rg.InvalidInput, match=r"frames_per_second must be at least 0\.01"):
         plots.animate(removal, path=tmp_path / "film.gif", frames_per_second=0)
+    with pytest.raises(rg.InvalidInput, match="of which at most 10000 are drawn"):
+        plots.animate(removal, path=tmp_path / "film.gif", frames_per_second=1e9)
+    for missing in (tmp_path / "none" / "film.gif", tmp_path / "none" / "film.html"):
+        with pytest.raises(rg.InvalidInput, match="cannot be written"):
+            plots.animate(removal, path=missing, frames_per_second=1)
     assert not list(tmp_path.iterdir())

@@ -101,7 +101,7 @@ def test_names_are_text(name: str) -> None:
 
 
 def test_an_outline_belongs_to_the_plane(removal: rg.Transition) -> None:
-    with pytest.raises(rg.InvalidInput, match="drawn on an Outline, got float"):
+    with pytest.raises(rg.InvalidInput, match="outline must be an Outline, or in space a mesh"):
         plots.html(removal, outline=3.0)  # type: ignore[call-overload]
 
 

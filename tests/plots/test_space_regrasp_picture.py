@@ -220,7 +220,7 @@ def test_films_of_regrasps_and_of_transitions(plan, tmp_path):
     assert rg.verify(whole).ok
     end = moment_of(whole, 0, 1.0)
     assert end.turn == pytest.approx(rotation_matrix(np.array([0, 1, 1]) / np.sqrt(2), -0.8))
-    with pytest.raises(rg.InvalidInput, match="mesh must have a surface"):
+    with pytest.raises(rg.InvalidInput, match="outline must be an Outline, or in space a mesh"):
         plots.animate(turn, 3.0, path=tmp_path / "bad.gif")
     assert not (tmp_path / "bad.gif").exists()
 

@@ -1,6 +1,6 @@
 """What pictures are given, checked by the names of parameters before anything is drawn."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from functools import wraps
 from inspect import signature
 from math import inf
@@ -10,7 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import is_color_like
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import finite, instance, items, number, whole
+from regrasp.mechanics.checks import file_path, finite, instance, items, number, whole
+from regrasp.outline.outline import Outline
+from regrasp.planning.states.objectives import objective_of
+from regrasp.plots.look.solids import triangles_of
 from regrasp.plots.look.units import Units
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -76,7 +79,7 @@ def _colours(value: Any, what: str) -> None:
 
 def _limits(value: Any, what: str) -> None:
     limits = items(value, what)
-    if len(limits) != 2:
+    if len(limits) != 2 or isinstance(value, (Mapping, Set)):  # these have no order
         raise InvalidInput(f"{what} must be two numbers, got {shown(value)}")
     for limit in limits:
         if not (isinstance(limit, float) and limit == inf):
@@ -86,6 +89,16 @@ def _limits(value: Any, what: str) -> None:
 def _numbers(value: Any, what: str) -> None:
     if finite(value, what).ndim > 1:
         raise InvalidInput(f"{what} must be numbers in a row, got {shown(value)}")
+
+
+def _shape(value: Any, what: str) -> None:
+    if not isinstance(value, Outline):
+        try:
+            triangles_of(value)
+        except InvalidInput:
+            raise InvalidInput(
+                f"{what} must be an Outline, or in space a mesh or (vertices, faces), got {shown(value)}"
+            ) from None
 
 
 _CHECKS: dict[str, Callable[[Any, str], Any]] = {
@@ -104,4 +117,14 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "torques": _numbers,
     "arc_lengths": _numbers,
     "force_limits": _limits,
+    "mesh": lambda value, what: triangles_of(value),
+    "outline": _shape,
+    "shape": _shape,
+    "objective": lambda value, what: objective_of(value),
+    "at_value": number,
+    "title": _text,
+    "caption": _text,
+    "path": lambda value, what: file_path(value),
+    "frames_per_second": lambda value, what: number(value, what, least=0.01),
+    "move_time": lambda value, what: number(value, what, least=0),
 }

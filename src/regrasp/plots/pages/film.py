@@ -22,12 +22,14 @@ from regrasp.plots.look.space_axes import space_panel
 from regrasp.plots.look.style import SMALL, TEXT, label_axis, new_figure, short, tidy
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import shared_view
+from regrasp.plots.look.written import written
 from regrasp.plots.pages.timeline import LIFT, timeline
 from regrasp.plots.regrasps.moments import Moment, Stage, as_regrasp, moment_of
 from regrasp.plots.regrasps.space_moments import SpaceStage, measures
 from regrasp.plots.regrasps.ways import motion_moments
 
 _DPI = 100
+_MOST = 10_000  # frames; more are a slip of the pen
 
 
 def animate(
@@ -50,33 +52,43 @@ def animate(
         outline: in space the solid, as for ``plot_regrasp``. Without it the hull of all contacts stands for
             the object.
         path: ``.gif``, ``.html`` (with buttons; one file) or ``.mp4``, which needs ffmpeg. Returns it.
-        frames_per_second: [1/s].
+        frames_per_second: at least 0.01 [1/s].
         move_time: how long a finger is in the air [s].
         units: what one unit of length, force and time is called; nothing is converted.
 
     Raises:
-        InvalidInput: For another ending and for MP4 without ffmpeg.
+        InvalidInput: For another ending, for MP4 without ffmpeg, for over 10,000 frames and a path that
+            cannot be written.
     """
+    if not isinstance(plan, (RegraspPlan, Transition, Motions)):
+        raise InvalidInput(f"plan must be a RegraspPlan, a Transition or Motions, got {shown(plan)}")
     target = Path(path)
     ending = target.suffix.lower()
     if ending not in (".gif", ".html", ".mp4"):
         raise InvalidInput(f"path must end in .gif, .html or .mp4, got {shown(str(target))}")
     if ending == ".mp4" and not FFMpegWriter.isAvailable():
         raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif or .html instead")
-    rate = number(frames_per_second, "frames_per_second", above=0)
+    rate = number(frames_per_second, "frames_per_second", least=0.01)
     whole = as_regrasp(plan.plan if isinstance(plan, Motions) else plan)
     scene = (_SpaceScene if whole.steps[0].grasp.dimension == 3 else _Scene)(whole, outline, units)
     pause = number(move_time, "move_time", least=0)
+    seconds = plan.duration if isinstance(plan, Motions) else whole.duration + len(whole.moves) * pause
+    if seconds * rate > _MOST:
+        raise InvalidInput(
+            f"{seconds:g} s at {rate:g} frames_per_second are {seconds * rate:.3g} frames, of which at most "
+            f"{_MOST} are drawn"
+        )
     if isinstance(plan, Motions):
         frames = _in_motion(plan, rate, units)
     else:
         frames = moments(whole, rate, pause, scene.stage.radius, units)
-    film = _film(scene, frames, rate)
-    if ending == ".html":
-        target.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
-    else:
-        writer = PillowWriter(fps=rate) if ending == ".gif" else FFMpegWriter(fps=rate)  # type: ignore[arg-type]
-        film.save(target, writer=writer, dpi=_DPI)
+    with written(target) as part:
+        film = _film(scene, frames, rate)
+        if ending == ".html":
+            part.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
+        else:
+            writer = PillowWriter(fps=rate) if ending == ".gif" else FFMpegWriter(fps=rate)  # type: ignore[arg-type]
+            film.save(part, writer=writer, dpi=_DPI)
     return target
 
 

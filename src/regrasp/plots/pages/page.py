@@ -3,7 +3,6 @@
 from html import escape
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, overload
 
 import numpy as np
@@ -20,6 +19,7 @@ from regrasp.plots.grasps.state import force_scale_of, surface_of
 from regrasp.plots.look.style import INK, contact_colours
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import facing_view
+from regrasp.plots.look.written import written
 from regrasp.plots.pages.page_look import layout_of, playing
 from regrasp.plots.pages.page_regrasp import regrasp_figure
 from regrasp.plots.pages.page_scene import Trace, arrow_traces, body_traces, history_traces, marker_traces
@@ -103,13 +103,8 @@ def html(
     if path is None:
         return text
     target = Path(path)
-    try:
-        with TemporaryDirectory(prefix=".regrasp-", dir=target.parent) as temporary:
-            part = Path(temporary, "page")
-            part.write_text(text, encoding="utf-8")
-            part.replace(target)
-    except OSError as error:
-        raise InvalidInput(f"{target}: cannot be written: {error.strerror}") from None
+    with written(target) as part:
+        part.write_text(text, encoding="utf-8")
     return target
 
 

@@ -16,8 +16,10 @@ from regrasp.outline.outline import Outline
 from regrasp.plots.look.solids import creases
 from regrasp.plots.look.style import GREY, PALETTE, SMALL, WIDTH, label_axis, new_figure, tidy
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.look.written import written
 
 _DPI = 100
+_MOST = 10_000  # frames; more are a slip of the pen
 
 
 def animate_execution(
@@ -30,11 +32,12 @@ def animate_execution(
     Args:
         execution: the run to draw.
         path: ``.gif``, or ``.mp4``, which needs ffmpeg. It is returned.
-        frames_per_second: of the run's own time.
+        frames_per_second: of the run's own time, at least 0.01 [1/s].
         units: what one unit of length, force and time is called; nothing is converted.
 
     Raises:
-        InvalidInput: For another ending, and for MP4 without ffmpeg.
+        InvalidInput: For another ending, for MP4 without ffmpeg, for over 10,000 frames and a path that
+            cannot be written.
     """
     instance(execution, "execution", Execution)
     target = Path(path)
@@ -42,7 +45,9 @@ def animate_execution(
         raise InvalidInput(f"path must end in .gif or .mp4, got {shown(str(target))}")
     if target.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
         raise InvalidInput("MP4 needs the program ffmpeg, which is not found; write a .gif instead")
-    rate = number(frames_per_second, "frames_per_second", above=0)
+    rate = number(frames_per_second, "frames_per_second", least=0.01)
+    if execution.times[-1] * rate > _MOST:
+        raise InvalidInput(f"{rate:g} frames_per_second are more than the {_MOST} frames that are drawn")
     times = np.arange(0, execution.times[-1], 1 / rate)
     rows = np.unique(np.searchsorted(execution.times, times).clip(0, execution.times.size - 1))
     lines = [np.asarray(line) for line in _lines(execution)]
@@ -73,9 +78,10 @@ def animate_execution(
         title.set_text(f"t = {execution.times[row]:.2f} {units.time}")
         return []
 
-    film = FuncAnimation(figure, draw, frames=rows.tolist(), init_func=list, blit=False)
     writer = (PillowWriter if target.suffix.lower() == ".gif" else FFMpegWriter)(fps=rate)  # type: ignore[arg-type]
-    film.save(target, writer=writer, dpi=_DPI)
+    with written(target) as part:
+        film = FuncAnimation(figure, draw, frames=rows.tolist(), init_func=list, blit=False)
+        film.save(part, writer=writer, dpi=_DPI)
     return target
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.plots.grasps.space_body import RIM, write
 from regrasp.plots.look.arrows import arrow3d
@@ -112,10 +112,13 @@ def _known(directions: ArrayLike, values: ArrayLike) -> _Known:
     lengths = np.linalg.norm(d, axis=1, keepdims=True)
     if not len(d) or not lengths.all():
         raise InvalidInput("directions must be one or more vectors, none of them zero")
-    given = np.asarray(values)
+    try:
+        given = np.asarray(values)
+    except (TypeError, ValueError):  # rows of several lengths
+        given = np.empty(0, dtype=object)
     if given.shape != (len(d),) or given.dtype.kind not in "biuf":
         raise InvalidInput(
-            f"values must be a number or a boolean for each of {len(d)} directions, got shape {given.shape}"
+            f"values must be a number or a boolean for each of {len(d)} directions, got {shown(values)}"
         )
     if given.dtype.kind == "b":
         return _Known(d / lengths, np.where(given, 1.0, np.nan), False)
