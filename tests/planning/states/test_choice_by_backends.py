@@ -100,7 +100,11 @@ def test_every_back_end_agrees_with_clarabel(backend, reference):
                 continue
             held += 1
             best, reached = (value(state, objective, asked.facets) for state in (expected, found))
-            worst = max(worst, difference(reached, best, objective, size(expected)))
+            off = difference(reached, best, objective, size(expected))
+            if objective in LEVELS:  # under pyramids of limits levels are known within their gaps only
+                assert found.gap + expected.gap < 2e-2
+                off -= min(off, max(found.gap, expected.gap))
+            worst = max(worst, off)
     print(backend, "held", held, "lost", lost, "refused", refused, "worst", f"{worst:.1e}")
     assert worst <= asked.relative
     assert refused <= asked.refused * (held + refused)
