@@ -4,12 +4,14 @@ Every change of the modules of an area is tried against the tests nearest to the
 ``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, a module that
 changed is tried anew, and ``--survivors`` tries those again, against tests that came since. Survivors and the
 reasons for them stand in ``survivors.txt``: a change that no input can tell from the original is no slip, and
-does not count. JOBS sets the number of processes, SHARE a part of the changes, SLOW the longest test [s].
+does not count. ``--drawn`` tries only those of ``drawn.txt``, which ``--draw=60`` wrote by chance, sixty an
+area (SEED). JOBS sets the number of processes, SLOW the longest test and BUDGET the longest time of a change [s].
 """
 
 import hashlib
 import json
 import os
+import random
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -18,7 +20,7 @@ os.environ.setdefault("HYPOTHESIS_STORAGE_DIRECTORY", "/tmp/regrasp-mutants-hypo
 HERE, ROOT = Path(__file__).parent, Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(HERE), str(ROOT / "src"), str(ROOT / "tests")]
 SOURCE, TESTS, KEPT = ROOT / "src" / "regrasp", ROOT / "tests", ROOT / ".mutants"
-SURVIVORS = HERE / "survivors.txt"
+SURVIVORS, DRAWN = HERE / "survivors.txt", HERE / "drawn.txt"
 
 # Area -> modules, tests (patterns), and the least share of changes noticed.
 AREAS: dict[str, tuple[list[str], list[str], float]] = {
@@ -59,6 +61,9 @@ def main() -> int:
     if any(word not in AREAS for word in asked):
         print(f"areas: {', '.join(AREAS)}", file=sys.stderr)
         return 2
+    for size in (int(word[7:]) for word in sys.argv[1:] if word.startswith("--draw=")):
+        _draw(size, int(os.environ.get("SEED", "1")))
+        return 0
     KEPT.mkdir(exist_ok=True)
     good = True
     for area in asked:
@@ -77,7 +82,7 @@ def _run(area: str, fresh: bool) -> int:
     modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
     for path in modules:  # some are imported where they are needed
         import_module(".".join(path.relative_to(ROOT / "src").with_suffix("").parts))
-    wanted = sorted({str(path) for pattern in tests for path in TESTS.glob(pattern)})
+    files = sorted({str(path) for pattern in tests for path in TESTS.glob(pattern)})
     kept = KEPT / f"{area}.jsonl"
     if fresh:
         kept.unlink(missing_ok=True)
@@ -96,12 +101,37 @@ def _run(area: str, fresh: bool) -> int:
             print(f"{verdict:9}{change.line:5} {key}", flush=True)
 
     again = (SURVIVED, UNSEEN) if "--survivors" in sys.argv else ()
-    known = {key: row["verdict"] for key, row in found.items() if row["verdict"] not in again}
-    known |= {key: SURVIVED for key, reason in reasons.items() if reason.startswith("=")}
-    engine = Engine(modules, known, told)
+    known = {key for key, row in found.items() if row["verdict"] not in again}
+    known |= {key for key, reason in reasons.items() if reason.startswith("=")}
+    drawn = set(DRAWN.read_text(encoding="utf-8").splitlines()) if "--drawn" in sys.argv else None
+
+    def wanted(key: str) -> bool:
+        return key not in known and (drawn is None or key in drawn)
+
+    engine = Engine(modules, wanted, told, KEPT / f"{area}.seen.jsonl")
     quiet = ["-qq", "-p", "no:cacheprovider", "--capture=no", "--hypothesis-seed=0"]
-    pytest.main([*quiet, *wanted], plugins=[engine])
-    return _summed_up(area, list(found.values()), reasons, least)
+    pytest.main([*quiet, *files], plugins=[engine])
+    rows = [row for row in found.values() if drawn is None or row["key"] in drawn]
+    rows += [
+        {"key": key, "verdict": SURVIVED}
+        for key, reason in reasons.items()
+        if reason.startswith("=") and key not in found and drawn is not None and key in drawn
+    ]
+    return _summed_up(area, rows, reasons, least)
+
+
+def _draw(size: int, seed: int) -> None:
+    """Write which changes of each area are to be tried; nothing has been tried when they are drawn."""
+    from changes import changes
+    from engine import named
+
+    lines = [f"# {size} changes an area, by random.Random({seed}).sample; an area of fewer has all of them."]
+    for area, (sources, _, _) in AREAS.items():
+        modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
+        keys = [key for path in modules for _, key in named(changes(path.read_text()), str(path))]
+        chosen = random.Random(seed).sample(keys, min(size, len(keys)))
+        lines += [f"# {area}: {len(chosen)} of {len(keys)}", *sorted(chosen)]
+    DRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _summed_up(area: str, rows: list[dict], reasons: dict[str, str], least: float) -> int:
@@ -111,11 +141,19 @@ def _summed_up(area: str, rows: list[dict], reasons: dict[str, str], least: floa
     noticed = sum(row["verdict"] == NOTICED for row in judged)
     share = noticed / max(len(judged), 1)
     equal = sum(reasons.get(row["key"], "?")[:1] == "=" for row in rows)
+    low, high = _interval(noticed, len(judged))
     print(
-        f"{area}: {noticed} of {len(judged)} changes noticed, {100 * share:.1f} % "
-        f"(wanted {100 * least:.0f} %); {equal} more are no slips"
+        f"{area}: {noticed} of {len(judged)} changes noticed, {100 * share:.1f} % ({100 * low:.0f} to "
+        f"{100 * high:.0f} % of all like these; wanted {100 * least:.0f} %); {equal} more are no slips"
     )
     return 0 if share >= least else 1
+
+
+def _interval(k: int, n: int, z: float = 1.96) -> tuple[float, float]:
+    """Wilson's interval of a share, of which 95 % hold the true one."""
+    n = max(n, 1)
+    middle, half = k / n + z * z / (2 * n), z * (k * (n - k) / n**3 + z * z / (4 * n * n)) ** 0.5
+    return (middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n)
 
 
 def _reasons() -> dict[str, str]:

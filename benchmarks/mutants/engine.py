@@ -1,18 +1,20 @@
 """Tests run once without a change to learn which functions each enters, then against every change in a fork.
 
-Everything is imported and collected once. A child of the process swaps the code of the changed function in
-place, runs the tests that enter it, the likeliest and quickest first, and says whether one of them failed.
+Everything is imported and collected once, and what a test enters is kept from run to run. A child of the
+process swaps the code of the changed function in place, runs the tests that enter it, the likeliest and quickest
+first, and says whether one of them failed.
 """
 
 import ast
 import builtins
 import functools
 import gc
+import hashlib
+import json
 import os
 import signal
 import sys
 import time
-import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -23,8 +25,8 @@ from changes import Change, changes
 
 # Tests that take longer [s] are left out: a change that only they notice counts as not noticed.
 SLOW = float(os.environ.get("SLOW", "1"))
-# A part of all changes, chosen by their names, gives an estimate.
-SHARE = float(os.environ.get("SHARE", "1"))
+# Tests of a change end after this time [s]; what was not noticed by then counts as not noticed.
+BUDGET = float(os.environ.get("BUDGET", "60"))
 _CACHED = type(functools.cache(lambda: None))
 NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
 
@@ -33,9 +35,13 @@ class Engine:
     """A pytest plugin whose run of the tests is the run of the changes."""
 
     def __init__(
-        self, modules: list[Path], known: dict[str, str], told: Callable[[str, Change, str], None]
+        self,
+        modules: list[Path],
+        wanted: Callable[[str], bool],
+        told: Callable[[str, Change, str], None],
+        kept: Path,
     ) -> None:
-        self.modules, self.known, self.told = modules, known, told
+        self.modules, self.wanted, self.told, self.kept = modules, wanted, told, kept
         self.jobs = int(os.environ.get("JOBS", "2"))
         self.killers: dict[str, list[int]] = {}
 
@@ -46,13 +52,12 @@ class Engine:
         hypothesis_engine.MAX_SHRINKS = 0  # that it fails is enough
         session.config.option.maxfail = 1
         seen = [entry for entry in self._baseline(session.items) if entry[2] < SLOW]
-        limit = 30 + 6 * int(sum(duration for *_, duration in seen))
         running: dict[int, tuple[str, Change, int]] = {}
         for path in self.modules:
             name = str(path)
             functions = {code.co_qualname.replace("<locals>.", "") for code in _all_codes(_compiled(path))}
-            for change, key in _named(changes(path.read_text(encoding="utf-8")), name):
-                if key in self.known or zlib.crc32(key.encode()) % 1000 >= 1000 * SHARE:
+            for change, key in named(changes(path.read_text(encoding="utf-8")), name):
+                if not self.wanted(key):
                     continue
                 looks = [
                     k for k, (_, entered, _) in enumerate(seen) if f"{name} {change.function}" in entered
@@ -69,7 +74,7 @@ class Engine:
                 read, write = os.pipe()
                 pid = os.fork()
                 if pid == 0:
-                    _child(path, change, [(k, seen[k][0]) for k in looks], limit, write)
+                    _child(path, change, [(k, seen[k][0], seen[k][2]) for k in looks], write)
                 os.close(write)
                 running[pid] = key, change, read
         while running:
@@ -91,22 +96,38 @@ class Engine:
 
     def _baseline(self, items: list[pytest.Item]) -> list[tuple[pytest.Item, set[str], float]]:
         """Each test with the functions of the modules that it enters, and its time, quickest first."""
+        sources = "".join(_print(path) for path in self.modules)
+        rows = [json.loads(line) for line in self.kept.read_text().splitlines()] if self.kept.exists() else []
+        kept = {(row["test"], row["print"]): row for row in rows}
         found = []
         for path in self.modules:
             swap(path, _instrumented(path))
         remembering = [function for path in self.modules for function in _caches(path)]
         for item in items:
-            entered: set[str] = set()
-            for function in remembering:
-                function.cache_clear()
-            builtins.__entered__ = entered.add  # type: ignore[attr-defined]
-            start = time.process_time()
-            if not _run(item):
-                raise SystemExit(f"{item.nodeid} fails without a change")
-            found.append((item, entered, time.process_time() - start))
+            if SLOW <= 1 and item.get_closest_marker("slow"):
+                continue
+            key = item.nodeid, _print(item.path) + sources
+            if key not in kept:
+                entered: set[str] = set()
+                for function in remembering:
+                    function.cache_clear()
+                builtins.__entered__ = entered.add  # type: ignore[attr-defined]
+                start = time.process_time()
+                if not _run(item):
+                    raise SystemExit(f"{item.nodeid} fails without a change")
+                taken = time.process_time() - start
+                kept[key] = {"test": key[0], "print": key[1], "entered": sorted(entered), "seconds": taken}
+                with self.kept.open("a") as file:
+                    file.write(json.dumps(kept[key]) + "\n")
+            found.append((item, set(kept[key]["entered"]), kept[key]["seconds"]))
         for path in self.modules:
             swap(path, ast.parse(path.read_text(encoding="utf-8")))
         return sorted(found, key=lambda entry: entry[2])
+
+
+@functools.cache
+def _print(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:8]
 
 
 def _instrumented(path: Path) -> ast.Module:
@@ -130,7 +151,7 @@ def _compiled(path: Path) -> CodeType:
     return compile(path.read_text(encoding="utf-8"), str(path), "exec")
 
 
-def _named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]:
+def named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]:
     """Changes and keys; equal ones of one function are counted."""
     count: dict[str, int] = {}
     short = module.split("/src/regrasp/")[-1]
@@ -157,12 +178,12 @@ def _run(item: pytest.Item) -> bool:
     return not any(report.failed for report in reports)
 
 
-def _child(path: Path, change: Change, items: list[tuple[int, pytest.Item]], limit: int, write: int) -> None:
+def _child(path: Path, change: Change, items: list[tuple[int, pytest.Item, float]], write: int) -> None:
     """Never returns: the status says whether a test failed, ``write`` hears which."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
     os.dup2(null, 2)
-    signal.alarm(limit)
+    signal.alarm(60)
     os.nice(5)
     try:
         if not swap(path, change.tree):
@@ -170,10 +191,14 @@ def _child(path: Path, change: Change, items: list[tuple[int, pytest.Item]], lim
     except Exception:
         os._exit(77)
     try:
-        for k, item in items:
+        for k, item, usual in items:  # what takes ten times its time goes round for ever, and is noticed
+            signal.alarm(int(60 + 20 * usual))
+            signal.setitimer(signal.ITIMER_PROF, 5 + 10 * usual)
             if not _run(item):
                 os.write(write, str(k).encode())
                 os._exit(1)
+            if time.process_time() > BUDGET:
+                break
     except BaseException:
         os._exit(1)
     os._exit(0)
