@@ -5,7 +5,8 @@ Every change of the modules of an area is tried against the tests nearest to the
 changed is tried anew, and ``--survivors`` tries those again, against tests that came since. Survivors and the
 reasons for them stand in ``survivors.txt``: a change that no input can tell from the original is no slip, and
 does not count. ``--drawn`` tries only those of ``drawn.txt``, which ``--draw=60`` wrote by chance, sixty an
-area (SEED). JOBS sets the number of processes, SLOW the longest test and BUDGET the longest time of a change [s].
+area (SEED). JOBS sets the number of processes, SLOW the longest test and BUDGET the longest time of a change
+[s].
 """
 
 import hashlib

@@ -1,8 +1,8 @@
 """Tests run once without a change to learn which functions each enters, then against every change in a fork.
 
 Everything is imported and collected once, and what a test enters is kept from run to run. A child of the
-process swaps the code of the changed function in place, runs the tests that enter it, the likeliest and quickest
-first, and says whether one of them failed.
+process swaps the code of the changed function in place, runs the tests that enter it, the likeliest and
+quickest first, and says whether one of them failed.
 """
 
 import ast
@@ -242,7 +242,7 @@ def _swap_constants(module: ModuleType, new: CodeType) -> bool:
         if name.startswith("__") or not _is_plain(value) or not _is_plain(old) or value == old:
             continue
         for other in list(sys.modules.values()):
-            if isinstance(other, ModuleType) and getattr(other, name, None) is old:
+            if isinstance(other, ModuleType) and vars(other).get(name) is old:
                 setattr(other, name, value)
         changed = True
     return changed
