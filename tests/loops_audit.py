@@ -90,8 +90,8 @@ def _inverse_units(pp, pi, pd, q, ap, ai, ad, noise, b, codes):
     rows, columns = _inverse(_of_cones(codes, np.abs(b), True)), np.zeros(q.size)
     for j in range(q.size):
         for k in range(pp[j], pp[j + 1]):
-            if pi[k] == j and q[j] != 0:
-                columns[j] += pd[k] / abs(q[j])
+            if q[pi[k]] != 0 and (pi[k] == j or q[j] == 0):
+                columns[j] = max(columns[j], abs(pd[k]) / abs(q[pi[k]]))
         for k in range(ap[j], ap[j + 1]):
             columns[j] = max(columns[j], abs(ad[k]) * rows[ai[k]])
     _passed_on(ap, ai, ad, noise, codes, rows, columns, True)
@@ -144,8 +144,11 @@ def _into_dual(codes, z):
 
 def _counted(weight, terms, unit):
     """What counts of terms beside a unit: the less, the more of them cancels."""
-    counted = weight * terms
-    if weight < 1 and unit > 0 and counted > MOST * unit:
+    return _lessened(weight * terms, unit) if weight < 1 else terms
+
+
+def _lessened(counted, unit):
+    if unit > 0 and counted > MOST * unit:
         return (MOST * unit) ** 2 / counted
     return counted
 
@@ -233,5 +236,10 @@ def measures(pp, pi, pd, q, ap, ai, ad, b, codes, size_of_x, x, z):
                     violation = _worse(violation, excess)
             row += size
     gap = abs(quadratic + linear + value)
+    if size_of_x == 0:
+        unit = 0.0
+        for j in range(n):
+            unit += least[j] * pulls[j]
+        of_gap = unit + _lessened(of_gap, unit)
     relative = gap / of_gap if gap != 0 else 0.0
     return primal, dual, both, relative, quadratic / 2 + linear, violation, moved, stationarity, gap

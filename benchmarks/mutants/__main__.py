@@ -33,12 +33,18 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "programs": (["programs/*.py", "programs/judging/*.py"], ["programs/test_*.py"], 0.95),
     "path": (
         ["planning/changes/path_search.py", "planning/changes/path_program.py"],
-        ["**/test_paths.py"],
+        [
+            f"**/test_{name}.py"
+            for name in ("paths", "limits_of_both_ends", "linear_limits", "min_normal", "exchange", "hold")
+        ],
         0.85,
     ),
     "rotation": (
         ["planning/**/rotation.py", "planning/**/turn_states.py", "planning/**/lost_loads.py"],
-        ["**/test_rotation*.py", "**/test_lost_loads.py", "**/test_limits_of_both_ends.py"],
+        [
+            f"**/test_{name}.py"
+            for name in ("rotation*", "turns_*", "lost_loads", "space_plans", "linear_limits", "min_normal")
+        ],
         0.85,
     ),
     "files": (

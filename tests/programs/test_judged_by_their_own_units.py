@@ -314,3 +314,26 @@ def test_columns_that_stand_twice_are_merged():
         assert matrix.has_canonical_format
     assert made.A.toarray().tolist() == [[-2.0, -5.0]]
     assert made.P.toarray().tolist() == [[3.0, 0.0], [0.0, 3.0]]
+
+
+@pytest.mark.parametrize("far", [1e2, 1e9, 1e30])
+@pytest.mark.parametrize("unit", [2.0**-15, 1.0, 2.0**15])
+def test_a_far_bound_on_what_the_objective_does_not_pull_hides_no_gradient(far, unit):
+    """(x - y)^2 + (y - 1)^2 with x <= far: at x = y = 0.9 the last column is off by 0.2 of its unit of 2."""
+    D = np.array([1.0, unit])
+    p = program(
+        D[:, None] * [[2, -2], [-2, 4]] * D, D * [0, -2], np.array([[1, 0]]) * D, [far], nonnegative(1)
+    )
+    assert audited(p, np.array([1.0, 1.0]) / D, np.zeros(1)).dual == 0
+    assert audited(p, np.array([0.9, 0.9]) / D, np.zeros(1)).dual > 0.02
+    assert claimed(p, np.array([0.9, 0.9]) / D).status is Status.UNSOUND
+
+
+@pytest.mark.parametrize("far", [1e4, 1e6, 1e8])
+def test_an_objective_is_not_right_because_its_terms_are_large(far):
+    """(x - y - 1)^2 / 2 far away, off by e: the gap is e (1 + e), of 2 and little of terms 2 far^2."""
+    p = program([[1, -1], [-1, 1]], [-1, 1], np.zeros((0, 2)), [])
+    e = 2.0**-10
+    measured = audited(p, np.array([far + 1 + e, far]), np.zeros(0))
+    assert measured.absolute_gap == pytest.approx(e * (1 + e))
+    assert measured.gap > 1e-8 if far < 1e5 else measured.gap > 1e-4

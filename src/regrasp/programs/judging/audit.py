@@ -4,7 +4,8 @@
     columns    P x + q + A'z = 0       V_j = |q_j| + sum_k |p_jk| X_k + min_i |a_ij| Z_i
                                              + w (sum_k |p_jk x_k| + sum_i |a_ij z_i|)
     both       s_i z_i = 0             T_i times the least z_i with |a_ij| z_i = V_j for some j, w = 1
-    objective  x'P x + q'x + b'z = 0   the same sum with every term positive
+    objective  x'P x + q'x + b'z = 0   the same sum with every term positive; the less of it, beside
+                                       sum_j X_j (sum_k |p_jk| X_k + |q_j|), the more of it cancels
 
 X and Z are the ``units`` of unknowns and duals: sizes that matter where these are themselves near zero. The
 weight w leaves little of the terms, and the less the more of them cancels: an answer far away, where
@@ -75,6 +76,9 @@ def audited(program: Program, x: Array, z: Array) -> Audit:
         quadratic, linear = float(x @ px), float(q @ x)
         gap = abs(quadratic + linear + float(b @ inside))
         of_gap = float(sizes @ (terms.abs_P @ sizes + np.abs(q)) + size_b @ size_z)
+        if weight < 1:
+            units = np.array([unknowns @ (terms.abs_P @ unknowns + np.abs(q))])
+            of_gap = float(_with_terms(units, np.array([of_gap]))[0])
         return Audit(
             inf if lost else largest(excess, of_rows),
             largest(gradient, of_columns + own if weight == 1 else _with_terms(of_columns, weight * own)),

@@ -54,6 +54,10 @@ class Terms:
         """(m,) the largest |a_ij| of_columns_j of each row; of_columns: (n,)."""
         return self._largest(self.abs_A, of_columns, 1)
 
+    def in_objective(self, of_columns: Array) -> Array:
+        """(n,) the largest |p_jk| of_columns_k of each row of P; of_columns: (n,)."""
+        return self._largest(self.abs_P, of_columns, 1)
+
     def back_in_rows(self, of_columns: Array) -> Array:
         """(m,) the largest of_columns_j / |a_ij| of each row; of_columns: (n,)."""
         return self._largest(self.inverses, of_columns, 1)

@@ -1,11 +1,12 @@
 """Sizes of unknowns and duals that matter where these are themselves near zero, from the data alone.
 
 The unit of an unknown is the least of what alone makes up a right side, |b_i| / |a_ij|, or balances the
-objective, |q_j| / p_jj: the least, so that no far bound counts. A row whose right side is zero passes units
-on: its own is that of the smallest of its terms, |a_ij| X_j, and X_l is at most that over |a_il|. Duals have
-units likewise, with rows and columns exchanged and the sizes of P x + q in the place of b. Nothing that gives
-a unit leaves it at zero. Where ``Program.size`` says the unit of all unknowns, rows have that of their
-largest term and columns that of the largest of all: they are in one unit, too.
+objective, |q_j| / p_jj, or where q_j is zero any |q_k| / |p_kj|: the least, so that no far bound counts. A
+row whose right side is zero passes units on: its own is that of the smallest of its terms, |a_ij| X_j, and
+X_l is at most that over |a_il|. Duals have units likewise, with rows and columns exchanged and the sizes of
+P x + q in the place of b. Nothing that gives a unit leaves it at zero. Where ``Program.size`` says the unit
+of all unknowns, rows have that of their largest term and columns that of the largest of all: they are in
+one unit, too.
 
 All here is written for inverses, so that nothing is zero and the least unit is the largest number.
 """
@@ -33,11 +34,20 @@ def units_of_unknowns(program: Program) -> tuple[Array, Array]:
     if program.size > 0:
         return program.given_units[:2]
     sides = reciprocal(cones.units(np.abs(program.b)))
-    inverse = np.maximum(terms.in_columns(sides), terms.diagonal * reciprocal(np.abs(program.q)))
+    inverse = np.maximum(terms.in_columns(sides), _of_objective(program))
     for number in range(PASSES):
         rows = np.where(sides > 0, sides, cones.largest(terms.back_in_rows(inverse)))
         inverse = _passed(inverse, terms.in_columns(rows), number)
     return reciprocal(inverse), reciprocal(terms.back_in_rows(inverse))
+
+
+def _of_objective(program: Program) -> Array:
+    """(n,) 1 over the least of an unknown that balances q: in its column, or where that is zero in others."""
+    terms, pulls = program.terms, reciprocal(np.abs(program.q))
+    own: Array = terms.diagonal * pulls
+    if np.logical_and.reduce(program.q, axis=None):
+        return own
+    return np.where(program.q == 0, terms.in_objective(pulls), own)
 
 
 def own_units_of_columns(program: Program, unknowns: Array) -> Array:
