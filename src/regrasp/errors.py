@@ -1,6 +1,7 @@
 """The errors regrasp raises. Each message says what was expected, what came, and what to do."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 # A value in a message is a reminder, not a listing; a message is one to read: what is long is in the middle.
@@ -52,7 +53,7 @@ class Infeasible(RegraspError):
     """No forces inside the friction cones and force limits balance the load.
 
     ``certificate`` is the ``EscapeTwist`` that proves it, a ``RegraspObstacle`` of a whole regrasp, or None
-    where only the message can say why.
+    where only the message can say why. What would help is worked out when the message is first read.
 
     Args:
         message: one line: what was expected, what came, what to do.
@@ -62,6 +63,30 @@ class Infeasible(RegraspError):
     def __init__(self, message: str, certificate: Any = None) -> None:
         super().__init__(_readable(message))
         self.certificate = certificate
+        self._helps: Callable[[], str] | None = None
+
+    def helped(self, helps: Callable[[], str]) -> None:
+        """Say what would help behind the message, in words that are asked for when it is first read.
+
+        Args:
+            helps: returns the words, or none.
+        """
+        self._helps = helps
+
+    @property
+    def reason(self) -> str:
+        """The message as far as it is known at once, without what would help."""
+        return str(self.args[0])
+
+    def __str__(self) -> str:
+        if self._helps is not None:
+            helps, self._helps = self._helps, None
+            if words := helps():
+                self.args = (_readable(f"{self.args[0]}; {words}"),)
+        return str(self.args[0])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Infeasible, (str(self), self.certificate)
 
 
 class SolverUnavailable(RegraspError):

@@ -40,8 +40,8 @@ def answer(question: Question, shape: Shape | None = None) -> dict[str, Any]:
         asked = question.on(shape)
         found["contacts"] = list(asked.contacts)
         _answer(asked, found)
-    except Infeasible as error:
-        found |= {"holds": False, "says": str(error)}
+    except Infeasible as error:  # what would help takes too long to say while something is dragged
+        found |= {"holds": False, "says": error.reason}
         if isinstance(error.certificate, EscapeTwist):
             found["escape"] = _escape(error.certificate)
     except RegraspError as error:

@@ -6,7 +6,6 @@ time on a graph built anew.
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from math import ceil, floor, log10
 
 import numpy as np
 
@@ -21,11 +20,9 @@ from regrasp.planning.holds.sequences import preferred
 from regrasp.planning.holds.stances import REACH, Stances
 from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.turning import turning_sequences
+from regrasp.planning.states.refusals.least_values import MOST_FRICTION, least_value, rounded_up
 
-MOST_FRICTION = 16.0
-"""Friction coefficients are tried up to this one, a cone of 86 degrees."""
 _MOST_LOADS = 1e4  # and force limits up to so many loads
-_DIGITS = 3
 
 
 def possible_on(problem: Asked, graph: AnyGraph, arcs: bool = True) -> bool:
@@ -71,7 +68,7 @@ def force_needed(problem: Asked) -> float | None:
     if least is None:
         return None
     for share in (1.0, 1.01, 1.03, 1.1, 1.3, 2.0):  # forces grow while the object turns
-        limit = _rounded_up(share * least)
+        limit = rounded_up(share * least)
         try:
             problem.allowing(limit).plans()
         except Infeasible:
@@ -115,20 +112,3 @@ def raised(contact: Contact, friction: float) -> Contact:
 def allowed(contact: Contact, force: float) -> Contact:
     """The contact with at least this force, where it has a limit."""
     return contact if contact.max_force is None else with_limit(contact, max(force, contact.max_force))
-
-
-def least_value(possible: Callable[[float], bool], now: float, most: float) -> float | None:
-    """The least value above ``now``, to three digits, with which it is possible; None up to ``most``."""
-    if not possible(most):
-        return None
-    low, high = now, most
-    while high - low > 10.0 ** (floor(log10(high)) - _DIGITS) and high > 1e-6 * most:
-        middle = (low + high) / 2 if low > high / 4 else max(high / 4, 2 * low)
-        low, high = (low, middle) if possible(middle) else (middle, high)
-    rounded = _rounded_up(high)
-    return rounded if possible(rounded) else high
-
-
-def _rounded_up(value: float) -> float:
-    unit = 10.0 ** (floor(log10(value)) + 1 - _DIGITS)
-    return float(f"{ceil(value / unit - 1e-9) * unit:.{_DIGITS + 1}g}")

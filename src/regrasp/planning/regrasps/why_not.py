@@ -14,13 +14,11 @@ from regrasp.planning.holds.graphs import AnyGraph, Parts, holding, holds_within
 from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.cut import cut_of
 from regrasp.planning.regrasps.remedies import (
-    MOST_FRICTION,
     allowed,
     force_needed,
     friction_needed,
     in_the_way,
     least_force,
-    least_value,
     possible_on,
     raised,
     widest_margin,
@@ -28,6 +26,7 @@ from regrasp.planning.regrasps.remedies import (
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import FORCE
+from regrasp.planning.states.refusals.least_values import MOST_FRICTION, least_value
 from regrasp.plans.regrasp_cut import RegraspCut
 
 

@@ -11,6 +11,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.objectives import Objective
 from regrasp.planning.states.options import StateOptions, criteria_of, takes
+from regrasp.planning.states.refusals.asking import is_asked_only
 from regrasp.planning.states.two_fingers import closed_forces, is_one_point
 
 MOST_FACETS = 10_000
@@ -74,7 +75,7 @@ def choose_forces(
         try:
             found = closed_forces(grasp, load, criteria)
         except Infeasible as reason:
-            if method == "closed-form" or reason.certificate is not None:
+            if method == "closed-form" or reason.certificate is not None or is_asked_only():
                 raise
             found, refused = None, reason  # without proof: contacts next to one another, or at the edge
         if found is not None:

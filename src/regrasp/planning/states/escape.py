@@ -17,6 +17,7 @@ from regrasp.mechanics.exact.refining import proven
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.refusals.asking import is_asked_only
 from regrasp.planning.states.separation import clearing, edge_of, gap_and_duals, gap_left
 
 AT_LIMIT = 1e-6
@@ -50,12 +51,14 @@ def unproven(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
 
 def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None:
     """Why no state exists, where that is proven or the load is at its limit; else None."""
+    if is_asked_only():
+        return None
     names = ", ".join(grasp.names)
     loose = loose_twist(grasp, load)
     if loose is not None:
         return Infeasible(
             f"no forces of {names} balance {shown(load)}: none resists {grasp.freedom}, about which the "
-            f"load has a torque; the object escapes by {loose}",
+            f"load has a torque; the object escapes by {loose}; no friction helps",
             loose,
         )
     full = replace(criteria, reserve=0.0)
@@ -64,7 +67,7 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     if twist is not None:
         return Infeasible(
             f"no forces of {names} inside their friction cones balance {shown(load)}: "
-            f"the object escapes by {twist}{_whatever_friction(twist)}",
+            f"the object escapes by {twist}{'; no friction helps' if defies_friction(twist) else ''}",
             twist,
         )
     twist = escape_twist(grasp, load, frictions, limits) if min(limits) < inf else None
@@ -113,16 +116,15 @@ def verdict(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible | None
     )
 
 
-def _whatever_friction(twist: EscapeTwist) -> str:
-    """Words for a motion that no friction stops: every contact leaves straight, or stands still."""
+def defies_friction(twist: EscapeTwist) -> bool:
+    """Whether a motion is one that no friction stops: every contact leaves straight, or stands still."""
     u, n = twist.velocities, twist.grasp.normals
     away = (u * n).sum(axis=1)
     across, speed = np.linalg.norm(u - away[:, None] * n, axis=1), np.linalg.norm(u, axis=1).max()
     if max(across.max(), -away.min()) > _STRAIGHT * speed:
-        return ""
+        return False
     rough = [_ROUGH] * len(twist.frictions)
-    is_proof = proven(twist.grasp, twist.load, twist.twist, rough, list(twist.limits)) is not None
-    return "; no friction helps" if is_proof else ""
+    return proven(twist.grasp, twist.load, twist.twist, rough, list(twist.limits)) is not None
 
 
 def _is_at_limit(grasp: Grasp, load: Wrench, frictions: list[float], limits: list[float]) -> bool:

@@ -20,6 +20,7 @@ from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
 from regrasp.planning.states.objectives import EFFORT, FORCE, PEAK, ConvexObjective, LevelObjective
 from regrasp.planning.states.pressing import LARGE
+from regrasp.planning.states.refusals.asking import is_asked_only
 from regrasp.planning.states.separation import edge_of
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
 
@@ -50,6 +51,8 @@ def solved_forces(
     try:
         return _solved(grasp, load, criteria, backend, facets)
     except (SolverFailed, Infeasible) as failure:
+        if is_asked_only():
+            raise
         # At the limit of what can be held solvers fail or guess. That is no verdict; a proof is.
         reason = failure if isinstance(failure, Infeasible) else verdict(grasp, load, criteria)
         if reason is None or reason.certificate is None:

@@ -13,7 +13,7 @@ from re import sub
 from textwrap import fill
 from typing import Annotated, Any, NamedTuple, ParamSpec, TypedDict, TypeVar, get_args, get_type_hints
 
-from regrasp.errors import InvalidInput, shown
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import ArrayLike
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE
@@ -172,7 +172,14 @@ def takes(options: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
                     f"{verb.__name__}() got an unexpected keyword argument {shown(unknown)}; it takes "
                     f"{', '.join(more)}"
                 )
-            return verb(*args, **given)
+            try:
+                return verb(*args, **given)
+            except Infeasible as refusal:
+                from regrasp.planning.states.refusals.helping import Call
+
+                arguments = signature(verb).bind(*args, **given).arguments
+                refusal.helped(Call(verb, arguments, known, refusal).what_helps)
+                raise
 
         extra = [
             Parameter(name, Parameter.KEYWORD_ONLY, default=option.default, annotation=kind)
