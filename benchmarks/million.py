@@ -128,7 +128,7 @@ def refused(reason: rg.Infeasible) -> str:
         return "proven"
     return (
         "at its limit"
-        if "at its limit" in str(reason) or "only in the limit" in str(reason)
+        if "at its limit" in reason.reason or "only in the limit" in reason.reason
         else "plain refusal"
     )
 

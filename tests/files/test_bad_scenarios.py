@@ -304,7 +304,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         [
             re.compile(
                 r"the forces would have to change at 4\.\d+ times the rate limits: allow faster changes, "
-                r"a longer duration or other ends"
+                r"a longer duration or other ends; with rate limits 4\.\d+ times as high, it would do"
             )
         ],
     ),
@@ -369,7 +369,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         3,
         [
             "no forces of P2, P3 inside their friction cones balance Wrench(force=(-1.5, -3.5), torque=0): "
-            "the object escapes by turning counter-clockwise about (4.13793, -5.7931)"
+            "the object escapes by turning counter-clockwise about (4.13793, -5.7931); with a friction of at "
+            "least 0.308 at every contact, it would do"
         ],
     ),
     "force limit too low": (
@@ -380,7 +381,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
                 r"no forces of P1, P2 inside their friction cones and force limits \(P1 1, P2 1\) balance "
                 r"Wrench\(force=\(-1\.5, -3\.5\), torque=0\): the object escapes by turning "
                 r"counter-clockwise about \(42\.6\d*, -30\.4\d*\); the cones alone would hold it with "
-                r"larger forces"
+                r"larger forces; with force limits of at least \d\.?\d*, it would do"
             )
         ],
     ),
@@ -391,7 +392,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
             "no forces of P1, P2 that balance Wrench(force=(-1.5, -3.5), torque=0) were found with 0.9 of "
             "the friction kept in reserve, and no motion proves that there are none without it: the load "
             "needs more friction than that leaves, or is at the limit of what they can hold; choose a "
-            "smaller reserve"
+            "smaller reserve; with a friction of at least 1.83 at every contact, or with a reserve at most "
+            "0.433 times as large, it would do"
         ],
     ),
     "infeasible start of an addition": (
@@ -399,7 +401,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         3,
         [
             "no forces of P1, P3 inside their friction cones balance Wrench(force=(-1.5, -3.5), torque=0): "
-            "the object escapes by turning clockwise about (-4, -4)"
+            "the object escapes by turning clockwise about (-4, -4); with a friction of at least 0.412 at "
+            "every contact, it would do"
         ],
     ),
     "two fingers, one leaves": (
@@ -407,7 +410,8 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
         3,
         [
             "no forces of P1 balance Wrench(force=(-1.5, -3.5), torque=0): none resists turning about P1, "
-            "about which the load has a torque; the object escapes by turning clockwise about (-4, -4)"
+            "about which the load has a torque; the object escapes by turning clockwise about (-4, -4); "
+            "no friction helps"
         ],
     ),
 }
@@ -620,7 +624,8 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         lambda: rg.choose_state(TWO, rg.Wrench([0, 4])),
         rg.Infeasible,
         "no forces of P1, P2 inside their friction cones balance Wrench(force=(0, 4), torque=0): "
-        "the object escapes by sliding along (0, 1)",
+        "the object escapes by sliding along (0, 1); with a friction of at least 1.51 at every contact, it "
+        "would do",
     ),
     "EquilibriumLocus: three contacts": (
         lambda: rg.EquilibriumLocus(GRASP, LOAD),
@@ -723,7 +728,8 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         lambda: rg.plan_removal(STATE, "P1"),
         rg.Infeasible,
         "no forces of P2, P3 inside their friction cones balance Wrench(force=(-1.5, -3.5), torque=0): "
-        "the object escapes by turning counter-clockwise about (4.13793, -5.7931)",
+        "the object escapes by turning counter-clockwise about (4.13793, -5.7931); with a friction of at "
+        "least 0.308 at every contact, it would do",
     ),
     "plan_removal: the last finger": (
         lambda: rg.plan_removal(rg.Grasp([P1]), "P1", load=LOAD),

@@ -28,6 +28,7 @@ _LOOSE = 1e6
 _REACHES = (1e2, 1e4)
 _NEARER = 0.1
 _STRAIGHT = 1e-6  # of the largest speed of a contact
+_STILL = 1e-12
 _ROUGH = 1e4  # friction beyond which none is met
 # A load that does less than this fraction of work along a free motion does none.
 _WORK = 1e-9
@@ -121,6 +122,8 @@ def defies_friction(twist: EscapeTwist) -> bool:
     u, n = twist.velocities, twist.grasp.normals
     away = (u * n).sum(axis=1)
     across, speed = np.linalg.norm(u - away[:, None] * n, axis=1), np.linalg.norm(u, axis=1).max()
+    if speed <= _STILL * float(abs(twist.twist * twist.grasp.lengths).max()):
+        return twist.is_proof  # no contact moves
     if max(across.max(), -away.min()) > _STRAIGHT * speed:
         return False
     rough = [_ROUGH] * len(twist.frictions)

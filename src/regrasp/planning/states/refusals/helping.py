@@ -132,7 +132,7 @@ class Call:
                     changed[name] = replace(given, objective=EFFORT)
             elif given is not None and not isinstance(objective_of(given), WithstoodFactor):
                 changed[name] = EFFORT
-        if "instants" in self._known:
+        if "instants" in self._known and "rate_limit" not in changed:
             changed["instants"] = min(changed.get("instants", _INSTANTS), _INSTANTS)
         return changed
 
