@@ -30,7 +30,7 @@ from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record
 from regrasp.verification.refusals.cuts import Cut, verify_cut
 from regrasp.verification.refusals.outline_cuts import OutlineCut, verify_outline_cut
-from regrasp.verification.regrasps import Regrasp, check_joints
+from regrasp.verification.regrasps import Regrasp, check_joints, of_steps
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
 from regrasp.verification.withstood.plans import Asked, check_withstood
@@ -70,7 +70,8 @@ def verify(
         disturbance: load deviations that must be withstood on top of the load at every instant, forces
             changing by R d with the stiffness of the fingers that stay (docs/robustness.md); decided for
             every member, or one is named that is not withstood.
-        stiffness: of the fingers, as in ``Criteria``, by the contacts in play [N/m]; all alike if not given.
+        stiffness: of the fingers, as in ``Criteria``, by the contacts in play, of a regrasp by the fingers in
+            the order of the start [N/m]; all alike if not given.
         friction: the factor on all friction coefficients, torsions with them, that is judged [-]; 1 if not
             given.
         position: (n,) or (m, n), in space (n, 2) or (m, n, 2): contacts off along their tangents [m]; each of
@@ -100,18 +101,12 @@ def verify(
     if hasattr(plan, "steps") and hasattr(plan, "orientations"):
         if load is not None:
             raise InvalidInput("a regrasp holds the load it was planned for; leave load out")
-        if position is not None or np.ndim(1.0 if stiffness is None else stiffness) or surface is not None:
+        if position is not None or surface is not None:
             raise InvalidInput(
-                "the contacts of a regrasp change from step to step: give one number as stiffness, and "
-                "verify position and surface step by step"
+                "the contacts of a regrasp change from step to step: verify position and surface step by step"
             )
-        more: dict[str, Any] = {
-            "disturbance": disturbance,
-            "stiffness": stiffness,
-            "friction": friction,
-            "early_loss": early_loss,
-        }
-        return _verify_regrasp(cast(Regrasp, plan), more)
+        more = {"disturbance": disturbance, "friction": friction, "early_loss": early_loss}
+        return _verify_regrasp(cast(Regrasp, plan), more, stiffness)
     plan = cast(Plan, plan)
     if not all(hasattr(plan, name) for name in _NEEDED) or not (
         isinstance(plan.start, GraspState) and isinstance(plan.end, GraspState)
@@ -150,10 +145,11 @@ def verify(
     return Verification(tuple(violations), *found[1:], gap, proven)
 
 
-def _verify_regrasp(plan: Regrasp, more: dict[str, Any]) -> Verification:
+def _verify_regrasp(plan: Regrasp, more: dict[str, Any], stiffness: ArrayLike | None) -> Verification:
     if not plan.steps:
         return Verification(tuple(check_joints(plan)), *_NO_FORM)
-    verdicts = [verify(step, **more) for step in plan.steps]
+    springs = of_steps(plan, stiffness)
+    verdicts = [verify(step, stiffness=k, **more) for step, k in zip(plan.steps, springs, strict=True)]
     broken = [f"step {k}: {v}" for k, verdict in enumerate(verdicts, 1) for v in verdict.violations]
     return Verification(
         tuple(broken + check_joints(plan)),

@@ -6,6 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import ArrayLike
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, Vector, cross, dot, exact, least_angle
@@ -78,6 +80,33 @@ def check_joints(plan: Regrasp) -> list[str]:
         if len(shared) < min(len(before.end.grasp), len(after.start.grasp)) - 1:
             broken.append(f"between steps {k + 1} and {k + 2} more than one finger moves")
     return broken
+
+
+def of_steps(plan: Regrasp, stiffness: ArrayLike | None) -> list[ArrayLike | None]:
+    """The stiffness of each step's contacts, from that of each finger; one number is of all of them.
+
+    A contact that no step had before is of the finger that no contact of the step is of.
+    """
+    if np.ndim(1.0 if stiffness is None else stiffness) == 0:
+        return [stiffness] * len(plan.steps)
+    rows = np.asarray(stiffness)
+    first = plan.steps[0].start.grasp.names
+    if len(rows) != len(first):
+        raise InvalidInput(
+            f"stiffness must be one number or have a row for each of {len(first)} fingers, in the order of "
+            f"the start, got {len(rows)}"
+        )
+    held: dict[str, int] = {name: k for k, name in enumerate(first)}
+    result: list[ArrayLike | None] = []
+    for step in plan.steps:
+        names = step.start.grasp.names
+        free = [finger for name, finger in held.items() if name not in names]
+        for name in names:
+            if name not in held:
+                held = {n: f for n, f in held.items() if not free or f != free[0]}
+                held[name] = free.pop(0) if free else 0
+        result.append(rows[[held[name] for name in names]])
+    return result
 
 
 def _check_steadiness(step: Plan, k: int) -> list[str]:

@@ -164,5 +164,5 @@ def test_holds_withstand_the_disturbance_of_criteria() -> None:
         least[str(objective)] = min(factors)
     assert least["effort"] < 0.1
     assert least[str(criteria)] >= 1 - 1e-9
-    with pytest.raises(rg.InvalidInput, match="withstands no disturbance; use states='each'"):
-        replace(problem(), objective=criteria, states="joint")
+    with pytest.raises(rg.InvalidInput, match="joint' has one force margin for all states"):
+        replace(problem(), objective="wrench", states="joint")

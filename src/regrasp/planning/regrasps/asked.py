@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
 
 
+def without_limits(contacts: Iterable[Contact]) -> tuple[Contact, ...]:
+    """The contacts without linear limits, of which the holds are bounds."""
+    return tuple(c if c.limits is None else c.changed(limits=None) for c in contacts)
+
+
 class Asked(Protocol):
     """What is read of a ``RegraspProblem``, where its fields are described."""
 
@@ -97,6 +102,14 @@ class Asked(Protocol):
     @property
     def reserve(self) -> float:
         """As for ``choose_state`` [-]."""
+
+    @property
+    def judges_holds(self) -> bool:
+        """Whether margins of the graph are bounds, for it knows no linear limits, nor what is withstood."""
+
+    @property
+    def kept_pairs(self) -> NDArray[np.bool_]:
+        """(P, O) whether pairs of the plane may keep these."""
 
     @property
     def states(self) -> str:

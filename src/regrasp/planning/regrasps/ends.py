@@ -11,7 +11,6 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.value import numbers
 from regrasp.planning.changes.given_ends import with_limit
 
@@ -33,7 +32,6 @@ class Ends:
         for what, grasp in (("start", start), ("goal", goal)):
             if not isinstance(grasp, Grasp) or len(grasp) != fingers or grasp.dimension != fingers - 1:
                 raise InvalidInput(f"{what} must be a Grasp of {wanted}, got {shown(grasp)}")
-            refuse_limits(grasp, "a regrasp")
         self._limit = max_force
         self.contacts: list[Contact] = []
         self.start = tuple(self._place(c, f"start {c.name}") for c in start)

@@ -3,7 +3,8 @@
 The unknowns are the forces of every state, block after block, and t:
 
     equilibrium, cones less t, limits     of every state, as in ``state_program`` for ``force``
-    least normal forces                   of every finger of a state
+    least normal forces, linear limits,
+    withstood deviations                  of every finger of a state, as for the state alone
     margin    maximise t
     change    minimise the sum of |f_k+1 - f_k|^2 over states that follow one another, with t given;
               a contact that one of the two does not have counts with zero there
@@ -11,6 +12,7 @@ The unknowns are the forces of every state, block after block, and t:
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -19,10 +21,12 @@ from regrasp.errors import Infeasible, InvalidInput, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import FORCE
 from regrasp.planning.states.pressing import pressing
 from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import SLACK, Chooser
+from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Status, solve
 
 # Fraction of the widest margin that the second program may give up.
@@ -35,7 +39,7 @@ class SequenceState:
 
     places: (n,) one name for each contact, by which it is known in the other states. frictions, limits [N],
     counts: (n,); a contact that does not count may be idle, and its margin is left out of the worst. least:
-    normal force of every contact at the least [N].
+    normal force of every contact at the least [N]. criteria: with the set that is withstood; None for none.
     """
 
     grasp: Grasp
@@ -45,6 +49,13 @@ class SequenceState:
     limits: list[float]
     counts: tuple[bool, ...]
     least: float = 0.0
+    criteria: Criteria | None = None
+
+    @cached_property
+    def demand(self) -> Demand | None:
+        """The set that is withstood; None for none."""
+        asked = self.criteria
+        return asked.demand(self.grasp) if asked is not None and asked.withstands else None
 
     @property
     def normals(self) -> Array:
@@ -64,16 +75,7 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
     """
     if len(states) < 2:
         raise InvalidInput(f"a sequence has two states or more, got {len(states)}")
-    parts = [
-        pressing(
-            state_program(s.grasp, s.load, FORCE, s.frictions, s.limits, unit, weights=s.weights),
-            s.grasp,
-            s.normals,
-            unit,
-            unit,
-        )
-        for s in states
-    ]
+    parts = [_part(s, unit) for s in states]
     forces = sparse.block_diag([part.A[:, :-1] for part in parts], format="csc")
     distances = sparse.vstack([part.A[:, -1] for part in parts], format="csc")
     b = np.concatenate([part.b for part in parts])
@@ -84,7 +86,7 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
         q[-1] = -1.0
         whole = sparse.hstack([forces, distances], format="csc")
         return Program(sparse.csc_matrix((width + 1, width + 1)), q, whole, b, blocks, size=1.0)
-    change = _changes(states, width)
+    change = _changes(states, [part.q.size - 1 for part in parts])
     shifted = b - distances.toarray()[:, 0] * (margin / unit)
     return Program(
         sparse.csc_matrix(2 * change.T @ change), np.zeros(width), forces, shifted, blocks, size=1.0
@@ -118,9 +120,10 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
         shape = (len(state.grasp), state.grasp.width)
         size = shape[0] * shape[1]
         wanted = answer.value[begin : begin + size].reshape(shape) * unit
-        begin += size
-        least = state.normals if state.least else None
-        chooser = Chooser(state.grasp, state.load, backend, None, state.limits, least)
+        begin += _part(state, unit).q.size - 1
+        asks = state.least or state.demand is not None or state.grasp.limit_rows is not None
+        least = state.normals if asks else None
+        chooser = Chooser(state.grasp, state.load, backend, None, state.limits, least, state.demand)
         forces = chooser.settled(wanted, state.frictions, state.limits)
         if forces is None:
             raise SolverFailed(f"{backend} answered forces far from equilibrium", answer.program, answer)
@@ -128,10 +131,21 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
     return result
 
 
-def _changes(states: Sequence[SequenceState], width: int) -> sparse.csr_matrix:
+def _part(state: SequenceState, unit: float) -> Program:
+    """The program of one state; its unknowns are its forces, others that withstanding takes, and t."""
+    s = state
+    program = state_program(s.grasp, s.load, FORCE, s.frictions, s.limits, unit, weights=s.weights)
+    if s.demand is not None:
+        from regrasp.planning.states.withstanding.rows import with_rows
+
+        program = with_rows(program, s.demand, s.frictions, s.limits, unit, by_factor=False)
+    return pressing(program, s.grasp, s.normals, unit, unit)
+
+
+def _changes(states: Sequence[SequenceState], widths: Sequence[int]) -> sparse.csr_matrix:
     """Rows f_k+1 - f_k of every contact of two states that follow one another."""
-    d = states[0].grasp.width
-    starts = np.concatenate([[0], np.cumsum([d * len(state.grasp) for state in states])])
+    d, width = states[0].grasp.width, sum(widths)
+    starts = np.concatenate([[0], np.cumsum(widths)])
     rows: list[int] = []
     columns: list[int] = []
     signs: list[float] = []

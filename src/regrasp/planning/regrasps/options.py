@@ -5,6 +5,8 @@ from typing import Any, Required
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import ArrayLike, choice, number
+from regrasp.mechanics.limits.force_limits import ForceLimits
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.weights import RegraspWeights
@@ -35,12 +37,19 @@ class RegraspOptions(LimitOptions, total=False):
     keep: Filter | TripleFilter | None
     arcs: Arcs | Regions | None
     one_finger: bool
+    limits: ForceLimits | None
+    disturbance: LoadSet | None
+    stiffness: ArrayLike | None
+    early_loss: bool
     weights: RegraspWeights | None
     min_normal: float | None
     step_duration: float
     goal_rotation: ArrayLike | None
     facets: int | None
     seed: int
+
+
+_WITHSTOOD = ("disturbance", "stiffness", "early_loss")
 
 
 def check_steps(step_duration: float, states: str, max_turn: float, least_margin: float) -> None:
@@ -52,9 +61,9 @@ def check_steps(step_duration: float, states: str, max_turn: float, least_margin
 
 
 def settled(problem: Any) -> Criteria:
-    """The criteria of a problem's ``objective``, ``max_force``, ``peak_ratio`` and ``reserve``.
+    """The criteria of a problem's ``objective``, its limits, and what it withstands.
 
-    Where the objective is ``Criteria``, they hold the limits; the problem's fields then say the same.
+    Where the objective is ``Criteria``, they hold all of these; the problem's fields then say the same.
     """
     entries = described(LimitOptions)
     given = {name: getattr(problem, name) for name in entries}
@@ -63,11 +72,17 @@ def settled(problem: Any) -> Criteria:
     asked = problem.min_normal
     if asked is not None and number(asked, "min_normal", least=0):
         changed["min_normal"] = asked
+    changed |= {name: getattr(problem, name) for name in _WITHSTOOD if getattr(problem, name) is not None}
+    if not problem.early_loss:
+        changed.pop("early_loss")
     criteria = criteria_of(problem.objective, changed)
-    if criteria.demands and problem.states == "joint":
-        raise InvalidInput(
-            "states='joint' has one margin for all states and withstands no disturbance; use states='each'"
-        )
+    if criteria.controlled:
+        raise InvalidInput("which fingers are controlled follows from their moves; leave controlled out")
+    if criteria.demands and problem.states == "joint" and not criteria.withstands:
+        raise InvalidInput("states='joint' has one force margin for all states; give another objective")
+    for name in _WITHSTOOD:
+        if criteria.demands:
+            object.__setattr__(problem, name, getattr(criteria, name))
     if asked is not None or isinstance(problem.objective, Criteria):
         object.__setattr__(problem, "min_normal", criteria.least_normal)
     for name in ("objective", *entries):

@@ -5,12 +5,13 @@ from typing import Any
 import numpy as np
 
 from regrasp.errors import Infeasible
-from regrasp.planning.holds.sequences import Sequence
+from regrasp.planning.holds.sequences import Hold, Sequence
 from regrasp.planning.holds.stances import REACH
 from regrasp.planning.holds.turning.search import TurningSequence
 from regrasp.planning.regrasps.asked import Asked
+from regrasp.planning.regrasps.remedies import possible_on
 from regrasp.planning.regrasps.sampled import sampled_sequences
-from regrasp.planning.regrasps.steps import chosen_states, spread_states
+from regrasp.planning.regrasps.steps import Refused, chosen_states, spread_states
 from regrasp.planning.regrasps.turning import turning_sequences
 from regrasp.planning.regrasps.why_not import unheld_end, why_not
 from regrasp.plans.regrasp_notes import LEAST_SHARE, hardly_pushes
@@ -18,6 +19,8 @@ from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plans.timing import TimeScaling
 
 Plans = list[RegraspPlan]
+
+_MOST_REFUSED = 100  # states that do not exist beside holds that do, after which smaller turns are tried
 
 
 class _NoSequence(Infeasible):
@@ -56,8 +59,13 @@ def _pushing(problem: Asked, extra: int, moves: int) -> Plans:
 def _planned(problem: Asked, extra: int) -> Plans:
     if problem.is_exact:
         exact = turning_sequences(problem, extra, problem.least_margin)
-        if not exact or not any(c.max_force for c in problem.contacts):
+        if not exact or not (problem.judges_holds or any(c.max_force for c in problem.contacts)):
             return _turning_plans(problem, exact)
+        if problem.judges_holds:  # fewest moves without limits and deviations; it may keep them
+            try:
+                return _turning_plans(problem, exact)
+            except Infeasible:
+                return _sampled_plans(problem, extra)
         sampled = sampled_sequences(problem, extra, problem.largest_turn, REACH)
         if not sampled or _order(exact[0].sequence) <= _order(sampled[0]):
             try:
@@ -78,22 +86,55 @@ def _turning_plans(problem: Asked, found: list[TurningSequence]) -> Plans:
 
 def _sampled_plans(problem: Asked, extra: int) -> Plans:
     turn, reach = problem.largest_turn, REACH
-    found = sampled_sequences(problem, extra, turn, reach)
+    known: dict[Hold, float] = {}
+    found = sampled_sequences(problem, extra, turn, reach, known)
     if not found:
-        raise _NoSequence
+        there_is_one = problem.judges_holds and possible_on(problem, problem.graph)
+        raise _unjudged(problem) if there_is_one else _NoSequence()
+    more = _MOST_REFUSED if problem.judges_holds else 0
     while True:
+        sequence = found[0]
         try:
-            return [_plan(problem, sequence, turn) for sequence in found]
+            plans = []
+            for sequence in found:
+                plans.append(_plan(problem, sequence, turn))
+            return plans
         except Infeasible as error:
-            turn = turn / 2 if reach == turn else turn
-            reach = turn
-            found = sampled_sequences(problem, extra, turn, reach)
+            if more and isinstance(error, Refused):  # a state between holds that hold: another way
+                more -= 1
+                known[sequence.holds[error.hold(len(sequence.holds))]] = -1.0
+            else:
+                turn = turn / 2 if reach == turn else turn
+                reach = turn
+            found = sampled_sequences(problem, extra, turn, reach, known)
             if not found:
-                raise unheld_end(problem) or Infeasible(
-                    f"the force limits leave no room for forces to grow while the object turns: {error}; "
-                    f"allow more force, or more orientations for smaller turns",
-                    error.certificate,
-                ) from None
+                raise unheld_end(problem) or _no_room(problem, error) from None
+
+
+def _unjudged(problem: Asked) -> Infeasible:
+    """Why no sequence is left of the holds that hold a load without more."""
+    return unheld_end(problem) or Infeasible(
+        f"no sequence of holds that {_asked_besides(problem)} was found at the orientations tried, though "
+        f"there is one without; it is not proven that there is none"
+    )
+
+
+def _no_room(problem: Asked, error: Infeasible) -> Infeasible:
+    if problem.judges_holds:
+        return Infeasible(
+            f"no sequence was found whose states all {_asked_besides(problem)}: {error}", error.certificate
+        )
+    return Infeasible(
+        f"the force limits leave no room for forces to grow while the object turns: {error}; "
+        f"allow more force, or more orientations for smaller turns",
+        error.certificate,
+    )
+
+
+def _asked_besides(problem: Asked) -> str:
+    kept = ["keep the linear limits"] if any(c.limits is not None for c in problem.contacts) else []
+    kept += ["withstand the disturbance"] if problem.criteria.withstands else []
+    return " and ".join(kept) or "push with the least normal force"
 
 
 def _plan(problem: Asked, sequence: Sequence, max_turn: float, angles: Any = None) -> RegraspPlan:

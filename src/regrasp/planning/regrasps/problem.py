@@ -9,22 +9,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import ArrayLike, number, whole
+from regrasp.mechanics.checks import ArrayLike, instance, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.limits.force_limits import ForceLimits
+from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
+from regrasp.planning.changes.given_ends import refuse_set_without_none
 from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
 from regrasp.planning.holds.graphs import AnyGraph
-from regrasp.planning.holds.pairs import MOST_ORIENTATIONS, Filter
+from regrasp.planning.holds.pairs import MOST_ORIENTATIONS, Filter, HoldGraph
 from regrasp.planning.holds.sequences import MAX_TURN, Sequence
 from regrasp.planning.holds.stances import REACH, Places
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.turning.search import TurningSequence
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.ends import Ends
+from regrasp.planning.regrasps.kept_holds import kept_pairs
 from regrasp.planning.regrasps.options import (
     MOST_CANDIDATES,
     MOST_EXTRA,
@@ -84,6 +88,14 @@ class RegraspProblem(ArrayValue):
             arc allows it may take a contact of the goal.
         one_finger: in the plane, whether a pair also holds where one of its fingers carries the whole load;
             by default both must push.
+        limits: linear limits of every contact that has none of its own, in its frame (``ForceLimits``).
+        disturbance: load deviations that every state and every step withstands, in the object's frame, zero
+            among them where the object may turn; holds are then exchanged through a state of the fingers of
+            both.
+        stiffness: of the fingers that answer [N/m]: a number, or an array with a row for each finger of
+            ``start``, as in ``Criteria``; all alike if not given.
+        early_loss: whether the disturbance is withstood, too, when a finger that leaves or arrives loses
+            contact.
         weights: look for the least cost in place of the fewest moves and the widest margin.
         max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
         peak_ratio: as for ``choose_state`` [-].
@@ -117,6 +129,10 @@ class RegraspProblem(ArrayValue):
     keep: Filter | TripleFilter | None = None
     arcs: Arcs | Regions | None = None
     one_finger: bool = False
+    limits: ForceLimits | None = None
+    disturbance: LoadSet | None = None
+    stiffness: ArrayLike | None = None
+    early_loss: bool = False
     weights: RegraspWeights | None = None
     max_force: float | None = None
     peak_ratio: float = PEAK_RATIO
@@ -144,6 +160,10 @@ class RegraspProblem(ArrayValue):
         number(self.min_distance, "min_distance", least=0)
         if not isinstance(self.one_finger, bool):
             raise InvalidInput(f"one_finger must be True or False, got {shown(self.one_finger)}")
+        if self.limits is not None:
+            instance(self.limits, "limits", ForceLimits)
+        if self.orientations != 1:
+            refuse_set_without_none(self.criteria, self.start)
         if self.weights is not None and not isinstance(self.weights, RegraspWeights):
             raise InvalidInput(f"weights must be RegraspWeights, got {shown(self.weights)}")
         _ = self.setting.orientations, self.graph, self.allowed
@@ -159,6 +179,17 @@ class RegraspProblem(ArrayValue):
         return (
             PlanarSetting(self) if isinstance(self.outline, Outline) else SpatialSetting(self, self.outline)
         )
+
+    @cached_property
+    def judges_holds(self) -> bool:
+        """Whether margins of the graph are bounds, for it knows no linear limits, nor what is withstood."""
+        return self.criteria.withstands or any(c.limits is not None for c in self.contacts)
+
+    @cached_property
+    def kept_pairs(self) -> NDArray[np.bool_]:
+        """(P, O) whether pairs of the plane may keep linear limits and withstand what is asked."""
+        assert isinstance(self.graph, HoldGraph)
+        return kept_pairs(self, self.graph)
 
     @property
     def largest_turn(self) -> float:
@@ -178,7 +209,10 @@ class RegraspProblem(ArrayValue):
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
         """The contacts of both ends, then the candidates; with their whole friction."""
-        return self.ends.joined(self.setting.sampled())
+        contacts = self.ends.joined(self.setting.sampled())
+        if self.limits is None:
+            return contacts
+        return tuple(c if c.limits is not None else c.changed(limits=self.limits) for c in contacts)
 
     @cached_property
     def graph(self) -> AnyGraph:

@@ -106,7 +106,7 @@ def in_the_way(problem: Asked) -> Iterator[str]:
 def raised(contact: Contact, friction: float) -> Contact:
     """The contact with at least this friction."""
     mu = max(contact.friction, friction)
-    return Contact(contact.position, contact.normal, mu, max_force=contact.max_force, name=contact.name)
+    return contact.changed(friction=mu)
 
 
 def allowed(contact: Contact, force: float) -> Contact:

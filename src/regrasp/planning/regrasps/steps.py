@@ -8,6 +8,7 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -30,7 +31,8 @@ from regrasp.plans.turning import TurningPath
 class Chosen:
     """A state of a regrasp and how it was chosen.
 
-    places: (n,) of its contacts among all. forces: (n, d) [N]; limits: (n,) [N].
+    places: (n,) of its contacts among all. forces: (n, d) [N]; limits: (n,) [N]. criteria: by which it was
+    chosen, within a fraction ``ease`` of the contacts' limits.
     """
 
     places: tuple[int, ...]
@@ -40,6 +42,8 @@ class Chosen:
     limits: tuple[float, ...]
     objective: str
     method: str
+    criteria: Criteria
+    ease: float
 
     def among(self, places: tuple[int, ...]) -> Array:
         """(m, d) forces of other contacts, zero for those that this state does not have."""
@@ -56,6 +60,19 @@ class Chosen:
     def all_work(self) -> bool:
         """Whether every finger carries force."""
         return all(_in_use(self.forces))
+
+
+class Refused(Infeasible):
+    """The state of a node of a sequence, by its place, or one on the way to it, does not exist."""
+
+    def __init__(self, node: int, between: bool, reason: Infeasible) -> None:
+        super().__init__(str(reason), reason.certificate)
+        self._node, self._between = node, between
+
+    def hold(self, count: int) -> int:
+        """Which of the holds to do without: between two the later, but the last: few are at the goal."""
+        hold = min(max(self._node - 1, 0), count - 1)
+        return hold - 1 if self._between and hold == count - 1 > 1 else hold
 
 
 def chosen_states(
@@ -75,32 +92,77 @@ def chosen_states(
     Holds are chosen for the objective, whole grasps for the widest force margin: every finger works. So are
     holds of which the objective would leave one finger idle, unless ``one_finger`` may hold. least: angle
     margin [rad] that every hold keeps, whatever it is chosen for.
+
+    Where a set is withstood, holds are exchanged through a state of the contacts of both, too: one finger
+    arrives before another leaves, so that enough of them stay to answer (docs/robustness.md).
     """
-    whole, fingers = replace(criteria, objective=FORCE), len(nodes[0][0])
+    fingers = len(nodes[0][0])
     turns = [way.turn(a, b) for (_, a), (_, b) in pairwise(nodes)]
     pieces = [pieces_of(turn, max_turn) for turn in turns]
+    if criteria.demands:
+        pieces = [
+            n if set(a) <= set(b) or set(b) <= set(a) else max(n, 2)
+            for n, ((a, _), (b, _)) in zip(pieces, pairwise(nodes), strict=True)
+        ]
     sizes = [0.0, *(turn / n for turn, n in zip(turns, pieces, strict=True)), 0.0]
-    states: list[Chosen] = []
-    orientations: list[Any] = []
-
-    def add(places: Places, at: Any, criteria: Criteria, ease: float) -> None:
-        state = chosen_state(places, contacts, way.seen(at), criteria, ease)
-        if len(places) < fingers:
-            if not one_finger and not state.all_work:
-                state = chosen_state(places, contacts, way.seen(at), whole, ease)
-            state = kept(state, contacts, criteria, ease, least)
-        states.append(state)
-        orientations.append(at)
-
+    knots: list[tuple[int, Places, Any, float]] = []
     for k, (places, at) in enumerate(nodes):
         if k:
             before, last = nodes[k - 1]
             every = tuple(dict.fromkeys((*before, *places)))
             for q in range(1, pieces[k - 1]):
                 share = q / pieces[k - 1]
-                add(every, way.between(last, at, share), whole, eased_by(sizes[k]))
-        add(places, at, criteria if len(places) < fingers else whole, eased_by(max(sizes[k : k + 2])))
-    return states, orientations
+                knots.append((k, every, way.between(last, at, share), eased_by(sizes[k])))
+        knots.append((k, places, at, eased_by(max(sizes[k : k + 2]))))
+    asked = of_states(criteria, [places for _, places, *_ in knots])
+
+    def chosen(places: Places, at: Any, criteria: Criteria, ease: float) -> Chosen:
+        whole = replace(criteria, objective=FORCE)
+        if len(places) == fingers:
+            return chosen_state(places, contacts, way.seen(at), whole, ease)
+        state = chosen_state(places, contacts, way.seen(at), criteria, ease)
+        if not one_finger and not state.all_work:
+            state = chosen_state(places, contacts, way.seen(at), whole, ease)
+        return kept(state, contacts, criteria, ease, least)
+
+    states = []
+    for (k, places, at, ease), each in zip(knots, asked, strict=True):
+        try:
+            states.append(chosen(places, at, each, ease))
+        except Infeasible as reason:
+            raise Refused(k, places != nodes[k][0], reason) from None
+    return states, [at for _, _, at, _ in knots]
+
+
+def of_states(criteria: Criteria, stood: Sequence[Places]) -> list[Criteria]:
+    """The criteria of states that follow one another, on contacts by their places.
+
+    Fingers that are in the air before or after are force-controlled. Stiffness has a row for each finger, in
+    the order of the first contacts; who is in the air goes to what is new.
+    """
+    if not criteria.demands:
+        return [criteria] * len(stood)
+    fingers = {place: finger for finger, place in enumerate(stood[0])}
+    result = []
+    for k, places in enumerate(stood):
+        free = [f for p, f in fingers.items() if p not in places] if k else []
+        for place in places:
+            if place not in fingers:
+                gone = next(p for p, f in fingers.items() if f == free[0])
+                fingers[place] = fingers.pop(gone)
+                free.pop(0)
+        beside = [set(stood[j]) for j in (k - 1, k + 1) if 0 <= j < len(stood)]
+        groups = [tuple(i for i, p in enumerate(places) if p not in other) for other in beside]
+        stiffness = criteria.stiffness
+        if isinstance(stiffness, tuple):
+            if len(stiffness) != len(stood[0]):
+                raise InvalidInput(
+                    f"stiffness must be one number or have a row for each of {len(stood[0])} fingers, in the "
+                    f"order of the start, got {len(stiffness)}"
+                )
+            stiffness = tuple(stiffness[fingers[place]] for place in places)
+        result.append(replace(criteria, stiffness=stiffness, controlled=tuple(groups)))
+    return result
 
 
 class Way(Protocol):
@@ -139,6 +201,8 @@ def kept(
 def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) -> list[Chosen]:
     """The same sequence with the forces of all states chosen together, under the limits of each.
 
+    Each withstands what it does by itself.
+
     Holds keep an angle margin of ``least`` [rad], or theirs if that is less by rounding, in narrowed cones.
     """
     from regrasp.planning.regrasps.joint_states import SequenceState, spread_forces
@@ -152,13 +216,14 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
     together = spread_forces(
         [
             SequenceState(
-                s.grasp,
+                eased(s.grasp, s.ease),
                 s.load,
                 s.places,
                 frictions(s, len(s.places) < len(states[0].places)),
                 list(s.limits),
                 _in_use(s.forces),
                 criteria.least_normal,
+                s.criteria,
             )
             for s in states
         ],
@@ -193,6 +258,8 @@ def chosen_state(
         best.force_limits,
         recorded(criteria.objective),
         best.method,
+        criteria,
+        ease,
     )
 
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -49,7 +49,8 @@ class Criteria:
             soft fingers, the last about the normal [N m/rad]; or (n, w, w) matrices in the object's frame;
             all alike if not given.
         controlled: places of fingers whose force is controlled, as of those that leave or arrive: the others
-            withstand the set without them, and all of them with them.
+            withstand the set without them, and all of them with them; or several such groups, as of one that
+            has arrived and one that leaves next: the set is withstood without either.
         early_loss: whether forces withstand the set, too, after a controlled finger lost contact early.
 
     Raises:
@@ -63,7 +64,7 @@ class Criteria:
     min_normal: float | tuple[float, ...] = 0.0
     disturbance: LoadSet | None = None
     stiffness: Stiffness = 1.0
-    controlled: tuple[int, ...] = ()
+    controlled: tuple[int, ...] | tuple[tuple[int, ...], ...] = ()
     early_loss: bool = False
 
     def __init__(
@@ -75,7 +76,7 @@ class Criteria:
         min_normal: float | Sequence[float] | Array | None = 0.0,
         disturbance: LoadSet | None = None,
         stiffness: ArrayLike | Stiffness | None = None,
-        controlled: Sequence[int] = (),
+        controlled: Sequence[int] | Sequence[Sequence[int]] = (),
         early_loss: bool = False,
     ) -> None:
         sought = objective_of(objective)
@@ -89,11 +90,7 @@ class Criteria:
         object.__setattr__(self, "objective", sought)
         object.__setattr__(self, "disturbance", disturbance)
         object.__setattr__(self, "stiffness", answered)
-        object.__setattr__(
-            self,
-            "controlled",
-            tuple(whole(i, "each of controlled", least=0) for i in items(controlled, "controlled")),
-        )
+        object.__setattr__(self, "controlled", _places(controlled))
         object.__setattr__(self, "early_loss", early_loss)
         if max_force is not None:
             _refuse_larger(number(max_force, "max_force", above=0), "max_force")
@@ -243,6 +240,20 @@ class Criteria:
 def _refuse_larger(value: float, what: str) -> None:
     if value > LARGEST:
         raise InvalidInput(f"{what} must be at most {LARGEST:g} N, got {shown(value)}")
+
+
+def _places(controlled: Sequence[int] | Sequence[Sequence[int]]) -> tuple[Any, ...]:
+    """Places, or groups of places; none is left out of several groups."""
+    given = items(controlled, "controlled")
+    if not any(isinstance(some, Sequence) and not isinstance(some, str | bytes) for some in given):
+        return tuple(whole(i, "each of controlled", least=0) for i in given)
+    groups = [
+        tuple(
+            whole(i, "each of a group of controlled", least=0) for i in items(some, "a group of controlled")
+        )
+        for some in given
+    ]
+    return tuple(group for group in dict.fromkeys(groups) if group)
 
 
 def _least_normal(given: float | Sequence[float] | Array | None) -> float | tuple[float, ...]:

@@ -18,7 +18,7 @@ from regrasp.outline import Outline
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import HoldGraph, evenly
 from regrasp.planning.holds.planar_stances import Fingering
-from regrasp.planning.regrasps.asked import Asked
+from regrasp.planning.regrasps.asked import Asked, without_limits
 from regrasp.planning.regrasps.settings.arcs import arc_lengths, on_arcs
 from regrasp.planning.regrasps.steps import Chosen, least_margin, step_between
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -89,7 +89,8 @@ class PlanarSetting:
     def graph_on(self, contacts: Iterable[Contact]) -> HoldGraph:
         """The holds of contacts, with the friction that the reserve leaves."""
         problem = self._problem
-        kept = tuple(c.changed(friction=kept_friction(c.friction, problem.reserve)) for c in contacts)
+        usable = without_limits(contacts)
+        kept = tuple(c.changed(friction=kept_friction(c.friction, problem.reserve)) for c in usable)
         return HoldGraph(
             kept, problem.load, np.array(self.orientations), problem.peak_ratio, problem.min_distance,
             problem.keep, one_finger=problem.one_finger, min_normal=problem.min_normal or 0.0,

@@ -1,6 +1,7 @@
 """Regrasps in space: a mesh, directions in which the object sees the load, triples of contacts that hold."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from math import atan2, pi, sin
@@ -16,9 +17,11 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.triples import FACETS, TripleGraph, directions
-from regrasp.planning.regrasps.asked import Asked
+from regrasp.planning.regrasps.asked import Asked, without_limits
 from regrasp.planning.regrasps.settings.regions import on_regions
 from regrasp.planning.regrasps.steps import Chosen, least_margin, step_between
+from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.states.objectives import ANGLE
 from regrasp.plans.regrasp_plan import RegraspPlan, accumulated
 from regrasp.plans.timing import TimeScaling
 from regrasp.plans.transition import Transition
@@ -48,10 +51,6 @@ class SpatialSetting:
         load = problem.load
         if not isinstance(load, Wrench) or load.dimension != 3 or load.torque.any() or not load.force.any():
             raise InvalidInput(f"load must be a force in space through the centre of mass, got {shown(load)}")
-        if problem.criteria.demands:
-            raise InvalidInput(
-                "a regrasp in space withstands no disturbance; leave it out, and objective 'wrench' with it"
-            )
         whole(problem.seed, "seed", least=0)
         if problem.keep is not None:
             function(problem.keep, "keep", "a function of first, second and third points", 3)
@@ -108,8 +107,8 @@ class SpatialSetting:
         loads = np.pad(size * self.orientations, ((0, 0), (0, 3)))
         facets = FACETS if problem.facets is None else problem.facets
         return TripleGraph(
-            tuple(contacts), loads, facets, problem.peak_ratio, problem.reserve, problem.min_distance,
-            problem.keep,
+            without_limits(contacts), loads, facets, problem.peak_ratio, problem.reserve,
+            problem.min_distance, problem.keep,
         )  # fmt: skip
 
     def stances(
@@ -145,6 +144,8 @@ class SpatialSetting:
     def between(self, before: Array, after: Array, share: float) -> Array:
         """The direction a share of the way from one to another, along their great circle."""
         turn = _angle(before, after)
+        if turn <= _SAME:
+            return before
         way: Array = sin((1 - share) * turn) * before + sin(share * turn) * after
         return way / np.linalg.norm(way)
 
@@ -157,11 +158,13 @@ class SpatialSetting:
             step_between(a, b, problem.contacts, scaling, problem.criteria, *_turn(u, v))
             for (a, b), (u, v) in zip(pairwise(states), pairwise(orientations), strict=True)
         ]
-        steps += self._last_turn(steps, scaling)
+        steps += self._last_turn(steps, scaling, states[-1].criteria)
         turned, rotations = accumulated(steps)
         return RegraspPlan(tuple(steps), turned, least_margin(states), rotations=rotations)
 
-    def _last_turn(self, steps: list[Transition], scaling: TimeScaling) -> list[Transition]:
+    def _last_turn(
+        self, steps: list[Transition], scaling: TimeScaling, criteria: Criteria
+    ) -> list[Transition]:
         """A turn about the load, which changes no force, to where the object is to be; none if it is."""
         from regrasp.planning.changes.rotation import plan_rotation
 
@@ -172,8 +175,8 @@ class SpatialSetting:
         angle = atan2(float(off @ axis), float(np.trace(rest)) - 1)
         if abs(angle) <= _SAME:
             return []
-        end, reserve = steps[-1].end, self._problem.reserve
-        return [plan_rotation(end, angle, axis=axis, end=end, scaling=scaling, reserve=reserve)]
+        end, asked = steps[-1].end, replace(criteria, objective=ANGLE, max_force=None, controlled=())
+        return [plan_rotation(end, angle, axis=axis, end=end, scaling=scaling, objective=asked)]
 
 
 def _turn(u: Array, v: Array) -> tuple[float, Array | None]:

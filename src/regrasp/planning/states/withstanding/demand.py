@@ -10,6 +10,7 @@ so that the forces that withstand all of them are a convex set, and with them ev
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -43,14 +44,15 @@ class Case:
 class Demand:
     """A set that the forces of a grasp withstand.
 
-    controlled: places of the fingers that leave or arrive. early_loss: whether these may lose contact early.
+    controlled: places of the fingers that leave or arrive, or groups of them, each by itself. early_loss:
+    whether these may lose contact early.
     is_kept: False where a factor of it is made widest, in the place of the set as it is.
     """
 
     grasp: Grasp
     disturbance: LoadSet
     stiffness: Stiffness
-    controlled: tuple[int, ...] = ()
+    controlled: tuple[int, ...] | tuple[tuple[int, ...], ...] = ()
     early_loss: bool = False
     is_kept: bool = True
 
@@ -65,16 +67,25 @@ class Demand:
     def cases(self) -> tuple[Case, ...]:
         """The stiffness of those that stay; of all; and the loss of those that leave or arrive."""
         everyone = tuple(range(len(self.grasp)))
-        staying = self._response(self.controlled)
-        cases = [Case(staying, None, everyone)]
-        if not self.controlled:
-            return tuple(cases)
-        cases.append(Case(self._response(()), None, everyone))
+        every = Case(self._response(()), None, everyone)
+        if not self._groups:
+            return (every,)
+        answers = [self._response(group) for group in self._groups]
+        cases = [Case(staying, None, everyone) for staying in answers]
+        cases.append(every)
         if self.early_loss:
-            some = [(i,) for i in self.controlled]
-            lost = some if len(some) == 1 else [*some, self.controlled]
-            cases += [self._without(gone, staying) for gone in lost]
+            for group, staying in zip(self._groups, answers, strict=True):
+                some = [(i,) for i in group]
+                lost = some if len(some) == 1 else [*some, group]
+                cases += [self._without(gone, staying) for gone in lost]
         return tuple(cases)
+
+    @property
+    def _groups(self) -> tuple[tuple[int, ...], ...]:
+        """Of the fingers that are controlled together."""
+        if not self.controlled or isinstance(self.controlled[0], tuple):
+            return cast(tuple[tuple[int, ...], ...], self.controlled)
+        return (self.controlled,)
 
     def _response(self, controlled: tuple[int, ...]) -> Array:
         return measured_response(self.grasp, response(self.grasp, self.stiffness, controlled))
@@ -132,7 +143,8 @@ class Demand:
 
         on_the_way: between two states, where the fingers that leave or arrive are force-controlled.
         """
-        cases = [c for k, c in enumerate(self.cases) if not (on_the_way and self.controlled and k == 1)]
+        every = len(self._groups)
+        cases = [c for k, c in enumerate(self.cases) if not (on_the_way and every and k == every)]
         return min(
             float(self._withstanding(c, forces, limits).spare()[list(c.contacts)].min()) for c in cases
         )
