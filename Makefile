@@ -33,11 +33,11 @@ docs: $(VENV)/installed-dev
 	$(BIN)/python docs/site/check.py $(VENV)/site
 
 bench: $(VENV)/installed-dev
-	$(BIN)/python benchmarks/closed_form.py
-	$(BIN)/python benchmarks/programs.py
-	$(BIN)/python benchmarks/felt.py
-	$(BIN)/python benchmarks/regrasps.py
-	$(BIN)/python benchmarks/space.py
+	$(BIN)/python benchmarks/speed/closed_form.py
+	$(BIN)/python benchmarks/speed/programs.py
+	$(BIN)/python benchmarks/speed/felt.py
+	$(BIN)/python benchmarks/speed/regrasps.py
+	$(BIN)/python benchmarks/speed/space.py
 	$(BIN)/regrasp bench --settings default --settings mid --settings high --repeat 3 --time-limit 5 -o benchmarks/solvers
 	$(BIN)/regrasp bench report benchmarks/solvers
 

@@ -83,6 +83,7 @@ def main() -> int:
 
 def _run(area: str, fresh: bool) -> int:
     import pytest
+
     from engine import NONE, NOTICED, SURVIVED, UNSEEN, Engine
 
     sources, tests, least = AREAS[area]

@@ -21,6 +21,7 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 import pytest
+
 from changes import Change, changes
 
 # Tests that take longer [s] are left out: a change that only they notice counts as not noticed.

@@ -1,17 +1,13 @@
 """Loci of cones that are nearly rays, against membership in rational arithmetic: no finger pulls."""
 
-import sys
 from math import inf
 
 import numpy as np
 import pytest
 
 import regrasp as rg
-from places import ROOT
-from regrasp.closed_form.locus import cone_interval
-
-sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
+from regrasp.closed_form.locus import cone_interval
 
 pytestmark = pytest.mark.oracle
 

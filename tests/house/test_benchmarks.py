@@ -14,7 +14,7 @@ from regrasp.closed_form.choice import OBJECTIVES
 
 pytestmark = pytest.mark.end_to_end
 
-SCRIPT = ROOT / "benchmarks" / "closed_form.py"
+SCRIPT = ROOT / "benchmarks" / "speed" / "closed_form.py"
 ROWS = {
     *(f"{size}_{objective}" for size in ("one", "batch") for objective in OBJECTIVES),
     *(f"removal_{objective}_{seen}" for objective in ("angle", "effort") for seen in ("first", "again")),

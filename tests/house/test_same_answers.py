@@ -1,20 +1,15 @@
 """Two records of answers are told apart: to the last bit, by amount, by outcome and by words."""
 
-import sys
 from math import inf, nan
 
 import numpy as np
 import pytest
 
 import regrasp as rg
-from paper import GRASP, STATE
-from places import ROOT
-
-sys.path.append(str(ROOT / "benchmarks"))
-
 from answer_plans import PLANS
 from answer_states import STATES
 from answers import Answer, Told, Value, document, load, save, told_by
+from paper import GRASP, STATE
 from same_answers import ALLOWED, differences, main
 
 pytestmark = pytest.mark.contract

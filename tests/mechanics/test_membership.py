@@ -1,18 +1,13 @@
 """Planar membership in rational arithmetic against an independent one, and the forces that it finds."""
 
-import sys
-
 import numpy as np
 import pytest
 
 import regrasp as rg
-from places import ROOT
-from regrasp.mechanics.exact.membership import vertex_forces
-from strategies import lattice_pair
-
-sys.path.append(str(ROOT / "benchmarks"))
 from boundary import boundary
 from exact_judge import is_held, state_faults
+from regrasp.mechanics.exact.membership import vertex_forces
+from strategies import lattice_pair
 
 pytestmark = pytest.mark.oracle
 

@@ -1,15 +1,11 @@
 """Other people's test programs through every installed back end: right, or plainly refused."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-sys.path.append(str(BENCHMARKS))
-from peer_problems import peers  # noqa: E402
-from peers import (  # noqa: E402
+from peer_problems import peers
+from peers import (
     NOT_TAKEN,
     PAGE,
     REFUSED,
@@ -20,8 +16,8 @@ from peers import (  # noqa: E402
     is_right,
     outcome,
 )
-from regrasp.programs import Status, solve  # noqa: E402
-from regrasp.programs.facts import BACKENDS  # noqa: E402
+from regrasp.programs import Status, solve
+from regrasp.programs.facts import BACKENDS
 
 pytestmark = pytest.mark.oracle
 

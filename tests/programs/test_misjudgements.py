@@ -1,25 +1,21 @@
 """What solvers are known to be wrong about does not come through as a plan or a verdict."""
 
 import json
-import sys
 from math import isfinite
 
 import pytest
 
 import oracle
 import regrasp as rg
+from degenerate import degenerate_cases
+from misjudgements import FACETS, OBJECTIVES, SETTINGS, has_answer, program_of
 from places import ROOT
 from regrasp.programs import Status, available_backends, solve
 from regrasp.programs.backends import BACKENDS
 
-BENCHMARKS = ROOT / "benchmarks"
-sys.path.append(str(BENCHMARKS))
-from degenerate import degenerate_cases  # noqa: E402
-from misjudgements import FACETS, OBJECTIVES, SETTINGS, has_answer, program_of  # noqa: E402
-
 pytestmark = pytest.mark.contract
 
-KNOWN = json.loads((BENCHMARKS / "results" / "misjudgements.json").read_text(encoding="utf-8"))
+KNOWN = json.loads((ROOT / "benchmarks" / "results" / "misjudgements.json").read_text(encoding="utf-8"))
 CASES = {case.name: case for case in degenerate_cases()}
 RECORDS = KNOWN["misjudgements"]
 SOLVERS = sorted({record["solver"] for record in RECORDS if record["solver"] in available_backends()})

@@ -1,6 +1,5 @@
 """Degenerate sets of contacts: a sound verdict or a plain refusal by every back end, never a wrong plan."""
 
-import sys
 from collections import Counter
 from math import inf
 
@@ -9,12 +8,9 @@ import pytest
 import oracle
 import regrasp as rg
 from agreement import FACETS, LEVELS
-from places import ROOT
+from degenerate import Degenerate, degenerate_cases
 from regrasp.programs import available_backends
 from regrasp.programs.backends import BACKENDS
-
-sys.path.append(str(ROOT / "benchmarks"))
-from degenerate import Degenerate, degenerate_cases
 
 pytestmark = pytest.mark.contract
 

@@ -1,15 +1,11 @@
 """Near the edge: held inside, a proof outside, never wrong, and one word for what rounding decides."""
 
-import sys
 from math import inf, sqrt
 
 import numpy as np
 import pytest
 
 import regrasp as rg
-from places import ROOT
-
-sys.path.append(str(ROOT / "benchmarks"))
 from boundary import KINDS, Boundary, boundary
 from exact_judge import is_escape, is_held, state_faults
 
@@ -106,7 +102,7 @@ def test_a_block_on_four_corners(beyond: float) -> None:
             assert rg.choose_state(block, inside, objective).is_balanced()
 
 
-@pytest.mark.parametrize("seed", [1855, 5340, 7222, 7322, 9666])  # of ``benchmarks/edges.py``
+@pytest.mark.parametrize("seed", [1855, 5340, 7222, 7322, 9666])  # of ``benchmarks/truth/edges.py``
 def test_two_contacts_at_rest_whose_motion_no_double_is(seed: int) -> None:
     """It turns about both while others slide: opposed by 1e-16 when rounded, by nothing when cleared."""
     rng = np.random.default_rng(seed)

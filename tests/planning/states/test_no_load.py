@@ -1,6 +1,5 @@
 """No load, and loads and frictions next to none: one meaning each, the same on both sides of zero."""
 
-import sys
 from math import atan, cos, isnan, pi, radians, sin
 
 import cvxpy as cp
@@ -8,12 +7,9 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from places import ROOT
+from exact_judge import is_held, state_faults
 from space import random_grasp, soft_random
 from strategies import comfortable_triple
-
-sys.path.append(str(ROOT / "benchmarks"))
-from exact_judge import is_held, state_faults
 
 pytestmark = pytest.mark.laws
 

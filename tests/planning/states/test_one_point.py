@@ -1,17 +1,13 @@
 """Contacts at one point along different normals (an inner corner), and contacts a hair apart."""
 
-import sys
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import regrasp as rg
-from places import ROOT
-from regrasp.mechanics.exact.membership import vertex_forces
-
-sys.path.append(str(ROOT / "benchmarks"))
 from exact_judge import is_held, state_faults
+from regrasp.mechanics.exact.membership import vertex_forces
 
 pytestmark = pytest.mark.laws
 

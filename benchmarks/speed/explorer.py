@@ -1,6 +1,8 @@
 """From a finger dragged in the explorer to the picture of its new forces: median and 95 % [ms].
 
-Run with ``python benchmarks/explorer.py``; needs playwright and chromium. Both ends are measured in the page:
+    python benchmarks/speed/explorer.py
+
+Needs playwright and chromium. Both ends are measured in the page:
 from the movement of the pointer to the frame after the picture was drawn, exact verification between them.
 """
 

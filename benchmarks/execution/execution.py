@@ -1,4 +1,4 @@
-"""Plans and what people do today, carried out in MuJoCo: ``python benchmarks/execution.py``.
+"""Plans and what people do today, carried out in MuJoCo: ``python benchmarks/execution/execution.py``.
 
 Every case removes one finger in one second. Starts, cases and seeds stand here and are all reported.
 """
@@ -19,7 +19,7 @@ from regrasp.execution import critical_friction, simulate
 from regrasp.mechanics.margins import friction_needed
 from regrasp.mesh import parts
 
-RESULTS = Path(__file__).parent / "results" / "execution.json"
+RESULTS = Path(__file__).parents[1] / "results" / "execution.json"
 FRICTIONS = (0.06, 0.08, 0.09, 0.1, 0.12, 0.15, 0.18, 0.19, 0.2, 0.22, 0.25, 0.28, 0.31, 0.35, 0.4)
 STIFFNESSES = (1.0, 4.0)  # of the default
 ERRORS = (0.0125, 0.05)  # of the size: 1 and 4 mm in the paper's example

@@ -1,6 +1,6 @@
 """Which measures of a state predict what it withstands: MuJoCo under random disturbances.
 
-    python benchmarks/margins.py [--quick] [-o DIR]
+    python benchmarks/execution/margins.py [--quick] [-o DIR]
 
 Random grasps of two and three fingers around an ellipse hold a weight with forces chosen for one of five
 objectives. A random disturbance grows until some contact has slid by 3e-4 of the object's size: its critical
@@ -29,7 +29,7 @@ RATIO = 3.0  # of force limits to the least peak force
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("--quick", action="store_true", help="few grasps, to see that it works")
-    arguments.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results")
+    arguments.add_argument("-o", "--output", type=Path, default=Path(__file__).parents[1] / "results")
     given = arguments.parse_args()
     rows = measured(4 if given.quick else 60, directions=1 if given.quick else 3)
     found = summary(rows)

@@ -1,6 +1,6 @@
 """How many of other people's test programs each back end answers rightly; writes the table of docs/peers.md.
 
-    python benchmarks/peers.py [-o FILE]
+    python benchmarks/answers/peers.py [-o FILE]
 
 Right is the optimum that its authors print, to ``TOLERANCE``, or their verdict; where they print none, an
 answer whose own duals prove it here, in plain NumPy. Refused is an error or a status that claims nothing.
@@ -20,7 +20,7 @@ from regrasp.errors import InvalidInput, SolverUnavailable
 from regrasp.programs import Cone, Program, Solution, Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 
-PAGE = Path(__file__).parents[1] / "docs" / "peers.md"
+PAGE = Path(__file__).parents[2] / "docs" / "peers.md"
 BEGIN, END = "<!-- counts -->\n", "<!-- end of counts -->"
 TOLERANCE = 1e-5
 RIGHT, WRONG, REFUSED, NOT_TAKEN = "right", "wrong", "refused", "not taken"

@@ -1,6 +1,6 @@
 """Where to put fingers: the certified search beside random search, sampled points, multi-start and HiGHS.
 
-    python benchmarks/placement.py [--quick] [-o results/placement.json]
+    python benchmarks/truth/placement.py [--quick] [-o results/placement.json]
 
 The least sum of normal forces, friction 0.4, under twelve directions of a unit force; outlines of about 50
 edges. Rivals judge placements by the search's own compiled norm, so that only the search differs. They prove

@@ -1,7 +1,7 @@
 """What a person feels: first calls, the default objective, a pair from Python, regrasps, the slowest call.
 
-    python benchmarks/felt.py                 measures, writes results/felt.json and README.md
-    python benchmarks/felt.py --quick -o DIR  a short run into another folder, to see that it works
+    python benchmarks/speed/felt.py                 measures, writes results/felt.json, README.md
+    python benchmarks/speed/felt.py --quick -o DIR  a short run into another folder, to see it work
 
 Processor time, one thread against one thread. First calls are made in processes of their own, with an empty
 folder for compiled code or with what the process before left there.

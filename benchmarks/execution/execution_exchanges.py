@@ -1,4 +1,6 @@
-"""Exchanges and regrasps in MuJoCo, by plan and as people do them: ``benchmarks/execution_exchanges.py``.
+"""Exchanges and regrasps in MuJoCo, by plan and as people do them.
+
+    python benchmarks/execution/execution_exchanges.py
 
 Cases and seeds stand here and all are reported. In an exchange one finger takes over from another in one
 second; a regrasp is the removal, exchanges and addition of a plan without turning, and every rival goes
@@ -20,7 +22,7 @@ from execution import needs
 from execution_rivals import RIVALS, Rival
 from regrasp.execution import critical_friction, simulate
 
-RESULTS = Path(__file__).parent / "results" / "execution_exchanges.json"
+RESULTS = Path(__file__).parents[1] / "results" / "execution_exchanges.json"
 EXCHANGE_SEEDS, REGRASP_SEEDS = (1, 2, 3), (1, 2, 3)
 FRICTION = 0.6
 

@@ -1,4 +1,4 @@
-"""Where slip of turning objects comes from: ``python benchmarks/execution_turns.py``.
+"""Where slip of turning objects comes from: ``python benchmarks/execution/execution_turns.py``.
 
 One regrasp that turns, its steps as long as each of ``DURATIONS``, simulated with each of ``TIMESTEPS``. What
 goes with the timestep is of the simulation, what goes with the square of the angular velocity of the turn.
@@ -12,7 +12,7 @@ import numpy as np
 import regrasp as rg
 from regrasp.execution import simulate
 
-RESULTS = Path(__file__).parent / "results" / "execution_turns.json"
+RESULTS = Path(__file__).parents[1] / "results" / "execution_turns.json"
 DURATIONS = (1.0, 2.0, 4.0)  # [s] of each step
 TIMESTEPS = (1.0, 0.5, 0.25)  # of the default
 SHAPE = rg.Outline.ellipse(0.04, 0.02)

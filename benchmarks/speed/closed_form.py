@@ -1,7 +1,7 @@
 """Speed of the closed forms, of planning a removal, of its set-points, of batches and of start-up.
 
-    python benchmarks/closed_form.py                 measures, writes results/closed_form.json and README.md
-    python benchmarks/closed_form.py --quick -o DIR  a short run into another folder, to see that it works
+    python benchmarks/speed/closed_form.py                measures, writes results/closed_form.json, README.md
+    python benchmarks/speed/closed_form.py --quick -o DIR  a short run into another folder, to see it work
 
 Every ratio compares two things measured in turn in this one process (or, for start-up, in turn as processes
 of their own). Answers are compared before times are.

@@ -1,7 +1,7 @@
 """Speed of regrasping: the hold graph, its widest holds without a table, and the best sequence on it.
 
-    python benchmarks/regrasps.py                 measures, writes results/regrasps.json and README.md
-    python benchmarks/regrasps.py --quick -o DIR  a short run into another folder, to see that it works
+    python benchmarks/speed/regrasps.py                 measures, writes results/regrasps.json, README.md
+    python benchmarks/speed/regrasps.py --quick -o DIR  a short run into another folder, to see it work
 
 Every ratio compares two things measured in turn in this one process; rows of one number are measured in it
 or, where memory is asked for, in a process of their own. Answers are compared before times are.

@@ -1,9 +1,9 @@
 """Hostile problems through every planning verb, answers judged in rational arithmetic that shares no code.
 
-    python benchmarks/million.py 100000 -o DIR    problems 0 to 99,999; go on after a stop with the same line
-    python benchmarks/million.py --table -o DIR   the table of what DIR holds
-    python benchmarks/million.py --again -o DIR   problems of faults in DIR once more, by the code of today
-    python benchmarks/million.py --one 4711       a problem, its answers and their faults
+    python benchmarks/truth/million.py 100000 -o DIR    problems 0 to 99,999; the same line goes on
+    python benchmarks/truth/million.py --table -o DIR   the table of what DIR holds
+    python benchmarks/truth/million.py --again -o DIR   faults in DIR once more, by the code of today
+    python benchmarks/truth/million.py --one 4711       a problem, its answers and their faults
 
 A chunk of problems is one file of DIR, written whole. ``hostile`` makes the problems, ``exact_judge`` judges
 them.
@@ -302,7 +302,9 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("count", type=int, nargs="?", default=0)
-    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results" / "million")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path(__file__).parents[1] / "results" / "million"
+    )
     parser.add_argument("--one", type=int)
     parser.add_argument("--table", action="store_true")
     parser.add_argument("--again", action="store_true")

@@ -1,6 +1,6 @@
 """Judge the rows of a run anew by their own numbers, after what counts as right has changed.
 
-    python benchmarks/judge_again.py [FOLDER [CERTIFICATES]]
+    python benchmarks/answers/judge_again.py [FOLDER [CERTIFICATES]]
 
 FOLDER holds ``rows.jsonl.xz`` and ``run.json``; both the rows and the report are written again. A row keeps
 no point and no certificate, so whether constraints hold stays as it was measured, and so does how far a
@@ -26,7 +26,7 @@ from regrasp.bench.reporting.report import write_report
 from regrasp.bench.running.result import Key, Row
 from regrasp.bench.running.store import ROWS, read_rows
 
-FOLDER = Path(__file__).parent / "solvers"
+FOLDER = Path(__file__).parents[1] / "solvers"
 
 
 def judged_again(row: Row, problem: BenchProblem, since: dict[Key, Row]) -> Row:

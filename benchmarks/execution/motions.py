@@ -1,8 +1,10 @@
 """A hundred regrasps with ways, judged by the checker that shares no code with what plans them.
 
-``python benchmarks/motions.py``: sixty in the plane around four outlines, three fingers, and forty in space
-around four solids, four fingers; every finger goes from a random place to another, one after the other. Ways
-depend on places only, so no forces are planned. Sequences with a finger shut in are counted and left out.
+    python benchmarks/execution/motions.py
+
+Sixty in the plane around four outlines, three fingers, and forty in space around four solids, four fingers;
+every finger goes from a random place to another, one after the other. Ways depend on places only, so no
+forces are planned. Sequences with a finger shut in are counted and left out.
 """
 
 import json
@@ -21,7 +23,7 @@ from regrasp.motions import plan_motions
 from regrasp.outline import parts
 from regrasp.verification import verify_motions
 
-RESULTS = Path(__file__).parent / "results" / "motions.json"
+RESULTS = Path(__file__).parents[1] / "results" / "motions.json"
 RADIUS, CLEARANCE = 0.003, 0.002
 PLANE, SPACE = 60, 40
 STAR = [[(0.05 if k % 2 else 0.028) * f(np.pi * k / 5) for f in (np.cos, np.sin)] for k in range(10)]

@@ -1,7 +1,7 @@
 """Does a change of the code change any answer? Thousands of tasks through the public verbs, to the last bit.
 
-    python benchmarks/same_answers.py record FILE.npz        # a minute; before the change, and after it
-    python benchmarks/same_answers.py compare BEFORE.npz AFTER.npz
+    python benchmarks/answers/same_answers.py record FILE.npz   # a minute; before the change and after
+    python benchmarks/answers/same_answers.py compare BEFORE.npz AFTER.npz
 
 The tasks are drawn from fixed seeds, so two runs of one version on one machine are equal to the last bit.
 ``compare`` counts by kind the tasks that are, with the largest difference relative to the task's largest

@@ -1,6 +1,6 @@
 """Where solvers are wrong about choices of forces: every installed one is asked directly and judged.
 
-    python benchmarks/misjudgements.py [-o FILE]
+    python benchmarks/answers/misjudgements.py [-o FILE]
 
 Each degenerate case under a load becomes two programs over polygons: ``effort``, a QP, and ``peak``, an LP.
 Solvers are called as a user would call them, at their defaults and at the settings regrasp gives them. What
@@ -37,7 +37,7 @@ from regrasp.programs import (
 )
 from regrasp.programs.facts import BACKENDS
 
-RESULTS = Path(__file__).parent / "results" / "misjudgements.json"
+RESULTS = Path(__file__).parents[1] / "results" / "misjudgements.json"
 FACETS = 24
 WRONG = 1e-5
 OBJECTIVES = ("effort", "peak")

@@ -1,8 +1,8 @@
 """Verdicts near the edge of what a grasp holds: states inside, proofs outside, and what is neither.
 
-    python benchmarks/edges.py 10000 -o DIR    so many grasps, each under 18 loads; the same line goes on
-    python benchmarks/edges.py --table -o DIR  the table of what DIR holds
-    python benchmarks/edges.py 10000 --only 1e-8 1e-9 -o DIR    these distances alone, under the same loads
+    python benchmarks/truth/edges.py 10000 -o DIR    grasps, each under 18 loads; the same line goes on
+    python benchmarks/truth/edges.py --table -o DIR  the table of what DIR holds
+    python benchmarks/truth/edges.py 10000 --only 1e-8 1e-9 -o DIR    these distances alone, the same loads
 
 Grasps are made with their edge (``boundary``), so that the place of every load follows from the construction.
 In the plane without limits it is decided again by membership in rational arithmetic, and certificates and
@@ -126,7 +126,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("count", type=int, nargs="?", default=0)
-    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results" / "edges")
+    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parents[1] / "results" / "edges")
     parser.add_argument("--table", action="store_true")
     parser.add_argument("--only", type=float, nargs="+", choices=DISTANCES, default=DISTANCES)
     options = parser.parse_args()

@@ -1,4 +1,4 @@
-"""Draws the comparison from its results: ``python benchmarks/execution_picture.py``."""
+"""Draws the comparison from its results: ``python benchmarks/execution/execution_picture.py``."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 from regrasp.execution.measured import SLIPPED
 from regrasp.plots.look.style import GREY, PALETTE, WIDTH, legend, new_figure, tidy
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 
 
 def main() -> None:

@@ -16,5 +16,5 @@ def command(name: str, about: str, measure: Callable[[bool], Iterable[Row]], pac
     if options.quick and options.output is None:
         parser.error("a quick run is no measurement: say where to write it with -o DIR")
     report = Report.of(name, options.quick, measure(options.quick), packages)
-    report.write(options.output or Path(__file__).parent)
+    report.write(options.output or Path(__file__).parents[1])
     print(report.markdown())

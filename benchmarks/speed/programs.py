@@ -1,7 +1,7 @@
 """Speed of the programs: choosing a state and planning a path by solvers, beside the closed form.
 
-    python benchmarks/programs.py                 measures, writes results/programs.json and README.md
-    python benchmarks/programs.py --quick -o DIR  a short run into another folder, to see that it works
+    python benchmarks/speed/programs.py                 measures, writes results/programs.json, README.md
+    python benchmarks/speed/programs.py --quick -o DIR  a short run into another folder, to see it work
 
 Every ratio compares two things measured in turn in this one process. Answers are compared before times are.
 """

@@ -1,6 +1,6 @@
 """What is said to be withstood, on thousands of random grasps, judged by code that knows none of ours.
 
-    python benchmarks/withstood.py [--quick] [-o DIR]
+    python benchmarks/truth/withstood.py [--quick] [-o DIR]
 
 Tolerances: a thousandth less is withstood by every member, a thousandth more has a witness. The forces of a
 deviation follow from the displacement of the object on its fingers' springs, solved for here; stiffness
@@ -36,7 +36,7 @@ STATES, LOADS, PLANS, MEMBERS = 3000, 2000, 50, 2000
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("--quick", action="store_true", help="few grasps, to see that it works")
-    arguments.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "results")
+    arguments.add_argument("-o", "--output", type=Path, default=Path(__file__).parents[1] / "results")
     given = arguments.parse_args()
     share = 100 if given.quick else 1
     began, rng = process_time(), np.random.default_rng(1)

@@ -18,7 +18,7 @@ from regrasp.outline import parts
 
 Tasks = Iterator[tuple[str, Callable[[], Any]]]
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 WEIGHT, GRIP = rg.Wrench([0, -3.0]), 0.5
 STARTS = ("chosen", "given", "rounded", "quickest")
 

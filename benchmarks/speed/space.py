@@ -1,7 +1,7 @@
 """Speed in space: states, paths and many contacts by programs, cones and pyramids, triples, a whole regrasp.
 
-    python benchmarks/space.py                 measures, writes results/space.json and README.md
-    python benchmarks/space.py --quick -o DIR  a short run into another folder, to see that it works
+    python benchmarks/speed/space.py                 measures, writes results/space.json, README.md
+    python benchmarks/speed/space.py --quick -o DIR  a short run into another folder, to see it work
 
 Every ratio compares two things measured in turn in this one process. Answers are compared before times are.
 """

@@ -1,7 +1,7 @@
 """Regrasps over all orientations beside sampled ones: 200 tasks, a quarter of them at whole numbers.
 
-    python benchmarks/turning.py
-    python benchmarks/turning.py --tasks 20
+    python benchmarks/truth/turning.py
+    python benchmarks/truth/turning.py --tasks 20
 
 A sampled sequence is better where it has fewer moves, or as many and a margin wider by more than a millionth
 of it and of a radian.

@@ -1,7 +1,7 @@
 """What a row of a study costs: time beside a bare loop, bytes, and hand-out on processes and a local cluster.
 
-    python benchmarks/studies.py                 measures, writes results/studies.json and README.md
-    python benchmarks/studies.py --quick -o DIR  a short run into another folder, to see that it works
+    python benchmarks/speed/studies.py                 measures, writes results/studies.json, README.md
+    python benchmarks/speed/studies.py --quick -o DIR  a short run into another folder, to see it work
 
 A case of 5 ms is a loop of so many additions, so a busy machine disturbs both sides alike.
 """
