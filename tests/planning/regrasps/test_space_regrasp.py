@@ -11,6 +11,7 @@ import regrasp as rg
 from box import BOX, GOAL, MU, START, WEIGHT, on_box
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.mesh import Mesh, parts
+from regrasp.planning.holds.margin_search import WideEnd
 from regrasp.planning.holds.sequences import preferred
 from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.triples import TripleGraph, directions
@@ -274,3 +275,58 @@ def test_what_is_impossible_says_why():
             rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, **options)
     with pytest.raises(rg.Infeasible, match="keeps angle margins of 1 rad; the widest worst margin"):
         rg.plan_regrasp(BOX, START, GOAL, WEIGHT, friction=MU, orientations=1, least_margin=1.0)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_margins_found_when_asked_for_are_those_of_all(seed):
+    rng = np.random.default_rng(100 + seed)
+    points = rng.normal(size=(14, 3)) * (1.0, 0.7, 0.5)
+    contacts = tuple(rg.Contact(p, -p + 0.3 * rng.normal(size=3), 0.5) for p in points)
+    ways = directions(6)[:, :3]
+    start, goal = (tuple(rng.choice(14, 4, replace=False).tolist()) for _ in range(2))
+    allowed = rng.random((4, 14)) < 0.8 if seed % 3 == 0 else None
+    if allowed is not None:
+        allowed[range(4), start] = allowed[range(4), goal] = True
+    lazy, eager = (TripleGraph(contacts, np.pad(ways, ((0, 0), (0, 3)))) for _ in range(2))
+    _ = eager.margins
+    least = 0.1 if seed % 2 else 0.0
+    few, all_of = (Quads(graph, ways, 2.0, least, allowed=allowed) for graph in (lazy, eager))
+    all_of.look_at_all()
+    found = preferred(few, start, goal, 3, extra=2)
+    assert found == preferred(all_of, start, goal, 3, extra=2)
+    known = lazy._found[1]
+    assert (lazy._found[0][known] == eager.margins.T[known]).all()
+    if len(found) and found[0].moves <= 4:
+        few = Quads(TripleGraph(contacts, lazy.loads), ways, 2.0, least, allowed=allowed)
+        assert preferred(few, start, goal, 3)[:1] == found[:1]
+        assert few.graph._found[1].mean() < 0.6
+
+
+def meeting(fingers, start, goal, o, most):
+    """The widest least margin of ways of at most so many moves, over all holds, from the start alone."""
+    every, result = np.ones(fingers.rows.size, dtype=bool), []
+    fingers.look_at_all()
+    here, there = WideEnd(fingers, [start], 0), WideEnd(fingers, fingers.ways(goal), o)
+    for _ in range(most):
+        result.append(float(np.minimum(here.known, there.known).max()))
+        here = here.moved(-0.5, every)
+    return np.maximum.accumulate(result)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_both_ends_find_what_one_finds_alone(seed):
+    rng = np.random.default_rng(200 + seed)
+    points = rng.normal(size=(12, 3))
+    contacts = tuple(rg.Contact(p, -p + 0.4 * rng.normal(size=3), 0.4) for p in points)
+    ways = directions(5)[:, :3]
+    start, goal = tuple(range(4)), tuple(range(6, 10))
+    fingers = Quads(TripleGraph(contacts, np.pad(ways, ((0, 0), (0, 3)))), ways, 2.0)
+    found = {s.moves: s.margin for s in preferred(fingers, start, goal, 2, extra=3)}
+    margins = meeting(fingers, start, goal, 2, 8)
+    best = -1.0
+    for moves, margin in enumerate(margins, 1):
+        if found and min(found) <= moves <= min(found) + 3:
+            best = max(best, found.get(moves, -1.0))
+            assert best == pytest.approx(margin, abs=2e-6)
+        elif not found or moves < min(found):
+            assert margin < 0

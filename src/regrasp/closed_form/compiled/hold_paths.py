@@ -117,9 +117,18 @@ def is_mine(fresh, hold, rest):  # type: ignore[no-untyped-def]
     return True
 
 
+@kept("stances of wanted holds", error_model="numpy")
+def is_any(wanted, stance):  # type: ignore[no-untyped-def]
+    """Whether a hold of the stance is wanted."""
+    for hold in stance:  # noqa: SIM110 - as above
+        if wanted[hold]:
+            return True
+    return False
+
+
 @shared("finger moves of widest margins", error_model="numpy")
 def _widened(  # type: ignore[no-untyped-def]
-    begin, end, frontier, fresh, known, margins, rows, holds, points, near, floor, tables, touched
+    begin, end, frontier, fresh, wanted, known, margins, rows, holds, points, near, floor, tables, touched
 ):
     """What moves of a thread's part of the frontier widen, in its own table."""
     count = known.shape[1]
@@ -128,8 +137,8 @@ def _widened(  # type: ignore[no-untyped-def]
         for n in range(thread, frontier.size, threads):
             for point in range(points):
                 rest = others_of(holds, frontier[n], point)  # type: ignore[no-untyped-call]
-                if is_mine(fresh, frontier[n], rest):
-                    stance = (frontier[n], *rest)
+                stance = (frontier[n], *rest)
+                if is_mine(fresh, frontier[n], rest) and is_any(wanted, stance):
                     widen(stance, known, margins, rows, near, floor, reached)
                     for q in range(len(stance)):
                         h = stance[q]
@@ -142,6 +151,7 @@ def _widened(  # type: ignore[no-untyped-def]
 def widest(
     frontier: np.ndarray,
     fresh: np.ndarray,
+    wanted: np.ndarray,
     known: np.ndarray,
     margins: np.ndarray,
     rows: np.ndarray,
@@ -150,10 +160,11 @@ def widest(
     near: np.ndarray,
     floor: float,
 ) -> np.ndarray:
-    """Widen ``known`` by one move from the frontier; which holds are wider."""
+    """Widen ``known`` by one move from the frontier to stances of wanted holds; which holds are wider."""
     tables, touched = _tables(known)
     _widened(
-        len(tables), frontier, fresh, known, margins, rows, holds, points, near, floor, tables, touched
+        len(tables), frontier, fresh, wanted, known, margins, rows, holds, points, near, floor, tables,
+        touched,
     )  # fmt: skip
     wider = np.zeros(len(known), dtype=np.bool_)
     for table, mine in zip(tables, touched, strict=True):

@@ -7,9 +7,11 @@ B_j(h, o) the same from the goal,
     widest margin with i + j + 1 moves = max over h, o of min(F_i(h, o), B_j(h, o)).
 
 Both ends advance in turn, the smaller one first, so that few triples are looked at for the usual few moves.
+The last move goes only to where the other end has been: what else it reaches waits until one more is made.
 """
 
 from collections.abc import Iterator
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +51,7 @@ class WideEnd:
         self.fingers, self.moves = fingers, 0
         margins, rows = fingers.margins, fingers.rows
         ends = [fingers.of(way) for way in ways]
+        fingers.look_at(np.unique(ends))
         known = np.full((rows.size, margins.shape[1]), -1.0, dtype=np.float32)
         for holds in ends:
             for h in holds:  # all fingers hold at the end and turn with the object to any of its holds
@@ -63,15 +66,20 @@ class WideEnd:
         self.known, self.top = known, known.max(axis=1)
         self.fresh = self.top >= 0
 
-    def move(self, floor: float) -> None:
-        """One finger move further, where that leads to margins above ``floor``."""
-        fingers = self.fingers
-        self.fresh = fingers.moves.widest(
-            np.flatnonzero(self.fresh), self.fresh, self.known, fingers.margins, fingers.rows, fingers.holds,
-            fingers.count, fingers.near, floor,
+    def moved(self, floor: float, wanted: NDArray[np.bool_]) -> "WideEnd":
+        """One finger move further, to stances of ``wanted`` (H,) holds, to margins above ``floor``."""
+        fingers, after = self.fingers, copy(self)
+        fresh = self.fresh & (self.top > floor)
+        frontier = np.flatnonzero(fresh)
+        fingers.look_around(frontier, wanted)
+        after.known, after.top = self.known.copy(), self.top.copy()
+        after.fresh = fingers.moves.widest(
+            frontier, fresh, wanted, after.known, fingers.margins, fingers.rows, fingers.holds, fingers.count,
+            fingers.near, floor,
         )  # fmt: skip
-        self.top[self.fresh] = self.known[self.fresh].max(axis=1)
-        self.moves += 1
+        after.top[after.fresh] = after.known[after.fresh].max(axis=1)
+        after.moves += 1
+        return after
 
 
 def widest_by_moves(fingers: Stances, start: Places, goal: Places, o: int, extra: int) -> Iterator[Widest]:
@@ -82,23 +90,31 @@ def widest_by_moves(fingers: Stances, start: Places, goal: Places, o: int, extra
     """
     goals = fingers.ways(goal)
     start = fingers.start(start)
-    ends = WideEnd(fingers, [start], 0), WideEnd(fingers, goals, o)
+    ends = [WideEnd(fingers, [start], 0), WideEnd(fingers, goals, o)]
+    met, every = tuple(ends), np.ones(fingers.rows.size, dtype=np.bool_)
     floor, moves, fewest = _NONE, 0, None
+    waiting: tuple[int, float] | None = None  # the end that moved to the other only, and its floor
     same = list(fingers.of(start)) if start in goals else []
     together = np.minimum(ends[0].known[same], ends[1].known[same])
     while True:
         margin = float(together.max(initial=-1.0))
         if margin > floor:
             fewest = moves if fewest is None else fewest
-            useful = np.maximum(ends[0].top, ends[1].top) >= margin - ALIKE
-            yield Widest(moves, margin, ends[0].moves, ends[1].moves, useful)
+            useful = np.maximum(met[0].top, met[1].top) >= margin - ALIKE
+            yield Widest(moves, margin, met[0].moves, met[1].moves, useful)
             floor = margin + ALIKE
         if fewest is not None and moves >= fewest + extra:
             return
         moves += 1
         if moves > 1:
+            if waiting is not None:
+                last, before = waiting
+                ends[last] = ends[last].moved(before, every)
             if not (ends[0].fresh.any() and ends[1].fresh.any()):
                 return  # one end has reached all it can
-            min(ends, key=lambda end: int(end.fresh.sum())).move(floor)
-        both = np.flatnonzero(np.minimum(ends[0].top, ends[1].top) > floor)
-        together = np.minimum(ends[0].known[both], ends[1].known[both])
+            last = int(ends[1].fresh.sum() < ends[0].fresh.sum())
+            waiting, other = (last, floor), ends[1 - last]
+            trial = ends[last].moved(floor, other.top > floor)
+            met = (other, trial) if last else (trial, other)
+        both = np.flatnonzero(np.minimum(met[0].top, met[1].top) > floor)
+        together = np.minimum(met[0].known[both], met[1].known[both])

@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from regrasp.closed_form.compiled.hold_paths import Moves
 
 
+_CHUNK = 2**16  # stances looked at together
+_THREES = tuple((slice(None), list(three)) for three in combinations(range(4), 3))
+
+
 class Quads(Stances):
     """Four fingers on the contacts of a graph, three of which hold.
 
@@ -36,8 +40,9 @@ class Quads(Stances):
         allowed: NDArray[np.bool_] | None = None,
     ) -> None:
         self.graph, self.allowed = graph, allowed
-        self.margins = graph.margins.T.copy(order="C")
-        self.margins[self.margins < max(least, 0.0)] = -1.0
+        self.least = max(least, 0.0)
+        self.margins = np.full((len(graph.triples), len(graph.loads)), -1.0, dtype=np.float32)
+        self._seen = np.zeros(len(graph.triples), dtype=np.bool_)
         if allowed is None:
             self.count = len(graph.contacts)
             self.rows = np.arange(len(graph.triples))
@@ -61,6 +66,35 @@ class Quads(Stances):
         from regrasp.closed_form.compiled.stances import TRIPLES
 
         return TRIPLES
+
+    def look_at(self, holds: Any) -> None:
+        """Finds the margins of their triples, of those that were not looked at before."""
+        seen = self._seen.copy()
+        seen[self.rows[holds]] = True
+        new = np.flatnonzero(seen & ~self._seen)
+        margins = self.graph.margins_of(new)
+        self.margins[new] = np.where(margins < self.least, np.float32(-1.0), margins)
+        self._seen = seen
+
+    def look_around(self, frontier: NDArray[np.int64], wanted: NDArray[np.bool_]) -> None:
+        """The same for the holds of stances of a frontier (n,) that have a ``wanted`` hold."""
+        numbers, corners = self.holds
+        few = max(1, _CHUNK // self.count)
+        for k in range(0, frontier.size, few):
+            three = corners[frontier[k : k + few]]
+            shape = (len(three), self.count, 1)
+            fourth = np.broadcast_to(np.arange(self.count)[:, None], shape)
+            four = np.sort(np.concatenate([np.broadcast_to(three[:, None], (*shape[:2], 3)), fourth], 2))
+            four = four[(np.diff(four) > 0).all(axis=2)]
+            stances = np.stack(
+                [numbers[place_among(self.count, *three.T)] for three in map(four.__getitem__, _THREES)], 1
+            )
+            stances = stances[(stances >= 0).all(axis=1)]
+            self.look_at(stances[wanted[stances].any(axis=1)].ravel())
+
+    def look_at_all(self) -> None:
+        """The same for all."""
+        self.look_at(slice(None))
 
     def of(self, contacts: Places) -> Holds:
         """The holds of four contacts, of fingers 1 to 4 where it matters."""

@@ -28,7 +28,7 @@ class Stances(ABC):
     """Stances of some fingers on contacts, all but one of which hold (``hold_paths``).
 
     holds: how holds are numbered, as the compiled ``stances`` take it. rows: (H,) the row of margins of each
-    hold. margins: (rows, O) [rad], -1 where it does not hold. count: of contacts.
+    hold. margins: (rows, O) [rad], -1 where it does not hold, or was not looked at. count: of contacts.
     near: (O, k) from where the object may turn to an orientation within a stance, the nearest first; turning:
     (O, k) these turns [rad]. apart: (O, O) angles between all orientations [rad]; further: (O, O) how many
     steps such a turn takes beyond one, inf where it is too large.
@@ -43,6 +43,17 @@ class Stances(ABC):
     turning: Array
     apart: Array
     further: Array
+
+    def look_at(self, holds: Any) -> None:  # noqa: B027 - where all margins are known already
+        """Holds (n,) by their numbers whose margins are about to be read."""
+
+    def look_around(  # noqa: B027 - as above
+        self, frontier: NDArray[np.int64], wanted: NDArray[np.bool_]
+    ) -> None:
+        """The same for the holds of all stances of a frontier (n,) that have one of the ``wanted`` (H,)."""
+
+    def look_at_all(self) -> None:  # noqa: B027 - as above
+        """The same for all holds."""
 
     @property
     @abstractmethod

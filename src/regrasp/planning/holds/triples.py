@@ -123,6 +123,18 @@ class TripleGraph(ArrayValue):
         self._judge(self.loads, True, result)
         return result
 
+    def margins_of(self, places: NDArray[np.int64]) -> NDArray[np.float32]:
+        """(n, O) the margins [rad] of some triples, by their places in ``triples``; each is found once."""
+        if "margins" in self.__dict__:
+            return self.margins[:, places].T
+        table, known = self._found
+        new = places[~known[places]]
+        if new.size:
+            result = np.empty((len(self.loads), new.size), dtype=np.float32)
+            self._judge(self.loads, True, result, new)
+            table[new], known[new] = result.T, True
+        return table[places]
+
     @cached_property
     def holds(self) -> NDArray[np.bool_]:
         """(O, T) whether triples hold, without margins: a fraction of the time, one byte each."""
@@ -164,11 +176,28 @@ class TripleGraph(ArrayValue):
         (points, normals), (mu, usable_mu, limits, usable_limits) = vectors, numbers
         return Fingers(points, normals, mu, limits, usable_mu, usable_limits)
 
-    def _judge(self, loads: Array, with_margin: bool, result: NDArray[np.float32]) -> None:
+    @cached_property
+    def _found(self) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+        """(T, O) margins of the triples that were asked for one by one, and (T,) which these are."""
+        self._refuse_above(4)
+        count = len(self.triples)
+        return np.empty((count, len(self.loads)), dtype=np.float32), np.zeros(count, dtype=np.bool_)
+
+    def _judge(
+        self,
+        loads: Array,
+        with_margin: bool,
+        result: NDArray[np.float32],
+        places: NDArray[np.int64] | None = None,
+    ) -> None:
         from regrasp.closed_form.compiled.triples import triple_margins
 
+        triples, allowed = self.triples, self._allowed
+        if places is not None:
+            triples, allowed = triples[places], allowed[places]
+            triples.setflags(write=False)  # as above
         triple_margins(
-            self.triples, self._allowed, *self._frames, self._frictions, self._limits, loads,
+            triples, allowed, *self._frames, self._frictions, self._limits, loads,
             facet_angles(self.facets), cos(pi / self.facets), float(self.peak_ratio), with_margin, result,
         )  # fmt: skip
 

@@ -69,6 +69,7 @@ def _best(problem: Asked, stances: Stances, extra: int) -> list[Sequence]:
     start, goal, last = problem.places
     if problem.weights is None:
         return preferred(stances, start, goal, last, extra)
+    stances.look_at_all()
     costs = problem.weights.costs(problem.graph, stances.margins, problem.step_duration)
     found = cheapest(stances, costs, start, goal, last)
     return [] if found is None else [as_sequence(stances, found)]
