@@ -207,3 +207,12 @@ def test_what_is_no_load_and_no_curvature() -> None:
     turned = Plan("rotation", None, plan.start, plan.end, turn=turn([0, 1.0], [plan.start.forces] * 2))
     with pytest.raises(rg.InvalidInput, match="a turning path holds the load that turns with it"):
         rg.verify(turned, still(plan))
+
+
+def test_a_torque_between_instants_counts_over_the_largest_arm() -> None:
+    """Arms of 1, 2 and 0; the measured instant nearest to the middle is 0.4721 s."""
+    grasp = rg.Grasp(rg.Contact([x, 0], [-x or 1, 0], 0.5) for x in (-1.0, 2.0, 0.0))
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), [[1, 0], [-1, 0], [0, 0]])
+    plan = Plan("rotation", None, state, state)
+    verdict = rg.verify(plan, lambda t: rg.Wrench([0, 0], 0.1 * t * (1 - t)))
+    assert verdict.load_gap == pytest.approx(0.05 * 0.472136 * 0.527864, rel=1e-6)

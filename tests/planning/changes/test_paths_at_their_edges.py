@@ -1,0 +1,172 @@
+"""Paths through instants where one condition alone decides, and what is said where it cannot be kept."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from paper import GRASP, STATE
+from regrasp.planning.changes.path_program import PathTask, path_program
+from regrasp.planning.changes.path_search import _balanced, _breach, _kept, planned_path
+from regrasp.planning.states.criteria import Criteria
+from regrasp.programs import solve
+
+pytestmark = pytest.mark.contract
+
+FEET = rg.Grasp([rg.Contact([-1, 0], [0, 1], 0.5), rg.Contact([1, 0], [0, 1], 0.5)])
+"""Two feet carry what stands on them; across they can squeeze."""
+
+
+def task(start=(1.0, 1.0), end=(1.0, 1.0), lean=0.0, count=5, **changes) -> PathTask:
+    """Normal forces at both ends; the load's place moves by ``lean`` and back, as a torque."""
+    times = np.linspace(0, 1, count)
+    loads = np.array([[0.0, -2.0, lean * np.sin(np.pi * t)] for t in times])
+    values = {
+        "grasp": FEET, "times": times, "loads": loads,
+        "start": np.array([[0.0, start[0]], [0.0, start[1]]]),
+        "end": np.array([[0.0, end[0]], [0.0, end[1]]]),
+        "active": np.ones((count, 2), dtype=bool), "phases": times, "frictions": np.full(2, 0.5),
+        "limits": np.full(2, inf), "rates": np.full(2, inf), "least_normals": np.zeros(2),
+        "stays": np.ones(2, dtype=bool), "unit": 1.0,
+    }  # fmt: skip
+    return PathTask(**values | changes)
+
+
+def planned(asked, objective="change", backend="clarabel"):
+    return planned_path(asked, objective, Criteria("angle"), backend)
+
+
+def test_the_reference_goes_straight_from_end_to_end() -> None:
+    asked = task((1, 1), (3, 2), phases=np.array([0, 0.1, 0.5, 0.9, 1.0]))
+    assert asked.reference[:, 0, 1] == pytest.approx([1, 1.2, 2, 2.8, 3])
+    assert asked.reference[:, 1, 1] == pytest.approx([1, 1.1, 1.5, 1.9, 2])
+    idle = task(active=np.array([[True, True], [True, False], [True, False], [True, True], [True, True]]))
+    assert idle.reference[1:3, 1].tolist() == [[0, 0]] * 2
+
+
+@pytest.mark.parametrize("duration", [0.1, 1.0, 20.0])
+def test_effort_counts_each_instant_by_its_share_of_time(duration) -> None:
+    """Three instants of shares 1/4, 3/8 and 1/4 of 1 s, whatever a second is."""
+    asked = task(times=duration * np.array([0, 0.125, 0.5, 0.875, 1.0]), phases=np.linspace(0, 1, 5))
+    program = path_program(asked, "effort")
+    assert program.P.diagonal().reshape(3, 4)[:, 0] == pytest.approx([0.5, 0.75, 0.5])
+
+
+def test_unknowns_are_counted_from_the_reference() -> None:
+    """Where nothing bends the path zero is the answer, and keeps every row."""
+    asked = task((1, 1), (1, 1), least_normals=np.full(2, 0.25), limits=np.full(2, 3.0))
+    for objective in ("change", "effort"):
+        program = path_program(asked, objective)
+        assert abs(solve(program).value).max() < 1e-6
+        s = program.b
+        zero, rest = s[: program.blocks[0].rows], s[program.blocks[0].rows :]
+        assert abs(zero).max() < 1e-15
+        assert rest.min() >= 0
+        assert (program.q == 0).all() or objective == "effort"
+
+
+@pytest.mark.parametrize("facets", [None, 16, 64])
+def test_the_least_peak_with_circles_or_polygons(facets) -> None:
+    """Leaning by 1/2 puts 1.25 and 0.75 on the feet, and a polygon takes a little more."""
+    asked = task(lean=0.5)
+    least = solve(path_program(asked, "peak", facets=facets)).value[-1]
+    assert 1.25 - 1e-7 <= least <= 1.25 * (1.0 if facets is None else 1 / np.cos(np.pi / facets)) + 1e-7
+
+
+def test_rates_are_needed_in_proportion() -> None:
+    """The lean rises by 0.177 N within a quarter of a second."""
+    asked = task((1.0, 1.0), (1.0, 1.0), lean=0.5, rates=np.full(2, 0.25))
+    rise = np.abs(np.diff(0.25 * np.sin(np.pi * asked.times))).max() * 4
+    with pytest.raises(rg.Infeasible, match=f"change at {rise / 0.25:.4g} times the rate limits"):
+        planned(asked)
+    for slack, good in (1.001, True), (0.999, False):
+        asked = task(lean=0.5, rates=np.full(2, slack * rise))
+        if good:
+            assert planned(asked).shape == (5, 2, 2)
+        else:
+            with pytest.raises(rg.Infeasible, match=r"change at 1\.001 times the rate limits"):
+                planned(asked)
+
+
+@pytest.mark.parametrize("who", [0, 1])
+@pytest.mark.parametrize(("least", "good"), [(0.7499, True), (0.7501, False)])
+def test_one_least_normal_that_stands_in_the_way_is_named(who, least, good) -> None:
+    """Leaning to one side leaves 0.75 on the other foot."""
+    normals = np.zeros(2)
+    normals[who] = least
+    asked = task(lean=0.5 if who == 1 else -0.5, least_normals=normals)
+    if good:
+        assert planned(asked)[:, who, 1].min() >= least
+    else:
+        with pytest.raises(rg.Infeasible, match=r"no path keeps every normal force at 0\.7501 or more"):
+            planned(asked)
+
+
+def test_what_is_kept_back_is_a_share() -> None:
+    bounded = GRASP.replaced("P1", GRASP["P1"].changed(limits=([[1.0, 0.0]], [6.0])))
+    for grasp, bounds in ((bounded, np.array([6.0])), (bounded, None), (GRASP, None)):
+        n = len(grasp)
+        asked = replace(
+            task(least_normals=np.zeros(2)), grasp=grasp, row_bounds=bounds, rates=np.full(n, 2.0),
+            frictions=np.full(n, 0.3), limits=np.full(n, 8.0), least_normals=np.full(n, 0.5),
+        )  # fmt: skip
+        kept = _kept(asked, 0.25)
+        assert kept.rates == pytest.approx(1.5)
+        assert kept.least_normals == pytest.approx(0.625)
+        assert kept.row_bounds is None if bounds is None else kept.row_bounds == pytest.approx([4.5])
+
+
+@pytest.mark.parametrize("condition", ["rate", "normal", "row"])
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_breach_is_the_largest_share_of_what_is_broken(condition, share) -> None:
+    """Pushes of 1 and 1.5 N at the middle instant, 1 N before and after, a quarter of a second apart."""
+    forces = np.ones((5, 2, 2)) * [0, 1]
+    forces[2, 1, 1] = 1.5
+    if condition == "rate":
+        found, want = _breach(task(rates=np.array([inf, 2.0 / share])), forces), share - 1
+    elif condition == "normal":
+        found, want = _breach(task(least_normals=np.array([0.0, share])), forces), 1 - 1 / share
+    else:
+        limited = rg.Grasp([FEET[0], FEET[1].changed(limits=([[1.0, 0.0]], [1.5 / share]))])
+        found, want = _breach(task(grasp=limited, row_bounds=np.array([1.5 / share])), forces), share - 1
+    assert found == pytest.approx(want, rel=1e-12)
+
+
+def test_only_fingers_in_use_must_press() -> None:
+    forces = np.ones((5, 2, 2)) * [0, 1]
+    forces[1:3, 1] = 0
+    active = np.ones((5, 2), dtype=bool)
+    assert _breach(task(least_normals=np.array([0.5, 0.5])), forces) == 1.0
+    active[1:3, 1] = False
+    assert _breach(task(least_normals=np.array([0.5, 0.5]), active=active), forces) == -1.0
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_instants_out_of_balance_are_each_moved_into_it(unit) -> None:
+    """One of two far away, whose rounding must not hide the other; by Newton where a force would pull."""
+    asked = task(unit=unit)
+    loads = unit * np.array([[0.0, -2.0, 0.0], [0.0, -2e-3, 0.0]])
+    forces = unit * np.array([[[0, 1.1], [0, 1.0]], [[0, 1.2e-3], [0, 1e-3]]])
+    moved = _balanced(asked, forces, loads, np.arange(2))
+    for f, w in zip(moved, loads, strict=True):
+        assert abs(FEET.matrix @ f.ravel() + w).max() <= 1e-15 * abs(w).max()
+    across = _balanced(asked, unit * np.array([[[5.0, 1.0], [-5.0, 1.0]]]), loads[:1], np.arange(2))
+    assert (abs(across[0, :, 0]) <= 0.5 * across[0, :, 1]).all()
+    assert abs(FEET.matrix @ across.ravel() + loads[0]).max() <= 1e-9 * unit
+
+
+def test_the_widest_margin_by_a_solver_of_quadratic_programs() -> None:
+    """No straight path: the margin is asked of facets, and any back end may answer."""
+    options = {"path_objective": "force", "max_force": 9.0, "instants": 9}
+    options["load"] = lambda t: rg.Wrench([-1.5 + t, -3.5])
+    plans = [rg.plan_removal(GRASP, "P3", **options, **how) for how in ({}, {"method": "daqp", "facets": 32})]
+    assert all(rg.verify(plan).ok for plan in plans)
+    margins = [plan.margins(plan.course.times).force[:, :2].min() for plan in plans]
+    assert margins[1] == pytest.approx(margins[0], rel=1e-2)
+
+
+def test_change_is_asked_of_the_back_end_that_is_named() -> None:
+    plan = rg.plan_removal(STATE, "P3", path_objective="change", method="daqp", facets=16, instants=7)
+    assert plan.record.path == "daqp"

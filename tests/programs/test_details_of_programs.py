@@ -1,0 +1,161 @@
+"""Small things of programs that other tests pass by: shapes, times, options, what is left of a guess."""
+
+import numpy as np
+import pytest
+from scipy import sparse
+from test_judged_by_their_own_units import QP, nonnegative, program, zero
+
+from known_programs import known
+from regrasp.errors import InvalidInput
+from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
+from regrasp.programs.backends import is_available
+from regrasp.programs.judging.audit import audited
+from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
+from regrasp.programs.judging.convexity import why_not_convex
+from regrasp.programs.judging.loose_rows import without_loose_rows
+from regrasp.programs.judging.polish import polished
+from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
+
+pytestmark = pytest.mark.contract
+
+
+def test_rows_are_one_cone_and_no_rows_are_none() -> None:
+    rows = Rows(2)
+    rows.second_order(np.ones((3, 2)))
+    rows.equal(sparse.csr_matrix((0, 2)))
+    rows.at_least_zero(sparse.csr_matrix((0, 2)), np.zeros(0))
+    assert rows.program([0, 0]).blocks == (Block(Cone.SECOND_ORDER, 3, 1),)
+
+
+def test_a_matrix_of_another_shape_is_refused() -> None:
+    for P, A in (((3, 3), (1, 2)), ((2, 3), (1, 2)), ((2, 2), (1, 3)), ((2, 2), (2, 2))):
+        with pytest.raises(InvalidInput):
+            Program(
+                sparse.csc_matrix(P),
+                np.zeros(2),
+                sparse.csc_matrix(A),
+                np.zeros(1),
+                (Block(Cone.ZERO, 1, 1),),
+            )
+
+
+def test_what_is_available_is_installed() -> None:
+    assert not is_available("nobody")
+    assert not is_available("nobody:CLARABEL")
+    assert all(is_available(name) for name in available_backends())
+
+
+BOX = program(np.eye(2), [-3.0, -1.0], [[1, 0], [0, 1], [1, 1]], [1, 2, 1.5], nonnegative(3))
+
+
+@pytest.mark.parametrize("backend", QP)
+def test_every_back_end_tells_its_times(backend) -> None:
+    answer = solve(BOX, backend)
+    assert answer.status is Status.SOLVED
+    assert answer.build_time >= 0
+    assert 0 < answer.solve_time < 60
+
+
+@pytest.mark.skipif("piqp" not in available_backends(), reason="needs piqp")
+def test_piqp_needs_no_polish() -> None:
+    answer = solve(BOX, "piqp")
+    assert "polished" not in answer.said
+    assert max(answer.audit[:4]) < 1e-9
+
+
+@pytest.mark.skipif("cvxpy" not in available_backends(), reason="needs cvxpy")
+def test_the_solver_named_is_the_one_that_is_asked() -> None:
+    """The option is SCS's, and Clarabel has none of its name."""
+    answer = solve(BOX, "cvxpy:SCS", max_iters=10_000, eps_abs=1e-9, eps_rel=1e-9)
+    assert answer.status is Status.SOLVED
+    assert answer.iterations > 0
+    assert solve(BOX, "cvxpy:CLARABEL", max_iters=10_000, throw=False).status is not Status.SOLVED
+
+
+def test_where_all_are_in_one_unit_far_terms_lose_nothing() -> None:
+    """A row and a column that rounding alone is left of, beside a unit that is given."""
+    far = 1e17
+    p = program(np.zeros((2, 2)), [0, 0], [[1, -1]], [1], zero(1), size=1.0)
+    assert audited(p, np.array([far, far]), np.zeros(1)).primal < 1e-15
+
+
+@pytest.mark.parametrize(("far", "loose"), [(0.9999e4, False), (1.0001e4, True)])
+def test_how_far_is_far(far, loose) -> None:
+    p = program(np.eye(1), [1], [[1], [-1], [2]], [far, 1, 2], nonnegative(3))
+    assert (without_loose_rows(p) is not None) is loose
+
+
+def test_a_far_bound_that_an_answer_would_break_is_kept() -> None:
+    """Without x <= 1e9 the least of (x - 1e10)^2 is 1e10: no answer to the whole."""
+    p = program([[1.0]], [-1e10], [[1], [-1]], [1e9, 1], nonnegative(2))
+    assert solve(p).value == pytest.approx([1e9], rel=1e-6)
+
+
+@pytest.mark.parametrize("count", [401, 450])
+def test_a_large_matrix_that_is_not_definite_is_found(count) -> None:
+    """Too many unknowns for a dense factor, and a negative eigenvalue that neither rows nor pairs tell."""
+    three = np.array([[1.0, -0.6, -0.6], [-0.6, 1, -0.6], [-0.6, -0.6, 1]])
+    rest = sparse.identity(count - 3)
+    assert "negative eigenvalue" in why_not_convex(sparse.csc_matrix(sparse.block_diag([rest, three])))
+    assert "negative eigenvalue" in why_not_convex(sparse.csc_matrix(sparse.block_diag([three, rest])))
+    good = np.array([[1.0, 0.6, 0.6], [0.6, 1, 0.6], [0.6, 0.6, 1]])
+    assert why_not_convex(sparse.csc_matrix(sparse.block_diag([rest, good]))) == ""
+    rng = np.random.default_rng(count)
+    root = sparse.random(count, count, 0.01, random_state=rng) + sparse.identity(count)
+    assert why_not_convex(sparse.csc_matrix(root @ root.T)) == ""
+
+
+def test_a_measure_of_one_unit_is_that_of_the_largest_column() -> None:
+    """z = (1, 1) misses the second column by e; alone it has terms 1e-3, beside the first 2."""
+    e = 1e-6
+    rows, b = [[1.0, 1e-3], [-1.0, -1e-3 + e]], [-1.0, 0.0]
+    for size, miss in ((0.0, e / (2e-3 - e)), (1.0, e / 2)):
+        p = program(np.zeros((2, 2)), [0, 0], rows, b, nonnegative(2), size=size)
+        assert infeasibility_residual(p, np.ones(2)) == pytest.approx(miss, rel=1e-9)
+
+
+def spoiled(seed, size):
+    """The answer to a program of known truth, every number off by up to ``size`` of the largest."""
+    case = known(4 * seed)
+    answer = solve(case.program, throw=False)
+    if answer.status is not Status.SOLVED:
+        return None
+    rng = np.random.default_rng(seed)
+    x, z = answer.value, answer.duals
+    return case, x * (1 + size * rng.uniform(-1, 1, x.size)), z * (1 + size * rng.uniform(-1, 1, z.size))
+
+
+def test_nearly_right_answers_are_made_right() -> None:
+    """How many of 39 are, by noise: a guess that is lost lessens one of the counts."""
+    counts = []
+    for size in (1e-9, 1e-7, 1e-5):
+        cases = [case for case in (spoiled(seed, size) for seed in range(40)) if case is not None]
+        better = [polished(case.program, x, z, 1e-9) for case, x, z in cases]
+        for (case, _, _), found in zip(cases, better, strict=True):
+            assert found is None or max(audited(case.program, *found)[:4]) <= 1e-9
+        counts.append(sum(found is not None for found in better))
+    assert (np.array(counts) >= [37, 35, 35]).all(), counts
+
+
+def test_nearly_right_proofs_are_made_right() -> None:
+    """Likewise of infeasible and unbounded ones."""
+    counts = []
+    for size in (1e-7, 1e-5, 1e-3):
+        found = [0, 0]
+        for seed in range(40):
+            for kind, status in ((1, Status.INFEASIBLE), (2, Status.UNBOUNDED)):
+                case = known(4 * seed + kind)
+                answer = solve(case.program, throw=False)
+                if answer.status is not status:
+                    continue
+                rng = np.random.default_rng(seed)
+                given = answer.duals if kind == 1 else answer.value
+                given = given * (1 + size * rng.uniform(-1, 1, given.size))
+                if kind == 1:
+                    measured = infeasibility_residual(case.program, cleaned_duals(case.program, given, 1e-9))
+                else:
+                    clean = cleaned_direction(case.program, given, 1e-9)
+                    measured = unboundedness_residual(case.program, clean)
+                found[kind - 1] += measured <= 1e-9
+        counts.append(found)
+    assert (np.array(counts) >= [[38, 38], [38, 38], [37, 38]]).all(), counts
