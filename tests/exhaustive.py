@@ -1,8 +1,9 @@
 """Regrasps by exhaustive search: fingers with their points, one of them free, one event at a time.
 
-A state is (points of fingers 1, 2, 3; which finger is free; orientation). The free finger moves to another
-point, or it presses and another one is freed while the object may turn, or only the object turns. A turn of
-less than pi takes as many steps as it has pieces of the largest turn; at both ends all three fingers turn it.
+A state is (points of all fingers; which finger is free; orientation). The free finger moves to another point,
+or it presses and another one is freed while the object may turn, or only the object turns. A turn of less
+than pi takes as many steps as it has pieces of the largest turn; at both ends all fingers turn it. Three
+fingers of pairs in the plane, four of triples in space.
 """
 
 from heapq import heappop, heappush
@@ -23,39 +24,37 @@ def least_cost(
 
     worth: (P, O) price of each hold passed.
     """
-    points, orientations = range(len(graph.contacts)), range(len(graph.angles))
-    allowed = np.ones((3, len(points)), dtype=bool) if allowed is None else allowed
-
-    count = len(points)
-    table = [[[-1.0] * len(orientations)] * count for _ in points]
-    prices = [[[0.0] * len(orientations)] * count for _ in points]
-    for p, (i, j) in enumerate(zip(*graph.pairs, strict=True)):
-        table[i][j] = table[j][i] = graph.margins[:, p].tolist()
-        if worth is not None:
-            prices[i][j] = prices[j][i] = worth[p].tolist()
-    a = graph.angles
-    apart = abs((a[:, None] - a + np.pi) % (2 * np.pi) - np.pi).tolist()
+    fingers, points, orientations = range(len(start)), range(len(graph.contacts)), range(len(graph.loads))
+    alike = allowed is None
+    allowed = np.ones((len(start), len(points)), dtype=bool) if alike else allowed
+    among = zip(*graph.pairs, strict=True) if isinstance(graph, HoldGraph) else graph.triples
+    numbers = {frozenset(int(v) for v in hold): p for p, hold in enumerate(among)}
+    table = graph.margins.T.tolist()
+    prices = None if worth is None else worth.tolist()
+    apart = turns(graph).tolist()
     near = [[m for m in orientations if apart[k][m] < 3.1415] for k in orientations]
 
     def turned(k, m, first=1.0):  # steps and angle of a turn; the first step may be free
         pieces = max(np.ceil(apart[k][m] / max_turn - 1e-9), 1.0)
         return step * (pieces - 1 + first) + turn * apart[k][m]
 
-    def hold(at, free):
-        return at[free - 2], at[free - 1]  # the two fingers that are not free
+    def hold(at, free):  # all fingers but the free one
+        return numbers[frozenset((*at[:free], *at[free + 1 :]))]
 
     def holds(at, free, k):
-        i, j = hold(at, free)
-        return table[i][j][k] >= threshold
+        margin = table[hold(at, free)][k]
+        return margin >= threshold and margin >= 0
 
     def price(at, free, k):
-        i, j = hold(at, free)
-        return prices[i][j][k]
+        return 0.0 if prices is None else prices[hold(at, free)][k]
+
+    def named(at, free):  # where it does not matter which finger is which, the free one comes first
+        return ((at[free], *sorted(at[:free] + at[free + 1 :])), 0) if alike else (at, free)
 
     goals = {way for way in permutations(goal) if all(allowed[f, v] for f, v in enumerate(way))}
     queue = [
-        (price(start, f, k) + turned(0, k, 0.0), start, f, k)
-        for f in range(3)
+        (price(start, f, k) + turned(0, k, 0.0), *named(start, f), k)
+        for f in fingers
         for k in near[0]
         if holds(start, f, k)
     ]
@@ -71,17 +70,26 @@ def least_cost(
         for p in points:
             if allowed[free, p] and p not in at:
                 there = (*at[:free], p, *at[free + 1 :])
-                following.append((cost + move, there, free, k))
-        for next_free in range(3):
+                following.append((cost + move, *named(there, free), k))
+        for next_free in fingers:
             for m in near[k]:
                 if (next_free, m) != (free, k) and holds(at, next_free, m):
                     paid = turned(k, m) + price(at, next_free, m)
-                    following.append((cost + paid, at, next_free, m))
+                    following.append((cost + paid, *named(at, next_free), m))
         for state in following:
             if state[0] < best.get(state[1:], np.inf):
                 best[state[1:]] = state[0]
                 heappush(queue, state)
     return None
+
+
+def turns(graph):
+    """(O, O) how far the object turns between orientations, by the directions in which it sees the load."""
+    if isinstance(graph, HoldGraph):
+        return abs((graph.angles[:, None] - graph.angles + np.pi) % (2 * np.pi) - np.pi)
+    ways = graph.loads[:, :3] / np.linalg.norm(graph.loads[:, :3], axis=1)[:, None]
+    half = np.linalg.norm(ways[:, None] - ways, axis=-1), np.linalg.norm(ways[:, None] + ways, axis=-1)
+    return 2 * np.arctan2(*half)
 
 
 def trade_off(graph, start, goal, o, max_turn, allowed=None):

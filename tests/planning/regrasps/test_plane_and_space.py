@@ -1,7 +1,6 @@
 """Every option of a regrasp, on an outline and on a mesh."""
 
-from collections import deque
-from itertools import combinations, pairwise, permutations
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,9 +8,6 @@ import pytest
 import regrasp as rg
 from box import BOX, GOAL, MU, START, WEIGHT
 from regrasp.mechanics.orientation.rotations import rotation_matrix
-from regrasp.planning.holds.sequences import preferred
-from regrasp.planning.holds.spatial_stances import Quads
-from regrasp.planning.holds.triples import TripleGraph
 from regrasp.planning.regrasps import planned
 
 pytestmark = pytest.mark.oracle
@@ -161,39 +157,3 @@ def test_fingers_push(where, states):
         assert len(plan.moves) > len(free.moves) or plan.margin <= free.margin + 2e-3
         usual = problem(where, states=states).plans()[0]
         assert not [note for note in usual.notes if "pushes with" in note]
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_regions_in_space_against_every_move(seed):
-    """Fewest moves where each finger may touch some points only, breadth first over all placements."""
-    rng = np.random.default_rng(seed)
-    points = rng.normal(size=(8, 3))
-    points /= np.linalg.norm(points, axis=1)[:, None]
-    contacts = tuple(
-        rg.Contact(p, -p + 0.3 * rng.normal(size=3), 0.6, name=f"c{i}") for i, p in enumerate(points)
-    )
-    down = np.array([[0, 0, -1.0]])
-    graph = TripleGraph(contacts, np.pad(down, ((0, 0), (0, 3))))
-    start, goal = (tuple(rng.choice(8, 4, replace=False).tolist()) for _ in range(2))
-    allowed = rng.random((4, 8)) < 0.7
-    allowed[range(4), start] = True
-
-    def holds(three):
-        return graph.margins[0, graph.triple(*three)] >= 0
-
-    ends = {way for way in permutations(goal) if all(allowed[f, v] for f, v in enumerate(way))}
-    able = any(holds(t) for t in combinations(start, 3)) and any(holds(t) for t in combinations(goal, 3))
-    found, queue, fewest = {start: 0}, deque([start] if able else []), None
-    while queue and fewest is None:
-        here = queue.popleft()
-        if here in ends:
-            fewest = found[here]
-        for f in range(4):
-            if holds(here[:f] + here[f + 1 :]):
-                for v in set(np.flatnonzero(allowed[f]).tolist()) - set(here):
-                    new = (*here[:f], v, *here[f + 1 :])
-                    if new not in found:
-                        found[new] = found[here] + 1
-                        queue.append(new)
-    best = preferred(Quads(graph, down, 1.0, allowed=allowed), start, goal, 0) if ends else []
-    assert [s.moves for s in best] == ([] if fewest is None else [fewest])

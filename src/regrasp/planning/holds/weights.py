@@ -8,13 +8,16 @@ from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.planning.holds.cost_search import Costs
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.planning.holds.triples import TripleGraph
 from regrasp.planning.states.batch import best_squeezes
 
 # Of sequences that cost the same the one of fewest steps: a step costs this fraction of the largest weight.
 _TIE = 1e-9
+_AT_ONCE = 20_000  # triples
 
 
 @dataclass(frozen=True)
@@ -55,9 +58,9 @@ class RegraspWeights:
         """
         worth = np.where(margins >= 0, 0.0, inf)
         if self.effort:
-            if not isinstance(graph, HoldGraph):
-                raise InvalidInput("weights: effort is of holds of two fingers; leave it out in space")
-            worth += self.effort * efforts(graph, margins >= 0)
+            held = margins >= 0
+            found = efforts(graph, held) if isinstance(graph, HoldGraph) else triple_efforts(graph, held)
+            worth += self.effort * found
         return Costs(worth, self.moves, self.turning, self.time * step_duration + _TIE * self.largest)
 
 
@@ -81,4 +84,38 @@ def efforts(graph: HoldGraph, wanted: NDArray[np.bool_]) -> Array:
     result = np.zeros(wanted.shape)
     size = np.hypot(*graph.load.force)
     result[pairs, o] = np.maximum(np.hypot(x, a), np.hypot(x + phi, b)) / size
+    return result
+
+
+def triple_efforts(graph: TripleGraph, wanted: NDArray[np.bool_]) -> Array:
+    """(T, O) least largest forces of triples as multiples of the load; 0 where they are not ``wanted``.
+
+    In the cones themselves, not in the pyramids by which holds are judged.
+    """
+    from regrasp.planning.states.arrays.many_states import choose_states
+
+    t, o = np.nonzero(wanted)
+    result = np.zeros(wanted.shape)
+    points = np.array([c.position for c in graph.contacts])
+    normals = np.array([c.normal for c in graph.contacts])
+    mu = np.array([c.friction for c in graph.contacts])
+    limits = np.array([inf if c.max_force is None else c.max_force for c in graph.contacts])
+    for begin in range(0, t.size, _AT_ONCE):
+        rows, loads = graph.triples[t[begin : begin + _AT_ONCE]], o[begin : begin + _AT_ONCE]
+        force, torque = graph.loads[loads, :3], graph.loads[loads, 3:]
+        found = choose_states(
+            points[rows],
+            normals[rows],
+            np.maximum(mu[rows], 2 * NEGLIGIBLE),
+            force,
+            torque,
+            objective="peak",
+            max_force=limits[rows],
+            reserve=0,
+        )
+        peaks = found.values.copy()
+        for k in np.flatnonzero(~found.held).tolist():  # left open by rounding: the graph has forces
+            forces = graph.forces(int(t[begin + k]), int(loads[k]))
+            peaks[k] = np.linalg.norm(forces, axis=1).max()
+        result[t[begin : begin + _AT_ONCE], loads] = peaks / np.linalg.norm(force, axis=1)
     return result
