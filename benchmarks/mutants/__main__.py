@@ -19,7 +19,11 @@ from pathlib import Path
 
 os.environ.setdefault("HYPOTHESIS_STORAGE_DIRECTORY", "/tmp/regrasp-mutants-hypothesis")
 HERE, ROOT = Path(__file__).parent, Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(HERE), str(ROOT / "src"), str(ROOT / "tests")]
+sys.path[:0] = [
+    str(HERE),
+    str(ROOT / "src"),
+    *(str(ROOT / "tests" / of) for of in ("given", "oracles", "kit")),
+]
 SOURCE, TESTS, KEPT = ROOT / "src" / "regrasp", ROOT / "tests", ROOT / ".mutants"
 SURVIVORS, DRAWN = HERE / "survivors.txt", HERE / "drawn.txt"
 

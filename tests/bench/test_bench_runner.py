@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from bench_toys import TOYS, fake, qp, stripped
-from places import TESTS
 from processes import hear_interrupts, is_running
 from regrasp.bench.problems.problem import Family, Known, Truth, Verdict
 from regrasp.bench.running.jobs import Limits, chosen_problems, planned
@@ -40,7 +39,7 @@ run(Path(sys.argv[1]), problems, solvers, limits=Limits(repeat=2))
 
 
 def start(fakes: Path, folder: Path) -> subprocess.Popen[bytes]:
-    path = os.pathsep.join([str(fakes), str(TESTS), *sys.path])
+    path = os.pathsep.join([str(fakes), *sys.path])
     command = [sys.executable, "-c", RUNNER, str(folder)]
     return subprocess.Popen(command, env=os.environ | {"PYTHONPATH": path})
 
@@ -74,7 +73,7 @@ def test_a_run_killed_twenty_times_ends_with_the_rows_of_an_undisturbed_one(
 def test_no_worker_outlives_a_killed_runner(fakes: Path, tmp_path: Path) -> None:
     note = tmp_path / "pid"
     code = RUNNER.replace('t.fake("slow")', 't.fake("hangs")')
-    path = os.pathsep.join([str(fakes), str(TESTS), *sys.path])
+    path = os.pathsep.join([str(fakes), *sys.path])
     command = [sys.executable, "-c", code, str(tmp_path / "out")]
     process = subprocess.Popen(command, env=os.environ | {"PYTHONPATH": path})
     while not note.exists() or not note.read_text():

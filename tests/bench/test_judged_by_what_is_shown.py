@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
-from test_bench_report import LIMIT, WRONG, row, written
 
 from regrasp.bench.families import FAMILIES
 from regrasp.bench.judging.judgement import CERTIFICATE, is_near, is_proof, judged
@@ -19,6 +18,7 @@ from regrasp.bench.reporting.contests import contests
 from regrasp.bench.reporting.outcomes import Kind, outcomes
 from regrasp.bench.reporting.tables import contest_table, summary_table
 from regrasp.programs import Block, Cone, Program
+from test_bench_report import LIMIT, WRONG, row, written
 
 pytestmark = pytest.mark.oracle
 

@@ -4,13 +4,13 @@ import logging
 
 import numpy as np
 import pytest
-from test_judged_by_their_own_units import program, zero
 
 from known_programs import is_a_lie, known
 from regrasp.programs import Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.audit import MOST, ROUNDING, audited
 from regrasp.programs.judging.units import OWN
+from test_judged_by_their_own_units import program, zero
 
 pytestmark = pytest.mark.laws
 SEEDS = {"auto": 80, "proxqp": 12, "scs": 24, "qpalm": 60, "osqp": 60, "cvxpy": 4}

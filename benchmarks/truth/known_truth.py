@@ -1,8 +1,8 @@
 """Random programs in random units, whose truth is known, through every back end: how many answers are right.
 
-    python benchmarks/known_truth.py [BACKEND ...] [-n COUNT] [-o FILE]
+    python benchmarks/truth/known_truth.py [BACKEND ...] [-n COUNT] [-o FILE]
 
-The programs are those of the tests (``tests/known_programs.py``): whole numbers times powers of two over up
+The programs are those of the tests (``known_programs``): whole numbers times powers of two over up
 to sixty decades, solvable, infeasible, unbounded, or a ray without a feasible point. A lie is a claim that
 is not so; "near" is the word solved for a program whose rows contradict each other by less than a millionth
 of their terms, which is within the tolerance of answers. Counts are kept as they come, so that a run that
@@ -20,8 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
-HERE = Path(__file__).parent
-sys.path.append(str(HERE.parent / "tests"))
+HERE = Path(__file__).parents[1]
+sys.path.append(str(HERE.parent / "tests" / "given"))
 from known_programs import KINDS, Known, is_a_lie, known  # noqa: E402
 from regrasp.programs import Solution, Status, available_backends, solve  # noqa: E402
 from regrasp.programs.cones import Cones  # noqa: E402
