@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy import sparse
-from test_bench_report import row
 
 from regrasp.bench.judging.judgement import judged
 from regrasp.bench.problems.answer import Answer
@@ -13,6 +12,7 @@ from regrasp.bench.problems.problem import BenchProblem, Known, Truth, Verdict
 from regrasp.bench.reporting.closeness import closeness
 from regrasp.bench.reporting.outcomes import outcomes
 from regrasp.programs import Block, Cone, Program
+from test_bench_report import row
 
 pytestmark = pytest.mark.contract
 

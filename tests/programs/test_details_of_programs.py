@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from scipy import sparse
-from test_judged_by_their_own_units import QP, nonnegative, program, zero
 
 from known_programs import known
 from regrasp.errors import InvalidInput
@@ -15,6 +14,7 @@ from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.loose_rows import without_loose_rows
 from regrasp.programs.judging.polish import polished
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
+from test_judged_by_their_own_units import QP, nonnegative, program, zero
 
 pytestmark = pytest.mark.contract
 
