@@ -31,7 +31,7 @@ SURVIVORS, DRAWN = HERE / "survivors.txt", HERE / "drawn.txt"
 AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "verification": (
         ["verification/*.py"],
-        ["verification/test_[!c]*.py", "verification/test_co*.py", "**/test_verification.py"],
+        ["verification/**/test_[!c]*.py", "verification/**/test_co*.py", "**/test_verification.py"],
         0.95,
     ),
     "programs": (["programs/*.py", "programs/judging/*.py"], ["programs/test_*.py"], 0.95),

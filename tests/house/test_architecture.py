@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator, Set
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -13,10 +14,12 @@ import pytest
 import imports
 import regrasp
 from imports import imported
+from places import TESTS
 
 pytestmark = pytest.mark.architecture
 
 ROOT = Path(regrasp.__file__).parent
+HELPERS = [TESTS, TESTS.parent / "benchmarks"]
 
 # Floor (folder or module) -> floors it may import. A new floor needs a line here.
 FLOORS: dict[str, Set[str]] = {
@@ -344,12 +347,10 @@ def test_lists_of_parameters_are_looked_up_and_all_else_is_read() -> None:
     assert read(text) == 'def f(a):\n    """Words.\n\n\n    Words.\n    """\n'
 
 
-def test_rooms_are_not_crowded() -> None:
-    counts: dict[str, int] = {}
-    for path in ROOT.rglob("*.py"):
-        if path.name != "__init__.py":
-            counts[str(path.parent.relative_to(ROOT))] = counts.get(str(path.parent.relative_to(ROOT)), 0) + 1
-    assert {where: n for where, n in counts.items() if n > FILES} == {}
+@pytest.mark.parametrize("root", [ROOT, *HELPERS], ids=lambda root: root.name)
+def test_rooms_are_not_crowded(root: Path) -> None:
+    rooms = Counter(path.parent for path in root.rglob("*.py") if path.name != "__init__.py")
+    assert {str(room.relative_to(root)): n for room, n in rooms.items() if n > FILES} == {}
 
 
 def test_every_folder_says_what_it_is_for() -> None:
