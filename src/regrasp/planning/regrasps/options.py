@@ -49,7 +49,7 @@ class RegraspOptions(LimitOptions, total=False):
     seed: int
 
 
-_WITHSTOOD = ("disturbance", "stiffness", "early_loss")
+_WITHSTOOD = {"disturbance": None, "stiffness": None, "early_loss": False}
 
 
 def check_steps(step_duration: float, states: str, max_turn: float, least_margin: float) -> None:
@@ -72,9 +72,11 @@ def settled(problem: Any) -> Criteria:
     asked = problem.min_normal
     if asked is not None and number(asked, "min_normal", least=0):
         changed["min_normal"] = asked
-    changed |= {name: getattr(problem, name) for name in _WITHSTOOD if getattr(problem, name) is not None}
-    if not problem.early_loss:
-        changed.pop("early_loss")
+    changed |= {
+        name: getattr(problem, name)
+        for name, default in _WITHSTOOD.items()
+        if getattr(problem, name) is not default
+    }
     criteria = criteria_of(problem.objective, changed)
     if criteria.controlled:
         raise InvalidInput("which fingers are controlled follows from their moves; leave controlled out")
