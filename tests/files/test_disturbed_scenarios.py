@@ -1,6 +1,7 @@
 """Scenarios with a disturbance: planned so that it is withstood, and refused in one line where they are "
 "wrong."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,24 @@ def test_a_plan_of_a_scenario_withstands_its_set(words: str, loads: rg.LoadSet) 
     calm = TEXT.format(set=words, task=REMOVAL).replace("[load.disturbance]\n" + words, "")
     without = plan_scenario(parse_scenario(calm))
     assert not rg.verify(without, disturbance=loads, stiffness=[1000, 800, 600], early_loss=True).ok
+
+
+@pytest.mark.parametrize("kind", ["regrasp", "space-regrasp"])
+def test_regrasps_of_scenarios_withstand_their_set(kind: str) -> None:
+    text = template(kind).replace("[task]", "[task]\nTASK")
+    text = text.replace("orientations = ", "orientations = 1  # ")
+    text = re.sub(r"(?m)^goal_(degrees|axis) = .*$", "", text).replace("[load]", "[load]\nLOAD")
+    wide = 4 if kind == "space-regrasp" else 3
+    springs = [1.0, 2.0, 3.0, 4.0][:wide]
+    rows = [[1.0] + [0.0] * (wide - 2)]
+    task = f"stiffness = {springs}\nlimits = {{rows = {rows}, bounds = [200.0]}}"
+    text = text.replace("LOAD", "disturbance = {force = 0.01, torque = 0.0001}")
+    plan = plan_scenario(parse_scenario(text.replace("TASK", task)))
+    loads = rg.LoadSet.ball(rg.Wrench([0.0] * (wide - 1)), force=0.01, torque=0.0001)
+    assert rg.verify(plan, disturbance=loads, stiffness=springs).ok
+    assert plan.steps[0].grasp[0].limits == rg.ForceLimits(rows, [200.0])
+    with pytest.raises(rg.InvalidInput, match="task: limits: expected rows and bounds; a jacobian"):
+        parse_scenario(text.replace("TASK", "limits = {jacobian = [[1.0], [0.0]], torques = 1.0}"))
 
 
 def test_arriving_fingers_bring_their_stiffness_and_objects_turn() -> None:

@@ -1,5 +1,6 @@
 """Tolerances: a thousandth less is withstood, a thousandth more is not, judged without the planner."""
 
+from dataclasses import replace
 from math import cos, inf, pi, sin
 
 import numpy as np
@@ -8,10 +9,11 @@ import pytest
 import regrasp as rg
 from paper import GRASP, LOAD
 from regrasp.plans.record import Record
+from regrasp.verification.regrasps import of_steps
 from robust import answers, grasp_matrix, random_stiffness, slack
 from space import random_grasp, random_load
 from strategies import comfortable_pair, comfortable_triple
-from values import WEIGHT, regrasp, removal, rotation, shaken, space_grasp
+from values import WEIGHT, problem, regrasp, removal, rotation, shaken, space_grasp
 
 pytestmark = pytest.mark.oracle
 
@@ -179,10 +181,19 @@ def test_plans_are_as_tolerant_as_their_worst_instant() -> None:
     segment = rg.LoadSet.hull([0.0 * LOAD, LOAD], center=0.0 * LOAD)
     assert rg.verify(plan, disturbance=segment.scaled((withstood.load - 1) * 0.999)).ok
     assert not rg.verify(plan, disturbance=segment.scaled((withstood.load - 1) * 1.001)).ok
-    whole = rg.tolerances(regrasp())
+    with pytest.raises(rg.InvalidInput, match="does not resist turning about"):  # a finger takes over
+        rg.tolerances(regrasp())
+    springs, loads = [1.0, 2.0, 3.0], rg.LoadSet.ball(0.0 * LOAD, force=0.01, torque=0.01)
+    plan = replace(problem(), disturbance=loads, stiffness=springs).plans()[0]
+    whole = rg.tolerances(plan, stiffness=springs)
     assert len(whole.names) == whole.withstood.position.size > 3
-    with pytest.raises(rg.InvalidInput, match="give one number as stiffness"):
-        rg.tolerances(regrasp(), stiffness=[1.0, 2.0, 3.0])
+    least = min(
+        rg.tolerances(step, stiffness=k).withstood.load
+        for step, k in zip(plan.steps, of_steps(plan, springs), strict=True)
+    )
+    assert whole.withstood.load == pytest.approx(least, rel=1e-9)
+    with pytest.raises(rg.InvalidInput, match="a row for each of 3 fingers"):
+        rg.tolerances(plan, stiffness=[1.0, 2.0])
 
 
 def test_which_finger_fails_and_how_is_said() -> None:

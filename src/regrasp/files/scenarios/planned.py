@@ -43,6 +43,8 @@ _REGRASP_OPTIONS = (
     "states",
     "min_distance",
     "min_normal",
+    "stiffness",
+    "early_loss",
     *described(LimitOptions),
     "step_duration",
 )
@@ -133,14 +135,17 @@ def regrasp_by(scenario: RegraspScenario | SpaceRegraspScenario, verb: Callable[
         assert isinstance(task, SpaceRegraspTask)
         shape = scenario.object.value
         options = {"max_turn": radians(task.max_turn_degrees), **_taken(task, _SPACE_REGRASP_OPTIONS)}
+    load, around = Wrench(scenario.load.force), scenario.load.disturbance
     return verb(
         shape,
         scenario.start_grasp,
         scenario.goal_grasp,
-        Wrench(scenario.load.force),
+        load,
         friction=scenario.friction,
         least_margin=radians(task.least_margin_degrees),
         weights=None if task.weights is None else task.weights.value,
+        disturbance=None if around is None else around.around(load),
+        limits=None if task.limits is None else task.limits.value([]),
         **options,
     )
 

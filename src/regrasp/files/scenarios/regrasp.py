@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from regrasp.errors import InvalidInput
+from regrasp.files.scenarios.disturbance import Disturbance
 from regrasp.files.scenarios.keys import Positive, Vector
 from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.regrasp_task import CommonTask, Ended
@@ -35,6 +36,9 @@ class Weight(Strict):
     """The external force on the object, through its centre of mass and fixed in the world."""
 
     force: Vector = Field(description="[N], x and y in the object frame before it turns")
+    disturbance: Disturbance | None = Field(
+        None, description="deviations that every state and step withstands, in the object's frame"
+    )
 
 
 class OutlineEntry(Strict):

@@ -7,13 +7,14 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from regrasp.errors import InvalidFile, InvalidInput
-from regrasp.files.scenarios.keys import Positive, option
+from regrasp.files.scenarios.keys import PerFinger, Positive, option
+from regrasp.files.scenarios.limits_entry import LimitsEntry
 from regrasp.files.strict import Strict
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.states.objectives import ObjectiveName
-from regrasp.planning.states.options import LimitOptions
+from regrasp.planning.states.options import ChangeOptions, LimitOptions
 
 
 class Weights(Strict):
@@ -52,12 +53,25 @@ class CommonTask(Strict):
         description="least normal force of fingers that hold [N]; if absent a hundredth of the load "
         "where that needs no more moves",
     )
+    stiffness: PerFinger | None = Field(
+        None,
+        description="of the fingers that answer a disturbance [N/m], a number or one for each finger of the "
+        "start; all alike if absent",
+    )
+    early_loss: bool = option(ChangeOptions, "early_loss")
+    limits: LimitsEntry | None = Field(None, description="rows and bounds of every contact, in its own frame")
     weights: Weights | None = None
     max_force: Positive | None = option(LimitOptions, "max_force")
     peak_ratio: float = option(LimitOptions, "peak_ratio", ge=1)
     reserve: float = option(LimitOptions, "reserve", ge=0, lt=1)
     step_duration: Positive = Field(1.0, description="[s] of each step")
     rate: Positive = Field(1000.0, description="set-points per second")
+
+    @model_validator(mode="after")
+    def _limits_are_of_no_finger(self) -> "CommonTask":
+        if self.limits is not None and self.limits.rows is None:
+            raise ValueError("limits: expected rows and bounds; a jacobian is of one finger and place")
+        return self
 
 
 class Ended(Strict):

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from regrasp.errors import InvalidInput
+from regrasp.files.scenarios.disturbance import Disturbance
 from regrasp.files.scenarios.keys import SpaceVector
 from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.object_entry import ObjectEntry
@@ -31,6 +32,9 @@ class SpaceWeight(Strict):
     """The external force on the object, through its centre of mass and fixed in the world."""
 
     force: SpaceVector = Field(description="[N], x, y and z in the object frame before it turns")
+    disturbance: Disturbance | None = Field(
+        None, description="deviations that every state and step withstands, in the object's frame"
+    )
 
 
 class SpacePlaces(Strict):

@@ -193,7 +193,7 @@ def tolerances(
         state_or_plan: a ``GraspState``, a ``Transition`` or a regrasp.
         disturbance: load deviations that are withstood besides.
         stiffness: of the fingers that answer, as in ``Criteria``, by the contacts in play [N/m]; all alike if
-            not given. Of a regrasp one number.
+            not given. Of a regrasp by the fingers in the order of the start.
         surface: curvature at the contacts [1/m], a number or (n,), positive where it bulges out: normals turn
             as a contact moves. Flat if not given.
         max_force: limit on every force besides the contacts' own [N]; that of a state's choice if not given.

@@ -80,20 +80,33 @@ def views_of(subject: Subject, stiffness: Stiffness, max_force: float | None) ->
     if isinstance(subject, GraspState):
         return [View("", subject, _idle(subject.forces[None]), stiffness, _limits(subject.grasp, max_force))]
     if isinstance(subject, RegraspPlan):
-        if isinstance(stiffness, tuple):
-            raise InvalidInput(
-                "the contacts of a regrasp change from step to step: give one number as stiffness"
-            )
+        springs = _of_fingers(subject, stiffness)
         return [
-            replace(view, label=f"step {k}, {view.label}")
-            for k, step in enumerate(subject.steps, 1)
-            for view in _of_transition(step, stiffness, max_force)
+            replace(view, label=f"step {k + 1}, {view.label}")
+            for k, step in enumerate(subject.steps)
+            for view in _of_transition(step, springs[k], max_force)
         ]
     if not isinstance(subject, Transition):
         raise InvalidInput(
             f"tolerances are of a GraspState, a Transition or a RegraspPlan, got {shown(subject)}"
         )
     return list(_of_transition(subject, stiffness, max_force))
+
+
+def _of_fingers(plan: RegraspPlan, stiffness: Stiffness) -> list[Stiffness]:
+    """The stiffness of each step's contacts, from that of each finger."""
+    if not isinstance(stiffness, tuple):
+        return [stiffness] * len(plan.steps)
+    fingers = plan.fingers
+    if len(stiffness) != len(fingers[0]):
+        raise InvalidInput(
+            f"stiffness must be one number or have a row for each of {len(fingers[0])} fingers, in the order "
+            f"of the start, got {len(stiffness)}"
+        )
+    return [
+        tuple(stiffness[held.index(name)] for name in step.grasp.names)
+        for step, held in zip(plan.steps, fingers, strict=True)
+    ]
 
 
 def _of_transition(plan: Transition, stiffness: Stiffness, max_force: float | None) -> Iterator[View]:
@@ -103,9 +116,8 @@ def _of_transition(plan: Transition, stiffness: Stiffness, max_force: float | No
     idle = _idle(plan.path.deciding(plan.start, plan.end))
     moving = tuple(sorted({*places[0], *places[1], *idle}))
     if plan.turn is not None:
-        yield from _of_turn(plan, stiffness, limits, idle)
-        return
-    if plan.course is not None:
+        yield from _of_turn(plan, stiffness, limits, moving)
+    elif plan.course is not None:
         for t, forces, load in zip(plan.course.times, plan.course.forces, plan.course.loads, strict=True):
             state = GraspState(grasp, Wrench.from_vector(load), forces)
             yield View(f"t = {t:.6g} s", state, moving, stiffness, limits)
@@ -118,17 +130,19 @@ def _of_transition(plan: Transition, stiffness: Stiffness, max_force: float | No
             yield View(f"{label}, all at work answering", state, controlled, stiffness, limits)
 
 
-def _of_turn(plan: Transition, stiffness: Stiffness, limits: Array, idle: tuple[int, ...]) -> Iterator[View]:
+def _of_turn(
+    plan: Transition, stiffness: Stiffness, limits: Array, moving: tuple[int, ...]
+) -> Iterator[View]:
     turn, grasp, load = plan.turn, plan.grasp, plan.start.load
     assert turn is not None
     angles = turn.angles.tolist()
     share = 1.0 if turn.middles is not None else cos(max(abs(b - a) for a, b in pairwise(angles)) / 2)
     for angle, forces in zip(angles, turn.forces, strict=True):
         state = GraspState(grasp, turned_load(load, angle, turn.axis), forces)
-        yield View(f"angle {angle:.6g} rad", state, idle, stiffness, read_only(share * limits), share)
+        yield View(f"angle {angle:.6g} rad", state, moving, stiffness, read_only(share * limits), share)
     for (a, b), forces in zip(pairwise(angles), () if turn.middles is None else turn.middles, strict=False):
         state = GraspState(grasp, load_between(load, a, b, turn.axis), forces)
-        yield View(f"between {a:.6g} and {b:.6g} rad", state, idle, stiffness, limits)
+        yield View(f"between {a:.6g} and {b:.6g} rad", state, moving, stiffness, limits)
 
 
 def _idle(forces: Array) -> tuple[int, ...]:
