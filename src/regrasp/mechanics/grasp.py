@@ -1,9 +1,8 @@
 """A set of contacts and its grasp matrix."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import count
 from typing import Any
 
 import numpy as np
@@ -15,12 +14,11 @@ from regrasp.mechanics.contact import Contact, contacts_table
 from regrasp.mechanics.limits.limit_rows import LimitRows, stacked
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries, listed
+from regrasp.mechanics.together import named, refuse_coincident, refuse_equal_names
 from regrasp.mechanics.value import ArrayValue, kept, one_line
 from regrasp.mechanics.wrench import torque
 
 _MOST = 1e50
-# Contacts nearer than this fraction of the largest coordinate are one point in double precision.
-COINCIDENT = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +50,10 @@ class Grasp(ArrayValue):
                     f"contacts of one grasp must have one dimension, got {given[0].dimension} "
                     f"and {contact.dimension}"
                 )
-        named = _named(given)
-        _refuse_equal_names(named)
-        _refuse_coincident(named)
-        object.__setattr__(self, "contacts", named)
+        together = named(given)
+        refuse_equal_names(together)
+        refuse_coincident(together)
+        object.__setattr__(self, "contacts", together)
 
     @cached_property
     def _hash(self) -> int:
@@ -335,47 +333,6 @@ def touching(contacts: Iterable[Contact]) -> Grasp:
     for contact in given[1:]:
         if contact.dimension != apart.dimension:
             return Grasp(given)  # which says what is wrong
-    named = _named(given)
-    _refuse_equal_names(named)
-    return apart._of(named)
-
-
-def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
-    """Unnamed contacts get the name of their place, or the next P<k> that nobody has."""
-    taken = {contact.name for contact in contacts}
-    result = []
-    for place, contact in enumerate(contacts, 1):
-        if contact.name is None:
-            name = next(name for k in count(place) if (name := f"P{k}") not in taken)
-            taken.add(name)
-            contact = contact.named(name)
-        result.append(contact)
-    return tuple(result)
-
-
-def _refuse_equal_names(contacts: tuple[Contact, ...]) -> None:
-    names = [contact.name for contact in contacts]
-    for name in names:
-        if names.count(name) > 1:
-            raise InvalidInput(f"contacts of one grasp must have different names, {shown(name)} came twice")
-
-
-def _refuse_coincident(contacts: tuple[Contact, ...]) -> None:
-    """At one point two fingers may push along different normals (an inner corner), not along the same one."""
-    for first, second in coincident(contacts):
-        a, b = contacts[first], contacts[second]
-        if abs(a.normal - b.normal).max() <= COINCIDENT:
-            raise InvalidInput(
-                f"contacts {shown(a.name)} and {shown(b.name)} coincide at "
-                f"{a.position.tolist()}; place them at different points"
-            )
-
-
-def coincident(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
-    """Pairs of contacts at one point, up to rounding of the largest coordinate."""
-    points = [contact.position.tolist() for contact in contacts]
-    near = COINCIDENT * max(abs(x) for p in points for x in p)
-    for j, p in enumerate(points):
-        for i, q in enumerate(points[:j]):
-            if all(abs(a - b) <= near for a, b in zip(p, q, strict=True)):
-                yield i, j
+    together = named(given)
+    refuse_equal_names(together)
+    return apart._of(together)

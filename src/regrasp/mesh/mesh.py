@@ -1,7 +1,7 @@
 """A solid object as a value: a closed surface of triangles."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from os import PathLike
 
 import numpy as np
@@ -11,20 +11,16 @@ from regrasp.mechanics.checks import (
     Array,
     ArrayLike,
     array,
-    choice,
-    file_path,
     number,
     read_only,
     whole,
 )
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
-from regrasp.mesh.arrays import Indices, checked_faces, checked_points, checked_vertices, merged
-from regrasp.mesh.doubts import warn_of_cavities, warn_of_unit
-from regrasp.mesh.solid import doubled_areas, inertia, moments, solid
+from regrasp.mesh.arrays import Indices, checked_points
+from regrasp.mesh.solid import checked_body, doubled_areas, inertia, moments
 from regrasp.mesh.touch import Touch
 from regrasp.outline import Outline
-from regrasp.outline.region import checked_size
 
 CREASE = float(np.radians(35.0))
 """An edge is sharp where the surface turns there by more than this [rad], if not said otherwise."""
@@ -65,13 +61,7 @@ class Mesh(ArrayValue):
     ) -> None:
         if not isinstance(smooth, bool | np.bool_):
             raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
-        points = checked_vertices(vertices)
-        if len(points):
-            checked_size(points, "the mesh")
-        points, triangles = merged(points, checked_faces(faces, len(points)))
-        if not triangles.size:
-            raise InvalidInput("the mesh is empty: every face has two corners in one place")
-        triangles = solid(points, triangles)
+        points, triangles = checked_body(vertices, faces)
         triangles.setflags(write=False)
         limit = number(crease, "crease", above=0)
         if limit >= np.pi / 2:
@@ -113,25 +103,12 @@ class Mesh(ArrayValue):
             InvalidInput: For a file that cannot be read and for what ``Mesh`` refuses.
             ImportError: Without the extra.
         """
-        from regrasp.mesh.reading.files import advice, read
-        from regrasp.mesh.reading.mending import BODIES
-        from regrasp.outline.opening import naming
+        from regrasp.mesh.reading.opened import opened
 
         if not isinstance(smooth, bool):
             raise InvalidInput(f"smooth must be True or False, got {shown(smooth)}")
-        factor = 1.0 if scale is None else number(scale, "scale", above=0)
-        how, widest = choice(bodies, "bodies", BODIES), number(close_holes, "close_holes", least=0)
-        file = file_path(path)
-        with naming(file):
-            vertices, faces, notes = read(file, how, widest)
-            try:
-                mesh = cls(factor * vertices, faces, smooth=smooth, crease=crease)
-            except InvalidInput as error:
-                raise InvalidInput(f"{error}{advice(faces, error)}") from None
-        object.__setattr__(mesh, "notes", tuple(notes))
-        warn_of_cavities(file, notes)
-        if scale is None:
-            warn_of_unit(file, mesh.size)
+        mesh, notes = opened(partial(cls, smooth=smooth, crease=crease), path, scale, bodies, close_holes)
+        object.__setattr__(mesh, "notes", notes)
         return mesh
 
     @classmethod
@@ -248,13 +225,9 @@ class Mesh(ArrayValue):
         Args:
             path: the file to write.
         """
-        from regrasp.mesh.reading.files import stl
+        from regrasp.mesh.reading.files import write_stl
 
-        path = file_path(path)
-        try:
-            path.write_bytes(stl(self.vertices, self.faces))
-        except OSError as error:
-            raise InvalidInput(f"{path}: cannot be written: {error.strerror or error}") from None
+        write_stl(self.vertices, self.faces, path)
 
     # -- contacts ---------------------------------------------------------------------------------------
 

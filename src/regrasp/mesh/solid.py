@@ -3,14 +3,26 @@
 import numpy as np
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, ArrayLike
 from regrasp.mechanics.value import numbers
-from regrasp.mesh.arrays import Indices
+from regrasp.mesh.arrays import Indices, checked_faces, checked_vertices, merged
 from regrasp.mesh.topology import one_body
+from regrasp.outline.region import checked_size
 
 # A face this flat, height over longest side, has no direction that rounding leaves; a body this thin, volume
 # over area times size, has no inside.
 _FLAT, _THIN = 1e-9, 1e-12
+
+
+def checked_body(vertices: ArrayLike, faces: ArrayLike) -> tuple[Array, Indices]:
+    """Vertices, each once, and faces wound the right way; raises ``InvalidInput`` for what is no body."""
+    points = checked_vertices(vertices)
+    if len(points):
+        checked_size(points, "the mesh")
+    points, triangles = merged(points, checked_faces(faces, len(points)))
+    if not triangles.size:
+        raise InvalidInput("the mesh is empty: every face has two corners in one place")
+    return points, solid(points, triangles)
 
 
 def solid(vertices: Array, faces: Indices) -> Indices:

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -305,44 +304,11 @@ class Transition(ArrayValue, Documented, Pictured):
         return f"{self.kind} of {who}{for_whom}" if who else self.kind
 
     def __str__(self) -> str:
-        record, width = self.record, max(8, *(len(name) + 1 for name in self.grasp.names))
-        lines = [
-            f"{self.in_words} in {self.duration:g} s under {self.path.load_in_words(self.start, self.end)}",
-            f"{'':{width}}{'start force':>24}{'end force':>24}{'least margin':>14}",
-            *self._rows(width),
-        ]
-        for c in record.choices:
-            limits = ", ".join(f"{limit:.4g}" for limit in c.force_limits)
-            lines.append(f"{c.end} chosen for {c.objective} by {c.method}, force limits {limits}")
-        for label, idle in (("start", self.idle_at_start), ("end", self.idle_at_end)):
-            held = [name for name in self.grasp.names if name not in idle]
-            free = self.grasp.subset(held).freedom
-            if free is not None:
-                lines.append(f"at the {label} no force of {', '.join(held)} resists {free}")
-        lines += self.path.in_words(self.start, self.end, record.path, record.path_objective)
-        if record.rate_limits:
-            lines.append(f"rates below {', '.join(f'{r:.4g}' for r in record.rate_limits)}")
-        if record.balancing:
-            lines.append(f"given forces were balanced; largest change {record.balancing:.2g}")
-        return "\n".join(lines)
+        from regrasp.plans.transition_words import told
+
+        return told(self)
 
     __repr__ = __str__
-
-    def _rows(self, width: int) -> list[str]:
-        """A line for each contact: its forces at both ends and its least margin on the way."""
-        cones, forces = self.grasp.cones, self.path.deciding(self.start, self.end)
-        angles = margins(cones.measured(forces), cones.normals, self.grasp.frictions).angle
-        largest = max(self.start.magnitudes.max(), self.end.magnitudes.max())
-        form = "10.4f" if 0.1 <= largest < 1e5 or largest == 0 else "11.3e"  # any units, readable in newtons
-        lines = []
-        for i, name in enumerate(self.grasp.names):
-            start, end = (
-                " ".join(format(x + 0.0, form) for x in s.forces[i]) for s in (self.start, self.end)
-            )
-            margin = np.fmin.reduce(angles[:, i])
-            shown = "" if np.isnan(margin) else f"{degrees(margin):8.2f} deg"
-            lines.append(f"{name:{width}}{start:>24}{end:>24}{shown:>14}")
-        return lines
 
 
 def setpoint_columns(grasp: Grasp) -> list[str]:

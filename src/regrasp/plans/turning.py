@@ -19,8 +19,8 @@ from regrasp.closed_form.turning_path import (
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.rotated import still_part
 from regrasp.mechanics.orientation.rotations import rotation_matrix, unit_axis
-from regrasp.mechanics.rotated_loads import still_part
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.plans.path import Path, needed_by

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.loads.rotated import turned_load
 from regrasp.planning.changes.path_program import PathTask, path_program
 from regrasp.programs import solve
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import regrasp as rg
 from regrasp.closed_form.turning_path import turning_path, turning_peaks, turning_slope
-from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.loads.rotated import turned_load
 from regrasp.plans.turning import TurningPath
 from regrasp.verification.turning_steps import cosine_sine
 

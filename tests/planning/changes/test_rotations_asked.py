@@ -6,7 +6,7 @@ import pytest
 
 import regrasp as rg
 from paper import STATE
-from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.loads.rotated import turned_load
 
 pytestmark = pytest.mark.contract
 

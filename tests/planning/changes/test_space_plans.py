@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 import regrasp as rg
 from regrasp.closed_form.turning_path import arc_path, arc_peaks, arc_slope, arc_weights
+from regrasp.mechanics.loads.rotated import load_between, turned_load
 from regrasp.mechanics.orientation.rotations import rotation_matrix
-from regrasp.mechanics.rotated_loads import load_between, turned_load
 from regrasp.plans.turning import TurningPath
 from space import nose_cone, random_grasp, random_load, random_rotation, rotated
 

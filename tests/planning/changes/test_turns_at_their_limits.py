@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.loads.rotated import turned_load
 
 pytestmark = pytest.mark.contract
 

@@ -7,10 +7,10 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import INNER, compiled, digest
 from regrasp.closed_form.compiled.sharing import shared
-from regrasp.closed_form.conic import cone_program, grasp_states
-from regrasp.closed_form.conic.grasp_states import Room
+from regrasp.closed_form.conic import balance, cone_program, grasp_states
+from regrasp.closed_form.conic.balance import Room
 
-_MODULES = cone_program, grasp_states
+_MODULES = cone_program, balance, grasp_states
 _best_state = compiled(_MODULES, inline=False)["best_state"]
 
 

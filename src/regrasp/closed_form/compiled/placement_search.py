@@ -6,15 +6,22 @@ are split together: j of them go left, the others right. The lower bound of a bo
 whose centres of pressure disagree most is split, at their middle, and the middles are a placement to try.
 """
 
-from math import sqrt
 from typing import Any
 
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import cubic_arcs, wrench_gauge
+from regrasp.closed_form.compiled import cubic_arcs, placement_boxes, wrench_gauge
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.cubic_arcs import CONTROL, bend, farthest, polar
+from regrasp.closed_form.compiled.placement_boxes import (
+    alike,
+    cut,
+    put,
+    to_split,
+    to_try,
+    too_near,
+    write_child,
+)
 from regrasp.closed_form.compiled.wrench_gauge import bound_by, gauge, workspace
 from regrasp.compilation import kept
 
@@ -22,21 +29,6 @@ OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3
 """A box not looked into; without a better placement; halved; without fingers as far apart as they must be."""
 CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 """Why a search returns: no box is left; a placement within a fixed level; after so many boxes; no memory."""
-
-
-@njit(**VIEWS)
-def _point(sides, j, u):  # type: ignore[no-untyped-def]
-    along = u - sides[j, 8]
-    if sides.shape[1] > CONTROL:
-        return polar(sides, j, 0, along, along, along), polar(sides, j, 1, along, along, along)
-    return sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
-
-
-@njit(**VIEWS)
-def _apart(sides, j, u, k, v):  # type: ignore[no-untyped-def]
-    px, py = _point(sides, j, u)
-    qx, qy = _point(sides, k, v)
-    return sqrt((px - qx) ** 2 + (py - qy) ** 2)
 
 
 @njit(**VIEWS)
@@ -62,30 +54,6 @@ def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
         at = child
     heap[at] = node
     return top
-
-
-@njit(**VIEWS)
-def _farthest(sides, i, one, j, other):  # type: ignore[no-untyped-def]
-    """No two points on parts of two sides are farther apart."""
-    if sides.shape[1] > CONTROL:
-        e, f = sides[i, 8], sides[j, 8]
-        return farthest(sides, i, one[0] - e, one[1] - e, j, other[0] - f, other[1] - f)
-    far = 0.0
-    for a in range(2):
-        for b in range(2):
-            far = max(far, _apart(sides, i, one[a], j, other[b]))
-    return far
-
-
-@njit(**VIEWS)
-def _too_near(sides, arcs, ends, least):  # type: ignore[no-untyped-def]
-    """Two fingers on one side each that are nearer than ``least`` wherever they are; else -1."""
-    for i in range(len(arcs)):
-        for j in range(i):
-            single = arcs[i, 0] == arcs[i, 1] and arcs[j, 0] == arcs[j, 1]
-            if single and _farthest(sides, arcs[i, 0], ends[i], arcs[j, 0], ends[j]) < least:
-                return True
-    return False
 
 
 @njit(**VIEWS)
@@ -133,103 +101,6 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
             if total > 0.0:
                 seen[i, 0], seen[i, 1] = min(seen[i, 0], moment), max(seen[i, 1], moment)
     return worst, critical
-
-
-@njit(**VIEWS)
-def _to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
-    """A side and u for each finger: the middle of its centres of pressure."""
-    for i in range(len(arcs)):
-        if seen[i, 0] > seen[i, 1]:  # it does nothing
-            places[i, 0], places[i, 1] = (
-                arcs[i, 0],
-                ends[i, 0] + 0.5 * (min(ends[i, 1], ends[i, 0] + 1.0) - ends[i, 0]),
-            )
-            if arcs[i, 0] < arcs[i, 1]:
-                places[i, 1] = ends[i, 0]
-        elif arcs[i, 0] == arcs[i, 1]:
-            places[i, 0], places[i, 1] = arcs[i, 0], 0.5 * (seen[i, 0] + seen[i, 1])
-        else:
-            places[i, 0], places[i, 1] = seen[i, 6], seen[i, 7]
-
-
-@njit(**VIEWS)
-def _put(sides, places, least, arcs, ends):  # type: ignore[no-untyped-def]
-    """Writes places as a box of no width; whether two of them are nearer than ``least``."""
-    nearest = np.inf
-    for i in range(len(arcs)):
-        for c in range(2):
-            arcs[i, c], ends[i, c] = int(places[i, 0]), places[i, 1]
-        for j in range(i):
-            nearest = min(nearest, _apart(sides, arcs[i, 0], places[i, 1], arcs[j, 0], places[j, 1]))
-    return nearest < least
-
-
-@njit(**VIEWS)
-def _to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
-    """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
-    chosen, most = -1, -1.0
-    curved = sides.shape[1] > CONTROL
-    for i in range(len(arcs)):
-        first, last = arcs[i]
-        if first < last:
-            apart = 0.0
-            if seen[i, 2] <= seen[i, 4]:
-                apart = _apart(sides, int(seen[i, 3]), seen[i, 2], int(seen[i, 5]), seen[i, 4])
-            matters = apart + (0.1 if curved else 1e-6 * (last - first))
-        else:
-            j = first
-            length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
-            width = (ends[i, 1] - ends[i, 0]) * length
-            if width < narrow:
-                continue
-            matters = 1e-3 * width
-            if seen[i, 0] <= seen[i, 1]:
-                matters = (seen[i, 1] - seen[i, 0]) * length + 1e-6 * width
-            if curved:
-                matters += 0.5 * bend(sides, j, ends[i, 0], ends[i, 1])
-            if near:  # only a smaller box tells whether fingers can be far enough apart
-                matters = width
-        if matters > most:
-            chosen, most = i, matters
-    return chosen
-
-
-@njit(**VIEWS)
-def _cut(sides, arcs, ends, seen, i):  # type: ignore[no-untyped-def]
-    """The last side of the left part, and u where finger i is split."""
-    first, last = arcs[i]
-    if first < last:
-        if seen[i, 2] > seen[i, 4]:
-            at = (first + last - 1) // 2
-        elif seen[i, 3] != seen[i, 5]:
-            at = int(seen[i, 3] + seen[i, 5]) // 2
-        else:
-            at = int(seen[i, 3])
-        at = min(max(at, first), last - 1)
-        return at, sides[at, 7]
-    lo, hi = ends[i, 0], ends[i, 1]
-    pressed = seen[i, 0] <= seen[i, 1] and sides.shape[1] <= CONTROL
-    middle = 0.5 * (seen[i, 0] + seen[i, 1]) if pressed else 0.5 * (lo + hi)
-    return first, min(max(middle, lo + 0.1 * (hi - lo)), hi - 0.1 * (hi - lo))
-
-
-@njit(**VIEWS)
-def _alike(arcs, ends, i, j):  # type: ignore[no-untyped-def]
-    same = arcs[i, 0] == arcs[j, 0] and arcs[i, 1] == arcs[j, 1]
-    return same and ends[i, 0] == ends[j, 0] and ends[i, 1] == ends[j, 1]
-
-
-@njit(**VIEWS)
-def _write_child(sides, arcs, ends, i, same, left, at, u, new_arcs, new_ends):  # type: ignore[no-untyped-def]
-    """Of ``same`` fingers alike from i on, ``left`` on the left part of their arc, the others right."""
-    for f in range(len(arcs)):
-        for c in range(2):
-            new_arcs[f, c], new_ends[f, c] = arcs[f, c], ends[f, c]
-        if i <= f < i + left:
-            new_arcs[f, 1], new_ends[f, 1] = at, u
-        elif i + left <= f < i + same:
-            whole = arcs[i, 0] < arcs[i, 1]
-            new_arcs[f, 0], new_ends[f, 0] = (at + 1, sides[at + 1, 6]) if whole else (at, u)
 
 
 @njit(**VIEWS)
@@ -289,8 +160,8 @@ def _loop(digest: str) -> Any:
             state[1] -= 1
             most = found[0] if fixed == np.inf else fixed * (1.0 + 1e-6)
             # a placement from where its forces press
-            _to_try(arcs[node], ends[node], seen[node], places)
-            near = _put(sides, places, least, at_arcs, at_ends)
+            to_try(arcs[node], ends[node], seen[node], places)
+            near = put(sides, places, least, at_arcs, at_ends)
             if not near:
                 value, _ = _judge(
                     sides, at_arcs, at_ends, loads, usable, size, norm, precision, most,
@@ -312,25 +183,25 @@ def _loop(digest: str) -> Any:
             if bounds[node] >= level:
                 kinds[node] = EXCLUDED
                 continue
-            i = _to_split(sides, arcs[node], ends[node], seen[node], near, narrow)
+            i = to_split(sides, arcs[node], ends[node], seen[node], near, narrow)
             if i < 0:  # too small to be split: it stays open
                 continue
-            at, u = _cut(sides, arcs[node], ends[node], seen[node], i)
-            while i > 0 and _alike(arcs[node], ends[node], i - 1, i):
+            at, u = cut(sides, arcs[node], ends[node], seen[node], i)
+            while i > 0 and alike(arcs[node], ends[node], i - 1, i):
                 i -= 1
             same = 1
-            while i + same < k and _alike(arcs[node], ends[node], i, i + same):
+            while i + same < k and alike(arcs[node], ends[node], i, i + same):
                 same += 1
             kinds[node] = SPLIT
             children[node, 0], children[node, 1] = state[0], same + 1
             for left in range(same, -1, -1):
                 child = state[0]
                 state[0] += 1
-                _write_child(sides, arcs[node], ends[node], i, same, left, at, u, arcs[child], ends[child])
+                write_child(sides, arcs[node], ends[node], i, same, left, at, u, arcs[child], ends[child])
                 bounds[child], critical[child], kinds[child] = bounds[node], critical[node], OPEN
                 for c in range(3):
                     twists[child, c] = twists[node, c]
-                if least > 0.0 and _too_near(sides, arcs[child], ends[child], least):
+                if least > 0.0 and too_near(sides, arcs[child], ends[child], least):
                     kinds[child] = NEAR
                     continue
                 b = loads[critical[node]]
@@ -353,4 +224,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-search = _loop(digest((cubic_arcs, wrench_gauge)))
+search = _loop(digest((cubic_arcs, placement_boxes, wrench_gauge)))

@@ -7,15 +7,13 @@ the object's ``rotations`` besides.
 import json
 from math import inf
 from pathlib import Path
-from typing import Annotated, Any, Literal
-
-from pydantic import Field
+from typing import Any
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.plans.words import Method, Objective, PathObjective
+from regrasp.files.plans.plan_schema import StoredPlan, StoredRecord, StoredRegrasp, StoredTransition
 from regrasp.files.source import naming, text_of
 from regrasp.files.staging import whole_file
-from regrasp.files.strict import Strict, validated
+from regrasp.files.strict import validated
 from regrasp.mechanics.checks import array, file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
@@ -32,94 +30,7 @@ from regrasp.plans.transition import Transition
 from regrasp.plans.turning import TurningPath
 
 FORMAT = "regrasp plan"
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
 VERSION = 1
-
-
-class _Limits(Strict):
-    rows: list[list[float]]
-    bounds: list[float]
-
-
-class _Contact(Strict):
-    name: str
-    position: list[float]
-    normal: list[float]
-    friction: float
-    max_force: float | None
-    torsion: float | None = None  # of a soft finger
-    limits: _Limits | None = None
-
-
-class _Scaling(Strict):
-    duration: float
-    control: list[float]
-    degree: int
-
-
-class _Choice(Strict):
-    end: Literal["start", "end"]
-    objective: Objective
-    method: Method
-    force_limits: list[Positive | None]  # JSON has no infinity: None is no limit
-
-
-class _Record(Strict):
-    reserve: Annotated[float, Field(ge=0, lt=1)]
-    choices: list[_Choice]
-    balancing: NotNegative
-    path: Method = "closed-form"
-    path_objective: PathObjective | None = None
-    rate_limits: list[Positive | None] = Field(default_factory=list)
-    least_normals: list[NotNegative] = Field(default_factory=list)
-
-
-class _Course(Strict):
-    times: list[float]
-    forces: list[list[list[float]]]
-    loads: list[list[float]]  # force, then torque
-
-
-class _Turn(Strict):
-    angles: list[float]
-    forces: list[list[list[float]]]
-    end_load: list[float]  # force, then torque; in the object frame after the turn
-    axis: list[float] | None = None  # in space
-    middles: list[list[list[float]]] | None = None  # where a part of the load does not turn
-
-
-class _Transition(Strict):
-    kind: Literal["removal", "addition", "rotation", "exchange", "hold"]
-    contact: str | None  # the finger that leaves or arrives; none for a rotation or a hold
-    load: list[float]  # force, then torque; at the start
-    contacts: list[_Contact]
-    start: list[list[float]]
-    end: list[list[float]]
-    scaling: _Scaling
-    course: _Course | None = None  # none for the straight path
-    record: _Record
-    arrival: str | None = None  # of an exchange
-    leaving: list[str] | None = None  # where several leave or arrive
-    arriving: list[str] | None = None
-    turn: _Turn | None = None  # of an object that turns
-
-
-class _Header(Strict):
-    format: Literal["regrasp plan"]
-    version: Literal[1]
-
-
-class _Plan(_Transition, _Header):
-    pass
-
-
-class _Regrasp(_Header):
-    kind: Literal["regrasp"]
-    steps: list[_Transition] = Field(min_length=1)
-    orientations: list[float]
-    margin: float
-    rotations: list[list[list[float]]] | None = None  # in space
 
 
 def write_plan(plan: Transition | RegraspPlan | ChosenGrasp, path: str | Path) -> None:
@@ -166,12 +77,12 @@ def plan_document(plan: Transition | RegraspPlan | ChosenGrasp, name: str | Path
     header = {"format": FORMAT, "version": VERSION}
     if isinstance(plan, RegraspPlan):
         document = header | _regrasp_document(plan)
-        validated(_Regrasp, document, name)
+        validated(StoredRegrasp, document, name)
     elif isinstance(plan, ChosenGrasp):
         document = header | {"kind": "grasp"} | plan.to_dict()
     elif isinstance(plan, Transition):
         document = header | _document(plan)
-        validated(_Plan, document, name)
+        validated(StoredPlan, document, name)
     else:
         raise InvalidInput(
             f"write_plan writes a Transition, a RegraspPlan or a ChosenGrasp, got {shown(plan)}"
@@ -191,7 +102,7 @@ def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan | 
             f"a plan of a newer regrasp needs that regrasp to be read"
         )
     if data.get("kind") == "regrasp":
-        whole = validated(_Regrasp, data, name)
+        whole = validated(StoredRegrasp, data, name)
         with naming(name):
             return _regrasp(whole)
     if data.get("kind") == "grasp":
@@ -199,7 +110,7 @@ def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan | 
             return ChosenGrasp.from_dict(
                 {key: value for key, value in data.items() if key not in ("format", "version", "kind")}
             )
-    stored = validated(_Plan, data, name)
+    stored = validated(StoredPlan, data, name)
     with naming(name):
         return _plan(stored)
 
@@ -224,7 +135,7 @@ def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:
     }
 
 
-def _regrasp(stored: _Regrasp) -> RegraspPlan:
+def _regrasp(stored: StoredRegrasp) -> RegraspPlan:
     steps = []
     for k, step in enumerate(stored.steps):
         with naming(f"steps[{k}]"):
@@ -298,7 +209,7 @@ def _document(plan: Transition) -> dict[str, Any]:
     return document
 
 
-def _plan(stored: _Transition) -> Transition:
+def _plan(stored: StoredTransition) -> Transition:
     grasp = Grasp(Contact.from_dict(c.model_dump()) for c in stored.contacts)
     for key in ("rate_limits", "least_normals"):
         count = len(getattr(stored.record, key))
@@ -322,7 +233,7 @@ def _plan(stored: _Transition) -> Transition:
     return Transition(*ends, scaling, record, *_moving(stored), path)
 
 
-def _moving(stored: _Transition) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _moving(stored: StoredTransition) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The fingers that leave and those that arrive."""
     first, second = ([] if name is None else [name] for name in (stored.contact, stored.arrival))
     leaving, arriving = (second, first) if stored.kind == "addition" else (first, second)
@@ -338,7 +249,7 @@ def _moving(stored: _Transition) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(leaving), tuple(arriving)
 
 
-def _read_record(record: _Record) -> Record:
+def _read_record(record: StoredRecord) -> Record:
     choices = (
         Choice(c.end, c.objective, c.method, tuple(_unlimited(limit) for limit in c.force_limits))
         for c in record.choices

@@ -32,7 +32,7 @@ from regrasp.mechanics.checks import file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
-from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.loads.rotated import turned_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.plans.loads import LoadSeries
 

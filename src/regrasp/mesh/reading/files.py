@@ -2,12 +2,13 @@
 
 import io
 import warnings
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, file_path
 from regrasp.mesh.arrays import Indices, checked_vertices, merged
 from regrasp.mesh.reading.encodings import check_count, prepared
 from regrasp.mesh.reading.mending import Mended, one_of, parted, without_holes, without_slivers
@@ -100,3 +101,12 @@ def stl(vertices: Array, faces: Indices) -> bytes:
     rows["corners"] = vertices[faces]
     rows["normal"] = -face_normals(vertices[faces])
     return b"regrasp".ljust(80) + np.array(len(faces), "<u4").tobytes() + rows.tobytes()
+
+
+def write_stl(vertices: Array, faces: Indices, path: str | PathLike[str]) -> None:
+    """Write ``stl`` to a file."""
+    file = file_path(path)
+    try:
+        file.write_bytes(stl(vertices, faces))
+    except OSError as error:
+        raise InvalidInput(f"{file}: cannot be written: {error.strerror or error}") from None

@@ -12,7 +12,7 @@ import numpy as np
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.rotated_loads import load_between, turned_load
+from regrasp.mechanics.loads.rotated import load_between, turned_load
 from regrasp.plans.transition import Transition
 
 # Forces below this multiple of the load are balanced to far less than the load.

@@ -9,8 +9,8 @@ import numpy as np
 from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, number
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.rotated import still_part, turned_load
 from regrasp.mechanics.orientation.rotations import unit_axis
-from regrasp.mechanics.rotated_loads import still_part, turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import (

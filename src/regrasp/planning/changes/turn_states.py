@@ -15,7 +15,7 @@ import numpy as np
 from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.rotated_loads import load_between, turned_load
+from regrasp.mechanics.loads.rotated import load_between, turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import eased

@@ -13,7 +13,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, function, items, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.limits.limit_rows import refuse_limits
-from regrasp.mechanics.rotated_loads import turned_load
+from regrasp.mechanics.loads.rotated import turned_load
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO

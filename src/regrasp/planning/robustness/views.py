@@ -12,9 +12,9 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.loads.rotated import load_between, turned_load
 from regrasp.mechanics.robust.stiffness import Stiffness, response
 from regrasp.mechanics.robust.withstanding import Withstanding, measured_response
-from regrasp.mechanics.rotated_loads import load_between, turned_load
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench

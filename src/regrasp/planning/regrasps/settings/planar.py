@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.loads.rotated import turned_load
 from regrasp.mechanics.reserve import kept_friction
-from regrasp.mechanics.rotated_loads import turned_load
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
 from regrasp.planning.holds.graphs import AnyGraph

@@ -1,0 +1,148 @@
+"""Boxes of where fingers may be: how they are tried and split. An arc of sides for each finger is a box."""
+
+from math import sqrt
+
+import numpy as np
+from numba import njit
+
+from regrasp.closed_form.compiled.compiling import VIEWS
+from regrasp.closed_form.compiled.cubic_arcs import CONTROL, bend, farthest, polar
+
+
+@njit(**VIEWS)
+def point(sides, j, u):  # type: ignore[no-untyped-def]
+    """The point of side j at u."""
+    along = u - sides[j, 8]
+    if sides.shape[1] > CONTROL:
+        return polar(sides, j, 0, along, along, along), polar(sides, j, 1, along, along, along)
+    return sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
+
+
+@njit(**VIEWS)
+def distance(sides, j, u, k, v):  # type: ignore[no-untyped-def]
+    """Between the points of two sides."""
+    px, py = point(sides, j, u)
+    qx, qy = point(sides, k, v)
+    return sqrt((px - qx) ** 2 + (py - qy) ** 2)
+
+
+@njit(**VIEWS)
+def far_apart(sides, i, one, j, other):  # type: ignore[no-untyped-def]
+    """No two points on parts of two sides are farther apart."""
+    if sides.shape[1] > CONTROL:
+        e, f = sides[i, 8], sides[j, 8]
+        return farthest(sides, i, one[0] - e, one[1] - e, j, other[0] - f, other[1] - f)
+    far = 0.0
+    for a in range(2):
+        for b in range(2):
+            far = max(far, distance(sides, i, one[a], j, other[b]))
+    return far
+
+
+@njit(**VIEWS)
+def too_near(sides, arcs, ends, least):  # type: ignore[no-untyped-def]
+    """Two fingers on one side each that are nearer than ``least`` wherever they are; else -1."""
+    for i in range(len(arcs)):
+        for j in range(i):
+            single = arcs[i, 0] == arcs[i, 1] and arcs[j, 0] == arcs[j, 1]
+            if single and far_apart(sides, arcs[i, 0], ends[i], arcs[j, 0], ends[j]) < least:
+                return True
+    return False
+
+
+@njit(**VIEWS)
+def to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
+    """A side and u for each finger: the middle of its centres of pressure."""
+    for i in range(len(arcs)):
+        if seen[i, 0] > seen[i, 1]:  # it does nothing
+            places[i, 0], places[i, 1] = (
+                arcs[i, 0],
+                ends[i, 0] + 0.5 * (min(ends[i, 1], ends[i, 0] + 1.0) - ends[i, 0]),
+            )
+            if arcs[i, 0] < arcs[i, 1]:
+                places[i, 1] = ends[i, 0]
+        elif arcs[i, 0] == arcs[i, 1]:
+            places[i, 0], places[i, 1] = arcs[i, 0], 0.5 * (seen[i, 0] + seen[i, 1])
+        else:
+            places[i, 0], places[i, 1] = seen[i, 6], seen[i, 7]
+
+
+@njit(**VIEWS)
+def put(sides, places, least, arcs, ends):  # type: ignore[no-untyped-def]
+    """Writes places as a box of no width; whether two of them are nearer than ``least``."""
+    nearest = np.inf
+    for i in range(len(arcs)):
+        for c in range(2):
+            arcs[i, c], ends[i, c] = int(places[i, 0]), places[i, 1]
+        for j in range(i):
+            nearest = min(nearest, distance(sides, arcs[i, 0], places[i, 1], arcs[j, 0], places[j, 1]))
+    return nearest < least
+
+
+@njit(**VIEWS)
+def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
+    """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
+    chosen, most = -1, -1.0
+    curved = sides.shape[1] > CONTROL
+    for i in range(len(arcs)):
+        first, last = arcs[i]
+        if first < last:
+            apart = 0.0
+            if seen[i, 2] <= seen[i, 4]:
+                apart = distance(sides, int(seen[i, 3]), seen[i, 2], int(seen[i, 5]), seen[i, 4])
+            matters = apart + (0.1 if curved else 1e-6 * (last - first))
+        else:
+            j = first
+            length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
+            width = (ends[i, 1] - ends[i, 0]) * length
+            if width < narrow:
+                continue
+            matters = 1e-3 * width
+            if seen[i, 0] <= seen[i, 1]:
+                matters = (seen[i, 1] - seen[i, 0]) * length + 1e-6 * width
+            if curved:
+                matters += 0.5 * bend(sides, j, ends[i, 0], ends[i, 1])
+            if near:  # only a smaller box tells whether fingers can be far enough apart
+                matters = width
+        if matters > most:
+            chosen, most = i, matters
+    return chosen
+
+
+@njit(**VIEWS)
+def cut(sides, arcs, ends, seen, i):  # type: ignore[no-untyped-def]
+    """The last side of the left part, and u where finger i is split."""
+    first, last = arcs[i]
+    if first < last:
+        if seen[i, 2] > seen[i, 4]:
+            at = (first + last - 1) // 2
+        elif seen[i, 3] != seen[i, 5]:
+            at = int(seen[i, 3] + seen[i, 5]) // 2
+        else:
+            at = int(seen[i, 3])
+        at = min(max(at, first), last - 1)
+        return at, sides[at, 7]
+    lo, hi = ends[i, 0], ends[i, 1]
+    pressed = seen[i, 0] <= seen[i, 1] and sides.shape[1] <= CONTROL
+    middle = 0.5 * (seen[i, 0] + seen[i, 1]) if pressed else 0.5 * (lo + hi)
+    return first, min(max(middle, lo + 0.1 * (hi - lo)), hi - 0.1 * (hi - lo))
+
+
+@njit(**VIEWS)
+def alike(arcs, ends, i, j):  # type: ignore[no-untyped-def]
+    """Whether two fingers have one box."""
+    same = arcs[i, 0] == arcs[j, 0] and arcs[i, 1] == arcs[j, 1]
+    return same and ends[i, 0] == ends[j, 0] and ends[i, 1] == ends[j, 1]
+
+
+@njit(**VIEWS)
+def write_child(sides, arcs, ends, i, same, left, at, u, new_arcs, new_ends):  # type: ignore[no-untyped-def]
+    """Of ``same`` fingers alike from i on, ``left`` on the left part of their arc, the others right."""
+    for f in range(len(arcs)):
+        for c in range(2):
+            new_arcs[f, c], new_ends[f, c] = arcs[f, c], ends[f, c]
+        if i <= f < i + left:
+            new_arcs[f, 1], new_ends[f, 1] = at, u
+        elif i + left <= f < i + same:
+            whole = arcs[i, 0] < arcs[i, 1]
+            new_arcs[f, 0], new_ends[f, 0] = (at + 1, sides[at + 1, 6]) if whole else (at, u)
