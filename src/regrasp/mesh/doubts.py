@@ -19,7 +19,7 @@ def warn_of_unit(file: Path, size: Array) -> None:
         warn(
             f"{file}: the largest side is {size.max():.6g}, and the file does not say its unit: give "
             "scale=1e-3 to have millimetres in metres, scale=1 to keep the file's unit",
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
@@ -51,4 +51,4 @@ def warn_of_cavities(file: Path, notes: list[str]) -> None:
     """Where reading a mesh has filled what was hollow."""
     for note in notes:
         if note.startswith("filled: "):
-            warn(f"{file}: {note}", stacklevel=3)
+            warn(f"{file}: {note}", stacklevel=4)

@@ -7,14 +7,7 @@ from os import PathLike
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import (
-    Array,
-    ArrayLike,
-    array,
-    number,
-    read_only,
-    whole,
-)
+from regrasp.mechanics.checks import Array, ArrayLike, array, number, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue, numbers
 from regrasp.mesh.arrays import Indices, checked_points
