@@ -13,6 +13,7 @@ Indices = NDArray[np.int64]
 
 _FARTHEST = 1e150  # whose square is a number
 _MOST_DIFFERENT = 1_500_000
+_FEW = 300  # vertices of which all pairs are looked at
 _MOST_NEAR = 30  # vertices in the cell of one, of two tolerances a side, on average
 
 
@@ -81,7 +82,6 @@ def _near(vertices: Array, tolerance: float) -> Indices:
     """(k,) a number for each of different vertices, the same for chains of steps up to ``tolerance``."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
 
     if len(vertices) > _MOST_DIFFERENT:
         raise InvalidInput(f"there are {len(vertices)} different vertices, more than {_MOST_DIFFERENT}")
@@ -91,10 +91,22 @@ def _near(vertices: Array, tolerance: float) -> Indices:
             f"of the vertices many are within {tolerance:.3g} of one another, a millionth of the size: "
             "is one of them far from the rest?"
         )
-    i, j = cKDTree(vertices).query_pairs(tolerance, output_type="ndarray").T
+    i, j = _pairs_within(vertices, tolerance)
     links = coo_array((np.ones(i.size), (i, j)), shape=(len(vertices),) * 2)
     result: Indices = connected_components(links, directed=False)[1].astype(np.int64)
     return result
+
+
+def _pairs_within(vertices: Array, reach: float) -> tuple[Indices, Indices]:
+    """(p,), (p,) all pairs of vertices at most so far apart [m]."""
+    if len(vertices) <= _FEW:  # sooner done than a tree is imported
+        away = vertices[:, None] - vertices
+        i, j = np.nonzero(np.triu((away * away).sum(axis=2) <= reach * reach, 1))
+        return i, j
+    from scipy.spatial import cKDTree
+
+    i, j = cKDTree(vertices).query_pairs(reach, output_type="ndarray").T
+    return i, j
 
 
 def checked_points(points: ArrayLike) -> Array:

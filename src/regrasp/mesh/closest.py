@@ -7,6 +7,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mesh.arrays import Indices
 
+_FEW = 20_000  # pairs that are all looked at
 _PAIRS = 100_000  # of points and faces looked at together: they stay in the cache
 
 
@@ -78,8 +79,6 @@ def to_segments(points: Array, starts: Array, ends: Array, limit: float) -> Arra
 
     A segment may be a point.
     """
-    from scipy.spatial import cKDTree
-
     result = np.full(len(points), limit)
     if not len(starts):
         return result
@@ -91,13 +90,23 @@ def to_segments(points: Array, starts: Array, ends: Array, limit: float) -> Arra
     begin = starts[k] + rank[:, None] * side
     square = (side * side).sum(axis=1)
     square[square == 0] = 1.0
-    middles = cKDTree(begin + side / 2)
     step = max(1, 20 * _PAIRS // len(k))
     for first in range(0, len(points), step):
         some = points[first : first + step]
-        pairs = cKDTree(some).sparse_distance_matrix(middles, 1.5 * limit, output_type="ndarray")
-        i, j = pairs["i"], pairs["j"]
+        i, j = _pairs_within(some, begin + side / 2, 1.5 * limit)
         away = some[i] - begin[j]
         along = np.clip((away * side[j]).sum(axis=1) / square[j], 0.0, 1.0)
         np.minimum.at(result, i + first, np.linalg.norm(away - along[:, None] * side[j], axis=1))
     return result
+
+
+def _pairs_within(some: Array, others: Array, reach: float) -> tuple[Indices, Indices]:
+    """(p,), (p,) the pairs of points (n, 3) and others (k, 3) at most so far apart [m]."""
+    if len(some) * len(others) <= _FEW:  # sooner done than trees are imported
+        away = some[:, None] - others
+        i, j = np.nonzero((away * away).sum(axis=2) <= reach * reach)
+        return i, j
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(some).sparse_distance_matrix(cKDTree(others), reach, output_type="ndarray")
+    return pairs["i"], pairs["j"]

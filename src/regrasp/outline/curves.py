@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.splines.periodic import PeriodicSpline
 from regrasp.outline.curve import CurveBoundary
 
 _PIECES = 160  # the best cubic is off a circle by 2.7e-4 (4 / pieces)^6
@@ -25,10 +25,8 @@ class SplineBoundary(CurveBoundary):
         return np.concatenate([[0.0], np.cumsum(chords)])
 
     @cached_property
-    def _spline(self) -> Any:
-        from scipy.interpolate import CubicSpline
-
-        return CubicSpline(self.breaks, np.vstack([self.through, self.through[:1]]), bc_type="periodic")
+    def _spline(self) -> PeriodicSpline:
+        return PeriodicSpline(self.breaks, self.through)
 
     def at(self, u: Array, order: int = 0) -> Array:
         """(..., 2) the derivative of x of an order 0, 1 or 2."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,10 +22,8 @@ from regrasp.mechanics.checks import (
     whole,
 )
 from regrasp.mechanics.plain import entries
+from regrasp.mechanics.splines.clamped import ClampedSpline
 from regrasp.mechanics.value import ArrayValue, numbers
-
-if TYPE_CHECKING:
-    from scipy.interpolate import BSpline
 
 # Three tenths of a second added up are 0.30000000000000004 s.
 _ROUNDING = 2.0**-50
@@ -179,13 +177,18 @@ class TimeScaling(ArrayValue):
     @cached_property
     def steepest(self) -> float:
         """Max |T'(t)| [1/s], exact to rounding: at a knot or where T'' = 0."""
-        from scipy.interpolate import PPoly
-
         slope = self._splines[1]
-        knots = np.unique(slope.t)
-        candidates = knots
-        if self.degree >= 2:
-            roots = PPoly.from_spline(self._splines[2]).roots(extrapolate=False)
+        candidates = knots = np.unique(slope.knots)
+        if self.degree == 3:  # T'' is straight between knots
+            a, b = self._splines[2](knots[:-1]), self._splines[2](knots[1:])
+            turns = np.flatnonzero(a * b < 0)
+            share = a[turns] / (a[turns] - b[turns])
+            candidates = np.concatenate([knots, knots[turns] + share * np.diff(knots)[turns]])
+        elif self.degree > 3:
+            from scipy.interpolate import BSpline, PPoly
+
+            bend = self._splines[2]
+            roots = PPoly.from_spline(BSpline(bend.knots, bend.control, bend.degree)).roots(extrapolate=False)
             candidates = np.concatenate([knots, roots[np.isfinite(roots)]])
         inside = candidates[(candidates >= 0) & (candidates <= 1)]
         return float(abs(slope(inside)).max()) / self.duration
@@ -198,15 +201,11 @@ class TimeScaling(ArrayValue):
         return np.concatenate([np.zeros(k), inner, np.ones(k)])
 
     @cached_property
-    def _splines(self) -> tuple["BSpline", ...]:
+    def _splines(self) -> tuple[ClampedSpline, ...]:
         """T and its first two derivatives over s = t / duration in [0, 1]."""
-        from scipy.interpolate import BSpline
-
-        k, knots = self.degree, self._knots
-        spline = BSpline(knots, np.array(self.control), k, extrapolate=False)
+        spline = ClampedSpline(self._knots, np.array(self.control), self.degree)
         first = spline.derivative()
-        second = first.derivative() if k >= 2 else BSpline(knots[1:-1], np.zeros(len(self.control)), 0)
-        return spline, first, second
+        return spline, first, first.derivative()
 
     def _evaluate(self, derivative: int, t: ArrayLike) -> Array:
         times = numbers_in(t, "t must be numbers")

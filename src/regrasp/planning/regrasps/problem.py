@@ -1,6 +1,7 @@
 """What a regrasp is to do and under which limits: the hold graph, its ends, and the plans on it."""
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -293,7 +294,12 @@ class RegraspProblem(ArrayValue):
         Args:
             min_normal: [N].
         """
-        return replace(self, min_normal=number(min_normal, "min_normal", least=0))
+        asking = copy(self)
+        object.__setattr__(asking, "min_normal", number(min_normal, "min_normal", least=0))
+        for changed in ("criteria", "setting", "graph"):  # all else that was worked out stays
+            asking.__dict__.pop(changed, None)
+        _ = asking.criteria, asking.graph
+        return asking
 
     def allowing(self, force: float) -> "RegraspProblem":
         """The same problem with at least this force [N] wherever it is limited.

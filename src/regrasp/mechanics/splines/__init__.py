@@ -1,0 +1,1 @@
+"""Splines in NumPy: importing those of SciPy takes longer than most plans."""
