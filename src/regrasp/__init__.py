@@ -1,26 +1,21 @@
 """regrasp: contact forces while a grasp changes, planned, proven and explained."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverFailed, SolverUnavailable
-from regrasp.mechanics.contact import Contact
-from regrasp.mechanics.escape import EscapeTwist
-from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.limits.force_limits import ForceLimits, torque_limits
-from regrasp.mechanics.margins import Margins
-from regrasp.mechanics.state import GraspState
-from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.states.choosing import choose_state
-from regrasp.planning.states.criteria import ChosenState, Criteria
-
+TYPE_CHECKING = False  # typing has it, and takes longer to load than all of this
 if TYPE_CHECKING:
+    from regrasp.errors import Infeasible, InvalidInput, RegraspError, SolverFailed, SolverUnavailable
     from regrasp.measures.closure import Closure, closure
     from regrasp.measures.measure import Measure, Quality
     from regrasp.measures.quality import quality
     from regrasp.measures.wrench_ball import WrenchBall, wrench_ball
     from regrasp.measures.wrench_balls import wrench_balls
+    from regrasp.mechanics.contact import Contact
+    from regrasp.mechanics.escape import EscapeTwist
+    from regrasp.mechanics.grasp import Grasp
+    from regrasp.mechanics.limits.force_limits import ForceLimits, torque_limits
     from regrasp.mechanics.loads.load_set import LoadSet
+    from regrasp.mechanics.margins import Margins
+    from regrasp.mechanics.state import GraspState
+    from regrasp.mechanics.wrench import Wrench
     from regrasp.mesh.mesh import Mesh
     from regrasp.motions.plan import plan_motions
     from regrasp.motions.regrasps import plan_regrasp
@@ -46,6 +41,8 @@ if TYPE_CHECKING:
     from regrasp.planning.robustness.tolerances import Tolerances, tolerances
     from regrasp.planning.states.arrays.many_states import BatchStates, choose_states
     from regrasp.planning.states.batch import best_squeezes, locus_intervals
+    from regrasp.planning.states.choosing import choose_state
+    from regrasp.planning.states.criteria import ChosenState, Criteria
     from regrasp.planning.states.objectives import ForceCost
     from regrasp.planning.states.two_fingers import EquilibriumLocus
     from regrasp.planning.surveys.extremes.held_centres import HeldCentres, held_centres
@@ -71,8 +68,24 @@ if TYPE_CHECKING:
     from regrasp.verification import Verification, verify
 __version__ = "0.1.0"
 
-# Loaded when they are asked for, so that `import regrasp` stays fast: all but the choice of a state.
+# Loaded when they are asked for: an `import regrasp` is over before an interrupt finds it, and costs nothing.
 _LATER = {
+    "Infeasible": "regrasp.errors",
+    "InvalidInput": "regrasp.errors",
+    "RegraspError": "regrasp.errors",
+    "SolverFailed": "regrasp.errors",
+    "SolverUnavailable": "regrasp.errors",
+    "Contact": "regrasp.mechanics.contact",
+    "EscapeTwist": "regrasp.mechanics.escape",
+    "Grasp": "regrasp.mechanics.grasp",
+    "ForceLimits": "regrasp.mechanics.limits.force_limits",
+    "torque_limits": "regrasp.mechanics.limits.force_limits",
+    "Margins": "regrasp.mechanics.margins",
+    "GraspState": "regrasp.mechanics.state",
+    "Wrench": "regrasp.mechanics.wrench",
+    "choose_state": "regrasp.planning.states.choosing",
+    "ChosenState": "regrasp.planning.states.criteria",
+    "Criteria": "regrasp.planning.states.criteria",
     "BatchTolerances": "regrasp.planning.robustness.batch",
     "batch_tolerances": "regrasp.planning.robustness.batch",
     "wrench_balls": "regrasp.measures.wrench_balls",
@@ -246,12 +259,29 @@ __all__ = [
 
 
 # Rooms with names of their own: `rg.files.write_plan` and the like work without a second import.
-_ROOMS = ("bench", "execution", "explore", "files", "mesh", "motions", "outline", "plots", "programs")
+_ROOMS = (
+    "bench",
+    "closed_form",
+    "errors",
+    "execution",
+    "explore",
+    "files",
+    "mechanics",
+    "mesh",
+    "motions",
+    "outline",
+    "planning",
+    "plans",
+    "plots",
+    "programs",
+)
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
+    from importlib import import_module
+
     if name in _LATER:
-        value = getattr(import_module(_LATER[name]), name)
+        value: object = getattr(import_module(_LATER[name]), name)
         globals()[name] = value
         return value
     if name in _ROOMS:

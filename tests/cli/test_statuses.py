@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from places import ROOT
+from processes import hear_interrupts
 from regrasp.cli import statuses
 from regrasp.cli.speech import plain
 from scenarios import PAPER, edited, regrasp
@@ -228,6 +229,24 @@ def test_asked_to_end_it_leaves_nothing(name: str, tmp_path: Path) -> None:
         _, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (128 + number, "\nEnded.\n")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["long.toml"]
+
+
+@posix
+@pytest.mark.parametrize("delay", [0.03, 0.06, 0.1, 0.15, 0.25, 0.4, 0.7])
+def test_an_interrupt_at_any_moment_is_one_line(delay: float, tmp_path: Path) -> None:
+    """While modules are imported, too; before our first line Python says what it likes."""
+    with subprocess.Popen(
+        command("demo", "--json", "-o", "out"), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, preexec_fn=hear_interrupts,
+    ) as process:  # fmt: skip
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    if "regrasp" not in err and process.returncode in (1, -signal.SIGINT):
+        return  # Python itself had not come to us
+    assert (process.returncode, err.strip()) in [(130, "Interrupted."), (0, "")]
+    assert json.loads(out)["exit"] == process.returncode
+    assert not left(tmp_path)
 
 
 @posix

@@ -58,7 +58,7 @@ class _Ended(KeyboardInterrupt):
         self.number = number
 
 
-def main() -> None:
+def run() -> None:
     """Run the command line and exit with its status; an error is one message on stderr."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
