@@ -8,6 +8,7 @@ import numpy as np
 from regrasp.plans.regrasp_plan import RegraspPlan
 
 _SAMPLES, _MOST = 41, 1200  # of a step, and of a plan
+_ALONE = 201  # of a plan of one step
 
 
 class Histories(NamedTuple):
@@ -20,6 +21,11 @@ class Histories(NamedTuple):
     times: list[float]
     lines: list[dict[str, Any]]
 
+    @property
+    def has_rates(self) -> bool:
+        """Whether any step was planned under rate limits."""
+        return "rates" in self.lines[0]
+
 
 def histories(plan: RegraspPlan) -> Histories:
     """Angle margins and forces of every finger, and the limits of their contacts."""
@@ -28,7 +34,7 @@ def histories(plan: RegraspPlan) -> Histories:
     forces: list[list[float | None]] = [[] for _ in range(count)]
     rates: list[list[float | None]] = [[] for _ in range(count)]
     limits, fastest, times, elapsed = [inf] * count, [inf] * count, [], 0.0
-    samples = min(_SAMPLES, max(2, _MOST // len(plan.steps)))
+    samples = _ALONE if len(plan.steps) == 1 else min(_SAMPLES, max(2, _MOST // len(plan.steps)))
     for step, names in zip(plan.steps, plan.fingers, strict=True):
         t = np.linspace(0, step.duration, samples)
         times += [rounded(elapsed + x) for x in t.tolist()]

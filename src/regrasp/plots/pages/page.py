@@ -20,9 +20,11 @@ from regrasp.plots.look.style import INK, contact_colours
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import facing_view
 from regrasp.plots.look.written import written
+from regrasp.plots.pages.histories import histories
 from regrasp.plots.pages.page_look import layout_of, playing
 from regrasp.plots.pages.page_regrasp import regrasp_figure
-from regrasp.plots.pages.page_scene import Trace, arrow_traces, body_traces, history_traces, marker_traces
+from regrasp.plots.pages.page_scene import Trace, arrow_traces, body_traces, curve_traces, now_traces
+from regrasp.plots.regrasps.moments import as_regrasp
 
 _FRAMES = 40
 _HEAD = "<head><title>regrasp</title><style>body { margin: 0; overflow: hidden }</style>"
@@ -157,13 +159,14 @@ def _figure(value: GraspState | Transition, mesh: Any, units: Units) -> Trace:
     layout = layout_of(units, facing_view(grasp.positions, grasp.normals))
     if isinstance(value, GraspState):
         return {"data": stays + forces(value.wrenches[:, :3], value.load.vector), "layout": layout}
-    stays += history_traces(value, colours, units)
+    history = histories(as_regrasp(value))
+    stays += curve_traces(history, list(colours.values()), units)
     times = np.linspace(0, value.duration, _FRAMES + 1).tolist()
-    moves = [forces(value.wrenches(t)[..., :3], value.load(t)) + marker_traces(t, value) for t in times]
+    moves = [forces(value.wrenches(t)[..., :3], value.load(t)) + now_traces(history, t, units) for t in times]
     places = list(range(len(stays), len(stays) + len(moves[0])))
     frames = [{"name": str(k), "data": data, "traces": places} for k, data in enumerate(moves)]
     return {
         "data": stays + moves[0],
         "frames": frames,
-        "layout": layout | playing(value.duration, times, layout["scene"], units),
+        "layout": layout | playing(value.duration, times, layout["scene"], units, history.has_rates),
     }

@@ -1,11 +1,14 @@
 """How a page in space is laid out: the scene with its axes, curves beside it, a slider and buttons."""
 
 from html import escape
+from typing import Any
 
 from regrasp.plots.look.style import INK, short
 from regrasp.plots.look.units import Units
 from regrasp.plots.look.view import sight
-from regrasp.plots.pages.page_scene import Trace
+from regrasp.plots.pages.page_curves import axes_over_time
+
+Trace = dict[str, Any]
 
 
 def layout_of(units: Units, view: tuple[float, float]) -> Trace:
@@ -26,7 +29,7 @@ def layout_of(units: Units, view: tuple[float, float]) -> Trace:
     }
 
 
-def playing(duration: float, times: list[float], scene: Trace, units: Units) -> Trace:
+def playing(duration: float, times: list[float], scene: Trace, units: Units, rates: bool = False) -> Trace:
     """Curves at the right of the scene, and under everything a slider of time with its buttons."""
     step = 1000 * duration / (len(times) - 1) if units.time == "s" else 50.0
     now = {"mode": "immediate", "frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}}
@@ -40,14 +43,9 @@ def playing(duration: float, times: list[float], scene: Trace, units: Units) -> 
         {"method": "animate", "args": [None, play], "label": "play"},
         {"method": "animate", "args": [[None], now], "label": "pause"},
     ]
-    time = {"domain": [0.66, 1.0], "range": [0, duration]}
     return {
         "scene": scene | {"domain": {"x": [0.0, 0.58], "y": [0.1, 1.0]}},
-        "xaxis": {**time, "anchor": "y"},
-        "yaxis": {"title": {"text": "angle margin [deg]"}, "domain": [0.62, 0.98], "anchor": "x"},
-        "xaxis2": {**time, "anchor": "y2", "title": {"text": f"t [{unit}]"}},
-        "yaxis2": {"title": {"text": f"force [{escape(units.force)}]"}, "domain": [0.14, 0.5], "anchor": "x2"}
-        | {"rangemode": "tozero"},
+        **axes_over_time(duration, units, rates),
         "sliders": [
             {"steps": steps, "x": 0.16, "len": 0.84, "y": 0.02, "pad": {"t": 30}}
             | {"currentvalue": {"prefix": "t = ", "suffix": f" {unit}"}}

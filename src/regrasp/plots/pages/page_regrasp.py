@@ -15,7 +15,7 @@ from regrasp.plots.look.units import Units
 from regrasp.plots.look.view import facing_view
 from regrasp.plots.pages.histories import histories
 from regrasp.plots.pages.page_look import layout_of, playing
-from regrasp.plots.pages.page_scene import Trace, arrow_traces, body_traces, line_traces, point_traces
+from regrasp.plots.pages.page_scene import Trace, arrow_traces, body_traces, curve_traces, now_traces
 
 _FRAMES = 160  # of the whole plan, in all
 _LONGEST = 0.45  # of the extent: the largest force
@@ -47,11 +47,8 @@ def regrasp_figure(plan: RegraspPlan, mesh: object, units: Units) -> Trace:
         return traces + arrow_traces("load", np.zeros(3), now.load(t)[:3], scale, size, INK, units)
 
     history = histories(plan)
-    lines = [
-        line_traces(history.times, [values[key] for values in history.lines], shade, axis, unit)
-        for key, axis, unit in (("margins", "", "deg"), ("forces", "2", units.force))
-    ]
-    stays = [*body_traces(every, colours, triangles, min(CONE * size, 0.8 * reach)), *lines[0], *lines[1]]
+    stays = [*body_traces(every, colours, triangles, min(CONE * size, 0.8 * reach))]
+    stays += curve_traces(history, shade, units)
     per_step = max(4, _FRAMES // len(plan.steps))
     starts = np.cumsum([0.0, *(step.duration for step in plan.steps)]).tolist()
     instants = [
@@ -60,11 +57,9 @@ def regrasp_figure(plan: RegraspPlan, mesh: object, units: Units) -> Trace:
         for t in np.linspace(0, step.duration, per_step + 1).tolist()[1 if k else 0 :]
     ]
     times = [starts[k] + t for k, t in instants]
-    moves = []
-    for (k, t), now in zip(instants, times, strict=True):
-        at = int(np.searchsorted(history.times, now - 1e-9 * plan.duration).clip(max=len(history.times) - 1))
-        dots = point_traces(now, [[line[key][at] for line in history.lines] for key in ("margins", "forces")])
-        moves.append(moving(k, t) + dots)
+    moves = [
+        moving(k, t) + now_traces(history, now, units) for (k, t), now in zip(instants, times, strict=True)
+    ]
     places = list(range(len(stays), len(stays) + len(moves[0])))
     frames = [
         {"name": str(n), "data": data, "traces": places, "layout": _words(plan, k)}
@@ -74,7 +69,9 @@ def regrasp_figure(plan: RegraspPlan, mesh: object, units: Units) -> Trace:
     return {
         "data": stays + moves[0],
         "frames": frames,
-        "layout": layout | playing(plan.duration, times, layout["scene"], units) | _words(plan, 0),
+        "layout": layout
+        | playing(plan.duration, times, layout["scene"], units, history.has_rates)
+        | _words(plan, 0),
     }
 
 

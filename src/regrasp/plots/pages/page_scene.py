@@ -10,16 +10,17 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.plans.transition import Transition
 from regrasp.plots.grasps.space_body import cone_surface
 from regrasp.plots.look.solids import Triangles, cone, creases
 from regrasp.plots.look.style import GREY, INK, Colours, short
 from regrasp.plots.look.units import Units
+from regrasp.plots.pages.histories import Histories
+from regrasp.plots.pages.page_curves import axis_of, curves
 
 Trace = dict[str, Any]
 
 _HEAD = 0.045  # length of an arrow's head, by the extent
-_SAMPLES = 201
+_SHOWN = 2.5  # limits up to this many times the largest value are drawn
 
 
 def body_traces(grasp: Grasp, colours: Colours, mesh: Triangles | None, cone_length: float) -> list[Trace]:
@@ -88,62 +89,61 @@ def arrow_traces(
     ]
 
 
-def history_traces(transition: Transition, colours: Colours, units: Units) -> list[Trace]:
-    """Angle margins and magnitudes over time, a line for each finger, on the axes x, y and x2, y2."""
-    t = np.linspace(0, transition.duration, _SAMPLES)
-    margins = np.degrees(transition.margins(t).angle)
-    magnitudes = np.linalg.norm(transition.wrenches(t)[..., :3], axis=-1)
+def curve_traces(history: Histories, colours: list[str], units: Units) -> list[Trace]:
+    """Margins, forces and rates of every finger over time, on axes below one another; limits are dashed."""
     traces: list[Trace] = []
-    for values, axis, unit in ((margins, "", "deg"), (magnitudes, "2", escape(units.force))):
-        for i, name in enumerate(transition.grasp.names):
-            line = {"color": colours[name], "width": 2}
-            what = f"{escape(name)}: %{{y:.4g}} {unit}<extra></extra>"
-            traces.append(
-                {
-                    "type": "scatter",
-                    "mode": "lines",
-                    "x": t.tolist(),
-                    "y": _numbers(values[:, i]),
-                    "line": line,
-                }
-                | {"xaxis": f"x{axis}", "yaxis": f"y{axis}", "hovertemplate": what}
-                | {"showlegend": False, "name": escape(name)}
-            )
+    for place, (key, limit, unit) in enumerate(_curves(history, units)):
+        for line, colour in zip(history.lines, colours, strict=True):
+            traces.append(_curve(history.times, line[key], line["name"], colour, place, unit))
+        traces += _limit_lines(history, (key, limit), colours, place, unit)
     return traces
 
 
-def marker_traces(t: float, transition: Transition) -> list[Trace]:
-    """Where the time is, a dot on every line of ``history_traces``."""
-    margins = np.degrees(transition.margins(t).angle)
-    magnitudes = np.linalg.norm(transition.wrenches(t)[..., :3], axis=-1)
+def now_traces(history: Histories, t: float, units: Units) -> list[Trace]:
+    """Where the time is: a dot on every line of ``curve_traces``."""
+    k = int(np.searchsorted(history.times, t - 1e-5 * history.times[-1]).clip(max=len(history.times) - 1))
     look = {"type": "scatter", "mode": "markers", "marker": {"color": INK, "size": 7}}
     rest = {"showlegend": False, "hoverinfo": "skip", "name": "now"}
-    return [
-        {**look, **rest, "x": [t] * len(values), "y": _numbers(values), "xaxis": f"x{a}", "yaxis": f"y{a}"}
-        for values, a in ((margins, ""), (magnitudes, "2"))
-    ]
+    dots = []
+    for place, (key, _, _) in enumerate(_curves(history, units)):
+        values, a = [line[key][k] for line in history.lines], axis_of(place)
+        dots.append({**look, **rest, "x": [t] * len(values), "y": values, "xaxis": f"x{a}", "yaxis": f"y{a}"})
+    return dots
 
 
-def line_traces(
-    times: list[float], lines: list[list[float | None]], colours: list[str], axis: str, unit: str
+def _limit_lines(
+    history: Histories, keys: tuple[str, str], colours: list[str], place: int, unit: str
 ) -> list[Trace]:
-    """A line over time for each finger, on the axes named."""
+    """Limits that are near what is drawn; one that all fingers share is grey."""
+    largest = max((v for line in history.lines for v in line[keys[0]] if v is not None), default=0.0)
+    most = [line.get(keys[1]) for line in history.lines]
+    shared, ends = len(set(most)) == 1, [history.times[0], history.times[-1]]
+    names = ["all" if shared else line["name"] for line in history.lines]
     return [
-        {"type": "scatter", "mode": "lines", "x": times, "y": values, "line": {"color": colour, "width": 2}}
-        | {"xaxis": f"x{axis}", "yaxis": f"y{axis}", "showlegend": False, "name": f"finger {i}"}
-        | {"hovertemplate": f"finger {i}: %{{y:.4g}} {escape(unit)}<extra></extra>"}
-        for i, (values, colour) in enumerate(zip(lines, colours, strict=True), 1)
+        _curve(ends, [limit] * 2, f"limit of {name}", colour, place, unit)
+        | {"line": {"color": GREY if shared else colour, "width": 1, "dash": "dash"}}
+        for limit, name, colour in list(zip(most, names, colours, strict=True))[: 1 if shared else None]
+        if limit is not None and limit <= _SHOWN * largest
     ]
 
 
-def point_traces(t: float, values: list[list[float | None]]) -> list[Trace]:
-    """Where the time is, dots on the lines of the first axes and of the second."""
-    look = {"type": "scatter", "mode": "markers", "marker": {"color": INK, "size": 7}}
-    rest = {"showlegend": False, "hoverinfo": "skip", "name": "now"}
-    return [
-        {**look, **rest, "x": [t] * len(now), "y": now, "xaxis": f"x{a}", "yaxis": f"y{a}"}
-        for now, a in zip(values, ("", "2"), strict=True)
-    ]
+def _curves(history: Histories, units: Units) -> list[tuple[str, str, str]]:
+    """Of every curve what is drawn, its limit's key and its unit."""
+    shown = curves(units, history.has_rates)
+    keys = (("margins", ""), ("forces", "limit"), ("rates", "rate_limit"))
+    return [(*key, escape(unit)) for key, (_, unit) in zip(keys, shown, strict=False)]
+
+
+def _curve(times: list[float], values: list[Any], name: str, colour: str, place: int, unit: str) -> Trace:
+    a, what = axis_of(place), escape(name)
+    return {"type": "scatter", "mode": "lines", "x": times, "y": values} | {
+        "line": {"color": colour, "width": 2},
+        "xaxis": f"x{a}",
+        "yaxis": f"y{a}",
+        "showlegend": False,
+        "name": what,
+        "hovertemplate": f"{what}: %{{y:.4g}} {unit}<extra></extra>",
+    }
 
 
 def _at(points: Array) -> Trace:
