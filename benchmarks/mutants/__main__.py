@@ -56,7 +56,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
             f"files/**/{name}.py"
             for name in ("plan_file", "*rows", "setpoints", "regrasp_table", "strict", "source")
         ],
-        ["files/test_*.py", "**/test_files.py", "**/test_regrasp_files.py", "**/test_space_regrasp_files.py"],
+        ["files/test_*.py", "**/test_motion_rows.py"],
         0.85,
     ),
     "bench": (

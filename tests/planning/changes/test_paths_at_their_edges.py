@@ -167,6 +167,22 @@ def test_the_widest_margin_by_a_solver_of_quadratic_programs() -> None:
     assert margins[1] == pytest.approx(margins[0], rel=1e-2)
 
 
-def test_change_is_asked_of_the_back_end_that_is_named() -> None:
+@pytest.mark.parametrize("facets", [None, 360])
+def test_limits_do_not_grow_with_the_margin(facets) -> None:
+    """Between two fingers, under 2.5 N each, of which 1 N carries: (mu sqrt(2.5^2 - 1) - 1) / sqrt(1 + mu^2)."""
+    pair = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.5), rg.Contact([1, 0], [-1, 0], 0.5)])
+    held = np.array([[3.0, 1.0], [-3.0, 1.0]])
+    asked = task(grasp=pair, start=(0, 0), limits=np.full(2, 2.5))
+    asked = replace(asked, start=held, end=held)
+    widest = solve(path_program(asked, "force", facets=facets)).value[-1]
+    assert widest == pytest.approx(
+        (0.5 * np.sqrt(5.25) - 1) / np.sqrt(1.25), rel=1e-6 if facets is None else 2e-3
+    )
+
+
+def test_change_is_asked_of_the_back_end_that_is_named(monkeypatch) -> None:
+    import regrasp.planning.changes.path_search as searched
+
+    monkeypatch.setattr(searched, "least_change", None)
     plan = rg.plan_removal(STATE, "P3", path_objective="change", method="daqp", facets=16, instants=7)
     assert plan.record.path == "daqp"

@@ -132,3 +132,22 @@ def test_a_row_that_is_missing_is_named(tmp_path: Path) -> None:
     path.write_text("\n".join([*lines[:50], *lines[51:]]))
     with pytest.raises(rg.InvalidInput, match=r"rows must come every 0\.005 s; one is missing after 0\.24 s"):
         read_motions(path, plan)
+
+
+@pytest.mark.parametrize(("share", "fine"), [(1e-7, True), (2e-6, False), (0.5, False)])
+def test_rows_come_evenly_to_a_millionth(share: float, fine: bool, tmp_path: Path) -> None:
+    """A row in the middle of a pause comes late by a share of what is between rows."""
+    path, plan = written("plane", tmp_path)
+
+    def late(c: dict[str, np.ndarray]) -> None:
+        k = len(c["t"]) // 2
+        gap = c["t"][k + 1] - c["t"][k]
+        for name in ("t", "plan_t") if c["plan_t"][k] > c["plan_t"][k - 1] else ("t",):
+            c[name][k] += share * gap
+
+    changed(path, late)
+    if fine:
+        assert read_motions(path, plan).times.size > 9
+    else:
+        with pytest.raises(rg.InvalidInput, match=r"one is missing after|angles must be the plan's"):
+            read_motions(path, plan)
