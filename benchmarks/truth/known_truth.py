@@ -50,7 +50,9 @@ def main() -> None:
             for seed in range(row["next"], min(row["next"] + EACH, asked.n)):
                 _ask(seed, backend, row)
             row["next"] = seed + 1
-            asked.o.write_text(json.dumps(found, indent=1) + "\n")
+            new = asked.o.with_suffix(".new")
+            new.write_text(json.dumps(found, indent=1) + "\n")
+            new.replace(asked.o)
         right, asked_of = sum(row["right"].values()), row["asked"]
         words = f"{right:5} right ({right / asked_of:.1%}), {len(row['near'])} near, {len(row['lies'])} lies"
         print(f"{backend:9} {asked_of:5} asked, {words}")

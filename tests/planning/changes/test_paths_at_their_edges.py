@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+import regrasp.planning.changes.path_search as searched
 from paper import GRASP, STATE
+from regrasp.errors import SolverFailed
 from regrasp.planning.changes.path_program import PathTask, path_program
 from regrasp.planning.changes.path_search import _balanced, _breach, _kept, planned_path
 from regrasp.planning.states.criteria import Criteria
@@ -169,7 +171,7 @@ def test_the_widest_margin_by_a_solver_of_quadratic_programs() -> None:
 
 @pytest.mark.parametrize("facets", [None, 360])
 def test_limits_do_not_grow_with_the_margin(facets) -> None:
-    """Between two fingers, under 2.5 N each, of which 1 N carries: (mu sqrt(2.5^2 - 1) - 1) / sqrt(1 + mu^2)."""
+    """Between two fingers, under 2.5 N each, of which 1 N carries."""
     pair = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.5), rg.Contact([1, 0], [-1, 0], 0.5)])
     held = np.array([[3.0, 1.0], [-3.0, 1.0]])
     asked = task(grasp=pair, start=(0, 0), limits=np.full(2, 2.5))
@@ -181,8 +183,46 @@ def test_limits_do_not_grow_with_the_margin(facets) -> None:
 
 
 def test_change_is_asked_of_the_back_end_that_is_named(monkeypatch) -> None:
-    import regrasp.planning.changes.path_search as searched
-
     monkeypatch.setattr(searched, "least_change", None)
     plan = rg.plan_removal(STATE, "P3", path_objective="change", method="daqp", facets=16, instants=7)
     assert plan.record.path == "daqp"
+
+
+def test_a_margin_below_none_is_no_path() -> None:
+    """The widest margin is less than none where the load tips over a foot, and a certificate says so."""
+    for objective in ("force", "effort", "change", "peak"):
+        with pytest.raises(rg.Infeasible, match=r"at t = 0\.25 s: no forces") as refused:
+            planned(task(lean=3.5, limits=np.full(2, 50.0)), objective)
+        assert refused.value.certificate.is_proof
+
+
+def test_a_proof_stands_where_a_solver_fails(monkeypatch) -> None:
+    def failing(program, backend, **options):
+        raise SolverFailed("no luck", program, None)
+
+    monkeypatch.setattr(searched, "solve", failing)
+    with pytest.raises(rg.Infeasible, match=r"at t = 0\.25 s: no forces"):
+        planned(task(lean=3.5), "effort")
+    with pytest.raises(SolverFailed, match="no luck"):
+        planned(task(lean=0.5), "effort")
+
+
+def test_what_rounding_breaks_is_kept_back_twice(monkeypatch) -> None:
+    breaches, kept = [0.25, 0.125, -1.0], []
+    monkeypatch.setattr(searched, "_breach", lambda *_: breaches[len(kept) - 1])
+    monkeypatch.setattr(searched, "_kept", lambda asked, slack: kept.append(slack) or asked)
+    planned(task(), "effort")
+    assert np.diff(kept) == pytest.approx([0.5, 0.25])
+    kept.clear()
+    breaches[:] = [0.125] * 9
+    with pytest.raises(SolverFailed, match=r"breaks a rate or linear limit or a least normal force by 0\.12"):
+        planned(task(), "effort")
+    assert len(kept) == 4
+
+
+def test_one_foot_balances_no_torque_of_its_own() -> None:
+    """Both forces are right and the torque is not."""
+    moved = _balanced(task(), np.array([[[0.0, 2.0]]]), np.array([[0.0, -2.0, 0.5]]), np.arange(1))
+    assert np.isinf(moved).all()
+    moved = _balanced(task(), np.array([[[0.0, 1.9]]]), np.array([[0.0, -2.0, 2.0]]), np.arange(1))
+    assert moved == pytest.approx(np.array([[[0.0, 2.0]]]), abs=1e-15)
