@@ -1,6 +1,6 @@
 """What ``verify_setpoints`` takes for a set-point, comparison with the plan included, by number of rows.
 
-    python benchmarks/speed/setpoints.py [-o FILE]
+    python benchmarks/truth/setpoints.py [-o FILE]
 
 The best of three by processor time, of plans of every kind of path: straight, through instants, turning, in
 the plane and in space.
