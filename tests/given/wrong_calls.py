@@ -694,6 +694,16 @@ def file_rows() -> dict[str, Row]:
         ),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
         "read_motions": Row(files.read_motions, {"path": "none.csv", "plan": removal()}),
+        "read_ways": Row(files.read_ways, {"path": "none.json", "plan": removal()}),
+        "write_ways": Row(
+            files.write_ways,
+            {
+                "motions": files.plan_scenario_motions(moving),
+                "shape": moving.outline.value,
+                "path": os.devnull,
+            },
+            {"motions": "value", "shape": "value"},
+        ),
         "write_plan": Row(files.write_plan, {"plan": removal(), "path": os.devnull}),
         "write_mcap": Row(
             files.write_mcap,

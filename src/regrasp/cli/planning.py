@@ -59,7 +59,11 @@ def demo(output: Path) -> dict[str, Any]:
     help="Folder for the files. Those of the same names in it are replaced, others left alone.",
 )
 @click.option("--no-figures", is_flag=True, help="Write no figures.")
-@click.option("--motions", is_flag=True, help="Plan the fingers' ways by [motions], too; writes motions.csv.")
+@click.option(
+    "--motions",
+    is_flag=True,
+    help="Plan the fingers' ways by [motions], too; writes motions.csv and motions.json.",
+)
 @click.option(
     "--html", is_flag=True, help="Write plan.html, a page that plays; in space it needs regrasp[html]."
 )
@@ -106,6 +110,7 @@ def _work(
         write_motions,
         write_plan,
         write_setpoints,
+        write_ways,
     )
     from regrasp.files.plans.setpoints import checked, setpoint_blocks
     from regrasp.files.source import legible, naming
@@ -141,6 +146,7 @@ def _work(
         write_setpoints(planned, folder / "setpoints.csv", rate)
         if ways is not None:
             write_motions(ways, folder / "motions.csv", rate)
+            write_ways(ways, cast("Outline | Mesh", shape), folder / "motions.json")
         if mcap:
             write_mcap(planned if ways is None else ways, folder / "plan.mcap")
         if html:

@@ -28,6 +28,13 @@ class NotHeld(RegraspError):
     help="In the plan's unit of length; 981 in centimetres.",
 )
 @click.option("--rolling", is_flag=True, help="Fingertips keep their orientation while the object turns.")
+@click.option(
+    "--motions",
+    "ways",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="The fingers' ways, or none.  [default: a motions.json beside the plan]",
+)
 @click.option("--critical", is_flag=True, help="Find the least friction with which the plan holds, too.")
 @click.option(
     "-o",
@@ -37,11 +44,14 @@ class NotHeld(RegraspError):
     help="Folder for execution.csv, execution.png and execution.gif; other files in it are left alone.",
 )
 @json_option
-def simulate(path: Path, critical: bool, output: Path | None, **options: Any) -> dict[str, Any]:
+def simulate(
+    path: Path, ways: Path | None, critical: bool, output: Path | None, **options: Any
+) -> dict[str, Any]:
     """Carry out a PLAN in MuJoCo and say whether it holds.
 
-    PLAN is a plan.json or the folder that holds it. Exit status 1 if it does not hold. Needs the extra
-    ``regrasp[mujoco]``.
+    PLAN is a plan.json or the folder that holds it. Fingers go the ways of a motions.json beside it, which
+    ``plan --motions`` writes, around the shape written there; without it they fly over what is between. Exit
+    status 1 if it does not hold. Needs the extra ``regrasp[mujoco]``.
     """
     from regrasp import ChosenGrasp, execution
     from regrasp.files import read_plan
@@ -54,11 +64,13 @@ def simulate(path: Path, critical: bool, output: Path | None, **options: Any) ->
     planned = read_plan(path)
     if isinstance(planned, ChosenGrasp):
         raise InvalidInput(f"{path}: a chosen grasp has no forces over time to simulate; plan its change")
+    say(planned)
+    options |= _ways(path, ways, planned)
     try:
         run = execution.simulate(planned, **options)
     except ImportError as error:
         raise click.UsageError(str(error)) from None
-    say(f"{planned}\n\n{run}")
+    say(f"\n{run}")
     facts: dict[str, Any] = {"status": "holds", "exit": 0, "execution": _facts(run)}
     if critical:
         least = execution.critical_friction(planned, **options)
@@ -70,8 +82,32 @@ def simulate(path: Path, critical: bool, output: Path | None, **options: Any) ->
     if output is not None:
         facts["wrote"] = _write(run, output)
     if not run.held:
-        raise NotHeld(f"{path}: does not hold in physics")
+        raise NotHeld(f"{path}: does not hold in physics{_advice(planned, run)}")
     return facts
+
+
+def _ways(path: Path, given: Path | None, planned: Any) -> dict[str, Any]:
+    """The ways of fingers and the shape they go around; empty where none are given or lie beside a plan."""
+    from regrasp.files import read_ways
+
+    if given == Path("none"):
+        return {}
+    file = path.with_name("motions.json") if given is None else given
+    if given is None and not file.exists():
+        if file.with_suffix(".csv").exists():
+            say(f"{file.with_suffix('.csv')} has rows alone, no motions.json: fingers go ways of their own")
+        return {}
+    found = read_ways(file, planned)
+    say(f"fingers go the {len(found.motions.motions)} ways of {file}")
+    return found._asdict()
+
+
+def _advice(planned: Any, run: Any) -> str:
+    """What may help a run in which contacts creep because the object turns fast."""
+    turns = any(step.turn is not None for step in getattr(planned, "steps", (planned,)))
+    if run.dropped or not turns:
+        return ""
+    return "; the object turns, and contacts creep with the square of its speed: give its steps more time"
 
 
 def _facts(run: Any) -> dict[str, Any]:
@@ -87,6 +123,7 @@ def _facts(run: Any) -> dict[str, Any]:
         "force_error": run.error,
         "mass": run.mass,
         "stiffness": run.stiffness,
+        "ways": 0 if run.setup.motions is None else len(run.setup.motions.motions),
     }
 
 

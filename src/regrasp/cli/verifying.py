@@ -20,18 +20,18 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
 
     PLAN is a plan.json or the folder that holds it, or a file of the cut that proves that there is none. A
     setpoints.csv beside it is checked too: every row must hold the object and be the plan's at its time. So
-    is a motions.csv, with positions, velocities and contacts of all fingers.
+    is a motions.csv, with positions, velocities and contacts of all fingers, and with a motions.json beside
+    it the ways between rows, against the shape and one another.
     """
     import numpy as np
 
     from regrasp import ChosenGrasp
     from regrasp import verify as verdict_on
-    from regrasp.files import read_motions, read_plan
+    from regrasp.files import read_plan
     from regrasp.files.plans.cut_file import holds_a_cut, read_cut
     from regrasp.files.plans.setpoints import checked, read_setpoints
     from regrasp.files.source import legible
     from regrasp.mechanics.checks import number
-    from regrasp.verification import verify_motion_rows
 
     if rate is not None:
         number(rate, "rate", above=0)
@@ -54,9 +54,26 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
                 verified(checked(planned, rows), table)
             count = sum(rows.times.size for rows in steps)
             say(f"each of {count} set-points in {table} verified too")
-        moved = path.with_name("motions.csv")
-        if moved.exists() and not isinstance(planned, ChosenGrasp):
-            found = verified(verify_motion_rows(planned, read_motions(moved, planned, rate)), moved)
-            say(f"{moved}: {found}")
-            more = {"motions": found.rows}
+        if not isinstance(planned, ChosenGrasp):
+            more = _judged_ways(path, planned, rate)
     return verdict_facts(planned, verdict, count) | more
+
+
+def _judged_ways(path: Path, planned: Any, rate: float | None) -> dict[str, Any]:
+    """What JSON says of ways beside the plan, when they have been judged."""
+    from regrasp.files import read_motions, read_ways
+    from regrasp.verification import verify_motion_rows, verify_motions
+
+    facts, ways = dict[str, Any](), None
+    file = path.with_name("motions.json")
+    if file.exists():
+        ways, shape = read_ways(file, planned)
+        judged = verified(verify_motions(ways, shape), file)
+        say(f"{file}: {judged}")
+        facts["ways"] = {"instants": judged.samples, "to_object": judged.to_object}
+    table = path.with_name("motions.csv")
+    if table.exists():
+        found = verified(verify_motion_rows(planned, read_motions(table, planned, rate), ways), table)
+        say(f"{table}: {found}")
+        facts["motions"] = found.rows
+    return facts

@@ -6,6 +6,7 @@ from regrasp.files.plans.motion_rows import MotionRows, read_motions
 from regrasp.files.plans.motions_table import write_motions
 from regrasp.files.plans.plan_file import read_plan, write_plan
 from regrasp.files.plans.setpoints import write_setpoints
+from regrasp.files.plans.ways_file import Ways, read_ways, write_ways
 from regrasp.files.scenarios.grasp import GraspScenario
 from regrasp.files.scenarios.moving import plan_scenario_motions
 from regrasp.files.scenarios.planned import plan_scenario
@@ -26,6 +27,7 @@ __all__ = [
     "RegraspScenario",
     "Scenario",
     "SpaceRegraspScenario",
+    "Ways",
     "parse_scenario",
     "plan_scenario",
     "plan_scenario_motions",
@@ -33,10 +35,12 @@ __all__ = [
     "read_motions",
     "read_plan",
     "read_scenario",
+    "read_ways",
     "scenario_schema",
     "write_cut",
     "write_mcap",
     "write_motions",
     "write_plan",
     "write_setpoints",
+    "write_ways",
 ]

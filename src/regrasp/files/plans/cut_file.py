@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.source import text_of
+from regrasp.files.plans.json_text import data_of
 from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import file_path
 from regrasp.plans.outline_cut import OutlineCut
@@ -45,7 +45,7 @@ def read_cut(path: str | Path) -> RegraspCut | OutlineCut:
         InvalidInput: For a file that holds no cut.
     """
     path = file_path(path)
-    data = _data(path)
+    data = data_of(path, "a cut")
     kind = _kind(data)
     if kind is None or data.get("version") != 1:
         known = " or ".join(map(repr, FORMATS))
@@ -59,7 +59,7 @@ def read_cut(path: str | Path) -> RegraspCut | OutlineCut:
 def holds_a_cut(path: Path) -> bool:
     """Whether a file says that it is a cut."""
     try:
-        data = _data(path)
+        data = data_of(path, "a cut")
     except InvalidInput:
         return False
     return _kind(data) is not None
@@ -69,10 +69,3 @@ def _kind(data: Any) -> type[RegraspCut | OutlineCut] | None:
     """The class of a file's cut, by the format it states."""
     form = data.get("format") if isinstance(data, dict) else None
     return FORMATS.get(form) if isinstance(form, str) else None
-
-
-def _data(path: Path) -> Any:
-    try:
-        return json.loads(text_of(path, "a cut in JSON"))
-    except (ValueError, RecursionError) as error:
-        raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from regrasp.errors import InvalidInput, shown
+from regrasp.files.plans.json_text import data_of
 from regrasp.files.plans.plan_schema import StoredPlan, StoredRecord, StoredRegrasp, StoredTransition
-from regrasp.files.source import naming, text_of
+from regrasp.files.source import naming
 from regrasp.files.staging import whole_file
 from regrasp.files.strict import validated
 from regrasp.mechanics.checks import array, file_path
@@ -60,16 +61,7 @@ def read_plan(path: str | Path) -> Transition | RegraspPlan | ChosenGrasp:
         InvalidInput: In one message, which names the file and what is wrong in it.
     """
     path = file_path(path)
-    text = text_of(path, "a plan in JSON")
-    try:
-        data = json.loads(text, object_pairs_hook=_unique)
-    except InvalidInput as error:
-        raise InvalidInput(f"{path}: {error}") from None
-    except RecursionError:
-        raise InvalidInput(f"{path}: not a plan: lists within lists, many hundreds deep") from None
-    except ValueError as error:
-        raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
-    return plan_of(data, path)
+    return plan_of(data_of(path, "a plan"), path)
 
 
 def plan_document(plan: Transition | RegraspPlan | ChosenGrasp, name: str | Path = "plan") -> dict[str, Any]:
@@ -113,15 +105,6 @@ def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan | 
     stored = validated(StoredPlan, data, name)
     with naming(name):
         return _plan(stored)
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A table of JSON, whose keys come once: of two values a reader would see either."""
-    table = dict(pairs)
-    if len(table) < len(pairs):
-        keys = [key for key, _ in pairs]
-        raise InvalidInput(f"the key {shown(max(keys, key=keys.count))} comes twice in one table")
-    return table
 
 
 def _regrasp_document(plan: RegraspPlan) -> dict[str, Any]:

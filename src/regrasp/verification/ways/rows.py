@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.sampling import verify_setpoints
+from regrasp.verification.ways.verdict import Moving
 
+_ROUNDING = 1e-12  # of the duration
 _SAME = 1e-9  # of the size of the grasps: places that are one
 
 
@@ -66,22 +68,27 @@ class MotionRowsVerification(ArrayValue):
         )
 
 
-def verify_motion_rows(plan: Any, rows: MovedRows) -> MotionRowsVerification:
+def verify_motion_rows(plan: Any, rows: MovedRows, ways: Moving | None = None) -> MotionRowsVerification:
     """Check rows of set-points against their plan.
 
     Forces at contacts hold the object and are the plan's, and there are none in the air; positions move as
     velocities say; a finger that is said to touch is at a contact of the plan, one radius off it, every
     contact of a step has a finger all through it, and two fingers, in space three, touch at every row. Tips
-    are not in one another. What the object's shape decides is a matter of ``verify_motions``.
+    are not in one another. What the shape decides is a matter of ``verify_motions``, which judges ways
+    between rows, too: with ``ways`` positions must be those of the ways at every row.
 
     Args:
         plan: the transition or regrasp that they are of.
         rows: as ``files.read_motions`` returns them.
+        ways: of the fingers, as ``plan_motions`` or ``files.read_ways`` returns them; not compared with if
+            not given.
     """
     steps = plan.steps if hasattr(plan, "steps") else (plan,)
     near = _SAME * max(step.grasp.size for step in steps)
     radius, on = _touched(steps, rows, near)
     violations = [*_jumps(rows, near), *_contacts(steps, rows, on), *_forces(steps, rows, on)]
+    if ways is not None:
+        violations += _off_ways(rows, ways, near)
     apart = [
         np.linalg.norm(rows.positions[:, i] - rows.positions[:, j], axis=1).min() - 2 * radius
         for i, j in combinations(range(rows.positions.shape[1]), 2)
@@ -91,6 +98,17 @@ def verify_motion_rows(plan: Any, rows: MovedRows) -> MotionRowsVerification:
         violations.append(f"two tips are in one another by {-to_fingers:.3g}")
     least = int(rows.touching.sum(axis=1).min())
     return MotionRowsVerification(tuple(violations), radius, to_fingers, least, rows.times.size)
+
+
+def _off_ways(rows: MovedRows, ways: Moving, near: float) -> Iterator[str]:
+    """Where rows are not on the ways, or last otherwise."""
+    if not abs(rows.times[-1] - ways.duration) <= _ROUNDING * ways.duration:
+        yield f"rows last {rows.times[-1]:.9g} s, the ways {ways.duration:.9g} s"
+        return
+    off = np.linalg.norm(rows.positions - ways.positions(np.minimum(rows.times, ways.duration)), axis=2)
+    if not off.max() <= near:  # which no number fails, too
+        k, i = np.unravel_index(off.argmax(), off.shape)
+        yield f"finger {i + 1} is {off[k, i]:.3g} off its way at {rows.times[k]:.6g} s"
 
 
 _On = dict[str, NDArray[np.bool_]]
