@@ -16,6 +16,7 @@ from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.placement.values import unit_of
 
 _CONE = 0.16  # lengths, as fractions of the outline's size
 _OTHERS = 0.04
@@ -42,9 +43,8 @@ def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Uni
     colours = contact_colours(chosen.grasp)
     for contact in chosen.grasp:
         _cone(ax, contact, _CONE * size, colours[contact.name or ""])
-    unit = {"N": units.force, "rad": "rad", "-": ""}[_UNITS.get(chosen.objective, "N")]
-    square = "$^2$" if chosen.objective == "effort" else ""
-    words = f"{chosen.objective} {short(chosen.value)}, bound {short(chosen.bound)} {unit}{square}".strip()
+    unit = units.of(unit_of(chosen.objective)).removeprefix("-")
+    words = f"{chosen.objective} {short(chosen.value)}, bound {short(chosen.bound)} {unit}".strip()
     handles = [Line2D([], [], marker="o", linestyle="none", color=INK, markersize=4, label=words)]
     if chosen.others:
         passed = Line2D([], [], marker="o", linestyle="none", color="white", markersize=3.5, label="others")
@@ -52,9 +52,6 @@ def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Uni
         handles.append(passed)
     legend(ax, handles, ncols=2)
     return ax
-
-
-_UNITS = {"friction_use": "-", "angle": "rad", "answered": "-"}
 
 
 def chosen_grasp_png(chosen: ChosenGrasp) -> bytes:

@@ -14,8 +14,8 @@ from regrasp.planning.placement.maps import PlacementMap
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.style import INK, NO_HOLD, SMALL, TEXT, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.placement.values import as_drawn, drawn_in
 
-_UNITS = {"friction_use": "-", "angle": "deg", "answered": "-"}
 _WORST = 90.0  # percentile of values that colours tell apart: the worst grow without end
 
 
@@ -30,7 +30,7 @@ def plot_placement_map(placements: PlacementMap, ax: Axes | None = None, *, unit
     instance(placements, "placements", PlacementMap)
     if placements.values.ndim != 2:
         raise InvalidInput("expected the map of two fingers; plot_placement_outline draws that of one")
-    length, values = placements.shape.length, _shown(placements, placements.values)
+    length, values = placements.shape.length, as_drawn(placements.objective, placements.values)
     ax = axes_or_new(ax, height=3.3)
     edges = _edges(placements.places, length)
     none = np.where(np.isnan(values), 0.0, np.nan)
@@ -60,7 +60,7 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(placements, "placements", PlacementMap)
-    shape, best = placements.shape, _shown(placements, placements.best)
+    shape, best = placements.shape, as_drawn(placements.objective, placements.best)
     ax = plot_outline(shape, ax, units=units)
     lows, highs = _ends(placements.places, shape.length)
     strokes = [shape.points(np.linspace(lo, hi, 9)) for lo, hi in zip(lows, highs, strict=True)]
@@ -93,11 +93,6 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
     return ax
 
 
-def _shown(placements: PlacementMap, values: Array) -> Array:
-    """In the unit that is written."""
-    return np.degrees(values) if placements.objective == "angle" else values
-
-
 def _colours(placements: PlacementMap, values: Array) -> dict[str, Any]:
     """Yellow is best; what is worse than most has the colour of the worst."""
     held = values[~np.isnan(values)]
@@ -115,9 +110,7 @@ def _bar(ax: Axes, drawn: Any, placements: PlacementMap, units: Units) -> None:
     )
     bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
     bar.outline.set_linewidth(0.6)
-    unit = _UNITS.get(
-        placements.objective, units.force + ("$^2$" if placements.objective == "effort" else "")
-    )
+    unit = units.of(drawn_in(placements.objective))
     bar.set_label(f"{placements.objective.replace('_', ' ')} [{unit}]", fontsize=TEXT)
 
 

@@ -13,6 +13,7 @@ from regrasp.mechanics.checks import Array, choice, instance, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.objectives import OBJECTIVES
 from regrasp.planning.surveys.held_directions import HeldDirections, held_directions
 from regrasp.plots.look.style import GREY, INK, PALETTE, SMALL, TEXT, legend, new_figure, refuse_space, short
 from regrasp.plots.look.units import SI, Units
@@ -70,7 +71,7 @@ def plot_directions(
     ax.tick_params(axis="y", labelcolor=INK)
     ax.grid(color=GREY, linewidth=0.4, alpha=0.5)
     ax.spines["polar"].set_linewidth(0.6)
-    unit = "deg" if objective == "angle" else units.force
+    unit = units.of({"rad": "deg"}.get(OBJECTIVES[objective].unit, OBJECTIVES[objective].unit))
     ax.set_xlabel("direction of the load in the object frame", fontsize=TEXT)
     key = [
         Line2D([], [], color=PALETTE[0], linewidth=1.6, label=f"least {objective} margin [{unit}]"),
@@ -96,7 +97,7 @@ def _margin(grasp: Grasp, size: float, angle: float, objective: str) -> float:
         value = choose_state(grasp, load, objective).value
     except Infeasible:
         return 0.0
-    return max(0.0, degrees(value) if objective == "angle" else value)
+    return max(0.0, degrees(value) if OBJECTIVES[objective].unit == "rad" else value)
 
 
 def _shade(ax: PolarAxes, held: HeldDirections, top: float) -> None:
