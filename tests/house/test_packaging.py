@@ -55,12 +55,28 @@ def test_dev_has_every_extra() -> None:
     assert named == sorted(extras.keys() - {"dev"})
 
 
-def test_the_source_archive_is_below_a_megabyte() -> None:
+def archived(archive: tarfile.TarFile) -> None:
+    """Fill an archive as the build does."""
+    target = SETTINGS["tool"]["hatch"]["build"]["targets"]["sdist"]
+    left_out = {ROOT / name.removeprefix("/") for name in target["exclude"]}
+    assert all(path.exists() for path in left_out)
+    for pattern in target["include"]:
+        found = sorted(ROOT.glob(pattern.removeprefix("/")))
+        assert found, f"nothing is {pattern}"
+        for path in found:
+            if path not in left_out:
+                archive.add(
+                    path, path.relative_to(ROOT), filter=lambda i: None if "__pycache__" in i.name else i
+                )
+
+
+def test_the_source_archive_is_below_a_megabyte_and_has_what_readme_leads_to() -> None:
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w:gz") as archive:
-        for pattern in SETTINGS["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]:
-            found = sorted(ROOT.glob(pattern.removeprefix("/")))
-            assert found, f"nothing is {pattern}"
-            for path in found:
-                archive.add(path, filter=lambda info: None if "__pycache__" in info.name else info)
+        archived(archive)
+        names = set(archive.getnames())
     assert 200e3 < packed.tell() < 1e6
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    links = set(re.findall(r"\]\(([\w./-]+\.md)", readme))
+    assert len(links) > 10
+    assert links <= names
