@@ -196,6 +196,36 @@ def test_plans_are_as_tolerant_as_their_worst_instant() -> None:
         rg.tolerances(plan, stiffness=[1.0, 2.0])
 
 
+def test_planar_closed_forms_are_what_a_search_finds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fingers with a stiffness each by direction, one of them idle or leaving, in states and plans."""
+    rng = np.random.default_rng(18)
+    compared = 0
+    for k in range(24):
+        grasp, load = (comfortable_pair, comfortable_triple)[k % 2](rng)
+        state = rg.choose_state(grasp, load, ("force", "effort")[k // 2 % 2])
+        springs = (None, rng.uniform(0.3, 3, len(grasp)), rng.uniform(0.3, 3, (len(grasp), 2)))[k % 3]
+        asked = {"stiffness": springs, "tip_radius": 0.05 * grasp.size}
+        found = rg.tolerances(state, **asked)
+        with monkeypatch.context() as patch:
+            patch.setitem(rg.tolerances.__globals__, "planar_forces", lambda view: None)
+            other = rg.tolerances(state, **asked)
+        for field in ("friction", "load", "tilt", "centre"):
+            ours, theirs = getattr(found.withstood, field), getattr(other.withstood, field)
+            assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-8), field
+            firsts = [each.first.get(field) for each in (found, other)]
+            assert firsts[0] == firsts[1] or firsts[0].how == firsts[1].how
+        assert found.withstood.position == pytest.approx(other.withstood.position, abs=1e-9 * grasp.size)
+        assert found.stiffness == pytest.approx(other.stiffness, abs=1e-12)
+        compared += np.isfinite(found.withstood.position).sum()
+    assert compared > 20
+    plan = removal()
+    found = rg.tolerances(plan)
+    monkeypatch.setitem(rg.tolerances.__globals__, "planar_forces", lambda view: None)
+    other = rg.tolerances(plan)
+    assert found.first == other.first
+    assert found.withstood.position == pytest.approx(other.withstood.position, rel=1e-7)
+
+
 def test_which_finger_fails_and_how_is_said() -> None:
     state = rg.choose_state(GRASP, LOAD, "force", max_force=12.0)
     found = rg.tolerances(state, max_force=12.01)

@@ -1,11 +1,11 @@
 """How far everything may be off: of a state, a transition or a whole regrasp."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import degrees, inf, pi
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness
 from regrasp.mechanics.value import ArrayValue
 from regrasp.planning.robustness.answered import Answered, some
 from regrasp.planning.robustness.least_stiffness import least_stiffness
+from regrasp.planning.robustness.planar import PlanarForces, planar_forces
 from regrasp.planning.robustness.views import Subject, View, names_of, views_of
 from regrasp.planning.robustness.withstood import (
     Failure,
@@ -220,6 +221,10 @@ def tolerances(
         np.broadcast_to(curved, len(names)),
         _REACH * max(view.grasp.size for view in views),
     )
+    if disturbance is None and not curved.any():
+        forces = [planar_forces(view) for view in views]
+        if None not in forces:
+            return _in_closed_form(asked, names, cast(list[PlanarForces], forces), tip_radius)
     _refuse_what_gives(asked)
     parts = {
         "friction": friction_factor(views, disturbance),
@@ -236,6 +241,37 @@ def tolerances(
     return Tolerances(
         names, Tolerated(**values, position=read_only(position)), kept, MappingProxyType(first), asked
     )
+
+
+def _in_closed_form(
+    asked: "Asked", names: tuple[str, ...], forces: Sequence[PlanarForces], tip_radius: float
+) -> Tolerances:
+    """The same of planar fingers without force limits, on flat surfaces."""
+    friction, others = (0.0, "", "", ""), dict.fromkeys(("load", "tilt", "centre"), (inf, "", "", ""))
+    position, off = [inf] * len(names), (inf, "", "", "")
+    for view, each in zip(asked.views, forces, strict=True):
+        own = view.grasp.names
+        used, k, how = each.friction()
+        if used > friction[0]:
+            friction = used, own[k], how, view.label
+        for key, (value, k, how) in (
+            ("load", each.largest_load()), ("tilt", each.tilt()), ("centre", each.centre()),
+        ):  # fmt: skip
+            if value < others[key][0]:
+                others[key] = value, own[k], how, view.label
+        for i, name in enumerate(own):
+            finger = each.fingers[i]
+            value, k, how = each.position(i) if finger.fx or finger.fy else (inf, 0, "")
+            at = names.index(name)
+            position[at] = min(position[at], value if value <= asked.reach else inf)
+            if value <= asked.reach and value < off[0]:
+                off = value, own[k], how, view.label
+    found = {"friction": friction, **others, "position": off}
+    first = {key: Failure(*rest) for key, (_, *rest) in found.items() if rest[1]}
+    kept = max(each.least_stiffness(tip_radius) for each in forces)
+    load, tilt, centre = (others[key][0] for key in ("load", "tilt", "centre"))
+    withstood = Tolerated(friction[0], load, tilt, centre, read_only(np.array(position)))
+    return Tolerances(names, withstood, kept, MappingProxyType(first), asked)
 
 
 def _refuse_what_gives(asked: Asked) -> None:
