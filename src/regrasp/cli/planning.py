@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
+from regrasp.cli.short_lived import uncollected
 from regrasp.cli.speech import called, json_option, say
 from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     help="Folder for the files.",
 )
 @json_option
+@uncollected
 def demo(output: Path) -> dict[str, Any]:
     """Work the paper's example.
 
@@ -69,6 +71,7 @@ def demo(output: Path) -> dict[str, Any]:
 )
 @click.option("--mcap", is_flag=True, help="Write plan.mcap, a ROS 2 bag; needs regrasp[ros].")
 @json_option
+@uncollected
 def plan(
     scenario: Path, output: Path, no_figures: bool, motions: bool, html: bool, mcap: bool
 ) -> dict[str, Any]:

@@ -7,6 +7,8 @@ from typing import IO, cast
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+_LEVEL = 3  # half the time of the default, a tenth more bytes
+
 
 def png(figure: Figure) -> bytes:
     """A figure as a PNG image.
@@ -27,6 +29,6 @@ def save_png(figure: Figure, to: str | PathLike[str] | IO[bytes]) -> None:
         to: a file name, or a file that is open.
     """
     if isinstance(figure.canvas, FigureCanvasAgg):
-        figure.canvas.print_png(to)  # type: ignore[no-untyped-call]
+        figure.canvas.print_png(to, pil_kwargs={"compress_level": _LEVEL})  # type: ignore[no-untyped-call]
     else:  # a window's
         figure.savefig(cast(str, to), format="png")
