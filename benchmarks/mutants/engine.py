@@ -115,7 +115,8 @@ class Engine:
                 builtins.__entered__ = entered.add  # type: ignore[attr-defined]
                 start = time.process_time()
                 if not _run(item):
-                    raise SystemExit(f"{item.nodeid} fails without a change")
+                    print(f"{item.nodeid} fails without a change, and is left out", flush=True)
+                    continue
                 taken = time.process_time() - start
                 kept[key] = {"test": key[0], "print": key[1], "entered": sorted(entered), "seconds": taken}
                 with self.kept.open("a") as file:
