@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from box import BOX, GOAL, MU, START
+from box import WEIGHT as BOX_WEIGHT
 from regrasp import plots
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
@@ -106,3 +108,27 @@ def test_bad_input():
         plots.plot_hold_map(graph, outline, 6)
     with pytest.raises(rg.InvalidInput, match="contact 'c1' is not on the outline"):
         plots.plot_hold_map(graph, rg.Outline.ellipse(2, 1.1))
+
+
+@pytest.mark.parametrize("o", [None, 0, -1])
+def test_in_space_a_pair_has_the_margin_of_its_best_third_finger(o):
+    problem = rg.RegraspProblem(BOX, START, GOAL, BOX_WEIGHT, MU, orientations=4, candidates=8)
+    graph = problem.graph
+    ax = plots.plot_hold_map(graph, o=o, plan=problem.plans()[0])
+    best = np.degrees(graph.margins.max(axis=0) if o is None else graph.margins[o])
+    count = len(graph.contacts)
+    for i, j in [(0, 1), (2, 7), (9, 4), (3, 3)]:
+        thirds = [k for k in range(count) if len({i, j, k}) == 3]
+        expected = max((best[graph.triple(i, j, k)] for k in thirds if i != j), default=-1.0)
+        assert shown_at(ax, i + 1, j + 1) == pytest.approx(max(expected, -1.0), abs=1e-4)
+    assert mesh(ax, "hold 1")
+
+
+def test_a_map_in_space_has_no_outline():
+    graph = rg.RegraspProblem(BOX, START, GOAL, BOX_WEIGHT, MU, orientations=1, candidates=4).graph
+    with pytest.raises(rg.InvalidInput, match="needs no outline"):
+        plots.plot_hold_map(graph, rg.Outline.ellipse(2, 1))
+    with pytest.raises(rg.InvalidInput, match="outline is missing"):
+        plots.plot_hold_map(graph_on(rg.Outline.ellipse(2, 1))[0])
+    with pytest.raises(rg.InvalidInput, match="graph must be a HoldGraph or a TripleGraph"):
+        plots.plot_hold_map(3)

@@ -7,6 +7,7 @@ import pytest
 
 import regrasp as rg
 from box import BOX, GOAL, MU, START, WEIGHT
+from regrasp import plots
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.planning.regrasps import planned
 
@@ -47,6 +48,17 @@ def staying(step):
 
 def turned(plan):
     return sum(abs(step.turn.angle) for step in plan.steps if step.turn is not None)
+
+
+def effort(plan):
+    """The sum over holds of the least largest force."""
+    holds = [[n for n in step.grasp.names if n not in step.idle_at_end] for step in plan.steps[:-1]]
+    states = [
+        rg.choose_state(rg.Grasp(step.grasp[n] for n in names), step.end.load, "peak", reserve=0)
+        for step, names in zip(plan.steps[:-1], holds, strict=True)
+        if len(names) < len(plan.steps[0].grasp)
+    ]
+    return sum(state.value for state in states)
 
 
 both = pytest.mark.parametrize("where", ["plane", "space"])
@@ -93,8 +105,21 @@ def test_weights(where):
     few = problem(where, **TURNED[where], weights=rg.RegraspWeights(moves=1)).plans()[0]
     assert turned(lazy) <= turned(usual) + 1e-9
     assert len(few.moves) == len(usual.moves)
+    light = checked(problem(where, weights=rg.RegraspWeights(moves=0, effort=1), orientations=4).plans()[0])
+    heavy = problem(where, orientations=4).plans()[0]
+    assert effort(light) <= effort(heavy) + 1e-6
     short = problem(where, **TURNED[where], weights=rg.RegraspWeights(moves=0, time=1)).plans()[0]
     assert len(short.steps) <= len(usual.steps)
+
+
+@both
+def test_hold_maps(where):
+    asked = problem(where)
+    ax = plots.plot_hold_map(asked.graph, ELLIPSE if where == "plane" else None, plan=asked.plans()[0])
+    assert {artist.get_gid() for artist in ax.get_children()} & {"path", "hold 1"}
+    widest = max(asked.graph.margins.max(), 0.0)
+    (drawn,) = (artist for artist in ax.get_children() if artist.get_gid() == "margins")
+    assert np.nanmax(np.ma.filled(drawn.get_array(), np.nan)) == pytest.approx(np.degrees(widest), abs=1e-4)
 
 
 @both

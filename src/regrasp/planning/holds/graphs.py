@@ -81,6 +81,19 @@ def holding(graph: AnyGraph) -> NDArray[np.bool_]:
     return graph.margins >= 0 if isinstance(graph, HoldGraph) else graph.holds
 
 
+def widest_of_pairs(graph: AnyGraph, o: int | None = None) -> Array:
+    """(V, V) the widest margin [rad] of any hold with both of two contacts; negative where there is none.
+
+    o: the place of an orientation; None for the best of all.
+    """
+    margins = np.asarray(graph.margins.max(axis=0) if o is None else graph.margins[o], dtype=np.float64)
+    result = np.full((len(graph.contacts),) * 2, -1.0)
+    members = Parts(graph).members
+    for a, b in combinations(range(members.shape[1]), 2):
+        np.maximum.at(result, (members[:, a], members[:, b]), margins)
+    return np.maximum(result, result.T)
+
+
 def turns_between(graph: AnyGraph) -> Array:
     """(O, O) turns of the object from one orientation to another [rad]."""
     if isinstance(graph, HoldGraph):

@@ -1,17 +1,18 @@
-"""The two-finger map: which two places on an outline hold the load, and how well."""
+"""The hold map: which two places on an outline, or contacts in space, hold the load, and how well."""
 
 from math import degrees
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
-from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
+from regrasp.planning.holds.graphs import widest_of_pairs
 from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.planning.holds.triples import TripleGraph
 from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plots.look.style import INK, NO_HOLD, PALETTE, SMALL, TEXT, axes_or_new, label_axis, note, short
 from regrasp.plots.look.units import SI, Units
@@ -24,8 +25,8 @@ _SPREAD = 1.5
 
 
 def plot_hold_map(
-    graph: HoldGraph,
-    outline: Outline,
+    graph: HoldGraph | TripleGraph,
+    outline: Outline | None = None,
     o: int | None = None,
     ax: Axes | None = None,
     *,
@@ -34,42 +35,37 @@ def plot_hold_map(
 ) -> Axes:
     """Margins of all two-finger holds: the place of one finger against that of the other along the outline.
 
+    In space, of a ``TripleGraph``, one contact against another by their numbers, with the margin of the best
+    hold of three fingers that has both.
+
     Args:
-        graph: whose contacts lie on the outline.
-        outline: the outline whose boundary the contacts lie on.
-        o: the place of one orientation in ``graph.angles``; by default the best margin over all of them is
-            shown. Grey: no hold; white: not sampled, as near corners.
+        graph: of a ``RegraspProblem``, or your own; in the plane its contacts lie on the outline.
+        outline: the outline whose boundary the contacts lie on; None in space.
+        o: the place of one orientation in ``graph.angles``, in space in ``graph.loads``; by default the best
+            margin over all of them is shown. Grey: no hold; white: not sampled, as near corners.
         ax: the axes to draw on; new ones if not given.
         plan: its holds of two fingers, drawn as a path from the square to the disc. An exchange is a line
             along one axis: the other finger stays. It moves through the air, so what the line crosses means
-            nothing.
+            nothing. In space a hold of three fingers is three discs with its number.
         units: what one unit of length, force and time is called; nothing is converted.
     """
-    instance(graph, "graph", HoldGraph)
-    instance(outline, "outline", Outline)
     if plan is not None:
         instance(plan, "plan", RegraspPlan)
-    if o is not None and not -len(graph.angles) <= o < len(graph.angles):
-        raise InvalidInput(f"o must be one of {len(graph.angles)} orientations, got {shown(o)}")
+    if not isinstance(graph, (HoldGraph, TripleGraph)):
+        raise InvalidInput(f"graph must be a HoldGraph or a TripleGraph, got {shown(graph)}")
+    if o is not None and not -len(graph.loads) <= o < len(graph.loads):
+        raise InvalidInput(f"o must be one of {len(graph.loads)} orientations, got {shown(o)}")
+    if isinstance(graph, TripleGraph):
+        if outline is not None:
+            raise InvalidInput("in space a hold map needs no outline; leave it out")
+        return _in_space(graph, None if o is None else o % len(graph.loads), ax, plan)
+    if outline is None:
+        raise InvalidInput("outline is missing; a hold map of the plane shows places along it")
+    instance(outline, "outline", Outline)
     places = np.array([_place(outline, contact) for contact in graph.contacts])
-    margins = graph.margins.max(axis=0) if o is None else graph.margins[o]
-    edges, values = _cells(places, outline.length, _square(graph, margins))
+    edges, values = _cells(places, outline.length, widest_of_pairs(graph, o))
     ax = axes_or_new(ax, height=3.3)
-    ax.pcolormesh(
-        edges,
-        edges,
-        np.where(values < 0, 0.0, np.nan),
-        cmap=ListedColormap([NO_HOLD]),
-        zorder=1,
-        gid="no hold",
-    )
-    held = np.degrees(np.where(values >= 0, values, np.nan))
-    top = degrees(max(float(margins.max()), 0.0)) or 1.0
-    mesh = ax.pcolormesh(edges, edges, held, cmap="viridis", vmin=0, vmax=top, zorder=1, gid="margins")
-    bar = ax.figure.colorbar(mesh, ax=ax, fraction=0.046, pad=0.03)
-    bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
-    bar.outline.set_linewidth(0.6)
-    bar.set_label("least angle margin [deg]", fontsize=TEXT)
+    _draw_margins(ax, edges, values)
     if plan is not None:
         _draw_path(ax, np.array(_path(plan, outline)).reshape(-1, 2))
     ax.set(xlim=(0, outline.length), ylim=(0, outline.length))
@@ -84,21 +80,56 @@ def plot_hold_map(
     return ax
 
 
+def _draw_margins(ax: Axes, edges: Array, values: Array) -> None:
+    """Cells of margins [rad], negative for no hold, NaN for not sampled, with a bar beside them."""
+    none = np.where(values < 0, 0.0, np.nan)
+    ax.pcolormesh(edges, edges, none, cmap=ListedColormap([NO_HOLD]), zorder=1, gid="no hold")
+    held = np.degrees(np.where(values >= 0, values, np.nan))
+    top = max(float(np.nanmax(np.degrees(values))), 0.0) or 1.0
+    mesh = ax.pcolormesh(edges, edges, held, cmap="viridis", vmin=0, vmax=top, zorder=1, gid="margins")
+    bar = ax.figure.colorbar(mesh, ax=ax, fraction=0.046, pad=0.03)
+    bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
+    bar.outline.set_linewidth(0.6)
+    bar.set_label("least angle margin [deg]", fontsize=TEXT)
+
+
+def _in_space(graph: TripleGraph, o: int | None, ax: Axes | None, plan: RegraspPlan | None) -> Axes:
+    """Contacts by their numbers; a plan's hold is the three cells of its pairs below the diagonal."""
+    count, ways = len(graph.contacts), len(graph.loads)
+    ax = axes_or_new(ax, height=3.3)
+    _draw_margins(ax, np.arange(count + 1) + 0.5, widest_of_pairs(graph, o))
+    numbers = {contact.name: k for k, contact in enumerate(graph.contacts, 1)}
+    seen: dict[tuple[float, float], list[str]] = {}
+    for k, names in enumerate(_held(plan) if plan else (), 1):
+        if not set(names) <= set(numbers):
+            raise InvalidInput(f"the plan's contacts {shown(names)} are not those of the graph")
+        i, j, m = sorted(numbers[name] for name in names)
+        corners = [(j, i), (m, i), (m, j)]
+        for at in corners:
+            seen.setdefault(at, []).append(str(k))
+        ax.plot(*zip(*corners, strict=True), "o", color=PATH, markersize=4, zorder=5, gid=f"hold {k}")
+    for at, words in seen.items():
+        note(ax, ", ".join(words), at, (1, 1), gap=4, color=INK)
+    ax.set_aspect("equal", adjustable="box")
+    ax.set_xlabel("one finger at contact", fontsize=TEXT)
+    ax.set_ylabel("another at", fontsize=TEXT)
+    title = f"best of {ways} load directions" if o is None else f"load direction {o + 1}"
+    ax.set_title(f"{title}, best third finger", fontsize=TEXT, loc="left")
+    return ax
+
+
+def _held(plan: RegraspPlan) -> list[tuple[str, ...]]:
+    """The contacts of every hold that leaves a finger free."""
+    every = [tuple(n for n in step.grasp.names if n not in step.idle_at_end) for step in plan.steps[:-1]]
+    return list(dict.fromkeys(names for names in every if len(names) == 3))
+
+
 def _place(outline: Outline, contact: Contact) -> float:
     """The arc length of a contact."""
     s = outline.nearest(contact.position + outline.centre_of_mass)
     if np.hypot(*(outline.points(s) - contact.position)) > _ON * outline.length:
         raise InvalidInput(f"contact {shown(contact.name)} is not on the outline")
     return s % outline.length
-
-
-def _square(graph: HoldGraph, margins: NDArray[np.float32]) -> Array:
-    """(V, V) symmetric margins; negative on the diagonal."""
-    count = len(graph.contacts)
-    result = np.full((count, count), -1.0)
-    first, second = graph.pairs
-    result[first, second] = result[second, first] = margins
-    return result
 
 
 def _cells(places: Array, length: float, values: Array) -> tuple[Array, Array]:
