@@ -350,7 +350,7 @@ def rows() -> dict[str, Row]:
                 "load": WEIGHT_IN_PLANE,
                 "friction": 0.5,
             },
-            {"outline": "value"},
+            {"outline": "value", "turns": "table", "forbidden": "numbers"},
         ),
         "OutlineCut.from_dict": Row(
             rg.OutlineCut.from_dict, {"data": on_outline(0.01).certificate.to_dict()}

@@ -192,7 +192,18 @@ def test_every_part_of_a_proof_is_needed():
 def test_cuts_of_others_that_are_none_are_not_taken(more):
     """As ``verify`` may see them, past the checks of ``OutlineCut``."""
     cut = parted().certificate
-    fields = ("vertices", "friction", "force", "start", "goal", "reached", "boxes", "twists")
+    fields = (
+        "vertices",
+        "friction",
+        "force",
+        "start",
+        "goal",
+        "reached",
+        "boxes",
+        "twists",
+        "turned",
+        "forbidden",
+    )
     foreign = SimpleNamespace(**{name: getattr(cut, name) for name in fields} | more)
     words = str(rg.verify(foreign))
     assert "a cut has three places" in words

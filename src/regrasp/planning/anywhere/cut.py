@@ -57,9 +57,7 @@ def excluded_boxes(
 
     None where not all are found to be excluded.
     """
-    todo = [
-        (one[0], other[0], *one[1:], *other[1:]) for one in arcs for other in _rest(len(holds.vertices), arcs)
-    ]
+    todo = [(one[0], other[0], *one[1:], *other[1:]) for one in arcs for other in _rest(holds, arcs)]
     points = [pair for pair in combinations(start, 2) if not any(is_in(p, arcs) for p in pair)]
     points += [pair for pair in combinations(goal, 2) if all(is_in(p, arcs) for p in pair)]
     todo += [(p[0], q[0], p[1], p[1], q[1], q[1]) for p, q in points]
@@ -71,7 +69,9 @@ def excluded_boxes(
             return None
         table = np.array(todo)
         sides = table[:, :2].astype(np.intp)
-        sure, found = excluding_twists(holds.vertices, holds.friction, holds.force, sides, table[:, 2:])
+        sure, found = excluding_twists(
+            holds.vertices, holds.friction, holds.forces[[0, -1]], sides, table[:, 2:]
+        )
         boxes += [box for box, known in zip(todo, sure, strict=True) if known]
         twists += found[sure].tolist()
         todo = [
@@ -82,10 +82,10 @@ def excluded_boxes(
     return boxes, twists
 
 
-def _rest(count: int, arcs: list[Arc]) -> list[Arc]:
-    """What the arcs, in rising order, leave of every side."""
+def _rest(holds: HoldMap, arcs: list[Arc]) -> list[Arc]:
+    """What the arcs, in rising order, leave of every side that fingers may touch."""
     rest = []
-    for side in range(count):
+    for side in np.flatnonzero(holds.free).tolist():
         at = 0.0
         for _, lo, hi in (arc for arc in arcs if arc[0] == side):
             if lo > at:

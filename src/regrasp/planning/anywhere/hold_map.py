@@ -16,15 +16,27 @@ from regrasp.planning.anywhere.twists import excluding_twists
 TIE = 1e-9
 """Fractions of a side, and of the square of two sides, nearer than this are not told apart."""
 
+MOST_REGIONS, MOST_LINKS = 20_000, 2_000_000
+"""Of a map, and pairs of regions that overlap on a side; beyond, the answer is open."""
+
+
+class TooLarge(Exception):
+    """A map of more regions, or of more that overlap, than are kept in memory."""
+
+
 Place = tuple[int, float]
 """A side of the outline, and the fraction of it passed."""
 
 
 class Region(NamedTuple):
-    """Two fingers on two sides hold the load within a convex polygon of fractions."""
+    """Two fingers on two sides hold the load within a convex polygon of fractions.
+
+    turn: the place of the load's force among those of the map.
+    """
 
     sides: tuple[int, int]
     polygon: Polygon
+    turn: int = 0
 
     def span(self, axis: int) -> tuple[float, float]:
         """The projection on one of the sides."""
@@ -53,28 +65,39 @@ class Region(NamedTuple):
 
 @dataclass(frozen=True)
 class HoldMap:
-    """All regions of a polygon [any unit of length], one friction and one force."""
+    """All regions of a polygon [any unit of length], one friction, and forces in some orientations.
+
+    forces: (k, 2), seen from the object, by its turn. free: (n,) which sides fingers may touch.
+    """
 
     vertices: Array
     friction: float
-    force: Array
+    forces: Array
+    free: np.ndarray
     regions: tuple[Region, ...]
 
     @classmethod
-    def of(cls, vertices: Array, friction: float, force: Array) -> "HoldMap":
-        """The map, whose pairs of sides are looked at only where no twist excludes them whole."""
+    def of(cls, vertices: Array, friction: float, forces: Array, free: np.ndarray | None = None) -> "HoldMap":
+        """The map, whose pairs of sides are looked at only where no twist excludes them whole.
+
+        Raises ``TooLarge`` beyond ``MOST_REGIONS``.
+        """
+        forces = np.reshape(forces, (-1, 2))
+        free = np.ones(len(vertices), dtype=np.bool_) if free is None else free
         size = float(np.hypot(*vertices.T).max())
         pairs = np.stack(np.triu_indices(len(vertices)), axis=1)
+        pairs = pairs[free[pairs].all(axis=1)]
         none, _ = excluding_twists(
-            vertices, friction, force, pairs, np.tile([0.0, 1.0, 0.0, 1.0], (len(pairs), 1))
+            vertices, friction, forces[[0, -1]], pairs, np.tile([0.0, 1.0, 0.0, 1.0], (len(pairs), 1))
         )
-        sides = sides_across(vertices / size, friction, (force / np.hypot(*force)).tolist())
-        found = [
-            Region((i, j), polygon)
-            for i, j in pairs[~none].tolist()
-            for polygon in hold_polygons(sides[i], sides[j], TIE)
-        ]
-        return cls(vertices, friction, force, tuple(found))
+        found: list[Region] = []
+        for turn, force in enumerate(forces):
+            sides = sides_across(vertices / size, friction, (force / np.hypot(*force)).tolist())
+            for i, j in pairs[~none].tolist():
+                found += [Region((i, j), each, turn) for each in hold_polygons(sides[i], sides[j], TIE)]
+                if len(found) > MOST_REGIONS:
+                    raise TooLarge
+        return cls(vertices, friction, forces, free, tuple(found))
 
     def spans(self) -> list[tuple[int, float, float, int, int]]:
         """Side, least and largest fraction, region and finger, in rising order."""
@@ -85,7 +108,11 @@ class HoldMap:
         )
 
     def neighbours(self, overlap: float) -> list[set[int]]:
-        """Of every region those that share more than an overlap with it, on some side."""
+        """Of every region those that share more than an overlap with it, on some side.
+
+        Raises ``TooLarge`` beyond ``MOST_LINKS``.
+        """
+        links = 0
         result: list[set[int]] = [set() for _ in self.regions]
         spans = self.spans()
         for k, (side, _, hi, region, _) in enumerate(spans):
@@ -95,6 +122,9 @@ class HoldMap:
                 if other != region and top > lo + overlap:
                     result[region].add(other)
                     result[other].add(region)
+                    links += 1
+                    if links > MOST_LINKS:
+                        raise TooLarge
         return result
 
     def at(self, one: Place, other: Place, room: float) -> list[tuple[int, tuple[float, float]]]:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from regrasp.display import Pictured
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
@@ -9,14 +11,14 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.anywhere.cut import MOST_BOXES
-from regrasp.planning.anywhere.hold_map import TIE
+from regrasp.planning.anywhere.hold_map import MOST_LINKS, MOST_REGIONS, TIE
 from regrasp.planning.anywhere.walk import MOST_HOLDS
 from regrasp.plans.outline_cut import OutlineCut
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OutlineRegrasps(ArrayValue, Pictured):
-    """The map of all holds of two fingers on an outline at one orientation, and whether a regrasp exists.
+    """The map of holds of two fingers on an outline, and whether a regrasp exists.
 
     Args:
         outline: a polygon.
@@ -25,14 +27,18 @@ class OutlineRegrasps(ArrayValue, Pictured):
         load: seen from the object [N].
         friction: of all fingers [-].
         exists: whether any regrasp leads from start to goal; None where that is open: places or regions
-            within 1e-9 of a side or on a boundary, more than 5,000 holds on the way, or more than 20,000
-            boxes of a proof.
+            within 1e-9 of a side or on a boundary, more than 5,000 holds on the way, more than 20,000 boxes
+            of a proof, more than 20,000 regions, or two million pairs of them that overlap.
         regions: convex polygons (m, 2) in the arc lengths of two fingers [m]: all holds, but for those that
             are only a line on the map, where one finger carries the whole load. The mirror image of each,
-            fingers exchanged, holds too.
+            fingers exchanged, holds too. Where the object turns those of several orientations.
         components: of each region, a number; regrasps lead from a region to all others of its component.
         walk: (h, 2) arc lengths of the holds of a regrasp, each sharing one with the next [m]; empty without.
         certificate: the proof that none exists, for ``verify``; None without.
+        angles: (h,) of the object in the holds of the walk [rad].
+        exchanges: the fewest exchanges of a finger that any walk has, but for near ties, and those of this
+            one; None without a walk. Where the object turns, of walks at the orientations looked at.
+        turns: the least and the largest angle of the object [rad].
     """
 
     outline: Outline
@@ -45,6 +51,9 @@ class OutlineRegrasps(ArrayValue, Pictured):
     components: tuple[int, ...]
     walk: Array
     certificate: OutlineCut | None
+    angles: Array
+    exchanges: tuple[int, int] | None
+    turns: tuple[float, float]
 
     _drawn_by = "regrasp.plots.regrasps.outline_map:outline_map_png"
 
@@ -55,11 +64,16 @@ class OutlineRegrasps(ArrayValue, Pictured):
         )
 
     def __str__(self) -> str:
+        lo, hi = np.degrees(self.turns)
+        at = "at this orientation" if lo == hi else f"while the object turns within {lo:.4g} to {hi:.4g} deg"
         if self.exists is None:
             return (
                 f"open: start or goal is within {TIE:g} of where holds end, or a way takes more than "
-                f"{MOST_HOLDS} holds, or a proof more than {MOST_BOXES} boxes"
+                f"{MOST_HOLDS:,} holds, a proof more than {MOST_BOXES:,} boxes, or the map has more than "
+                f"{MOST_REGIONS:,} regions, or {MOST_LINKS:,} pairs of them that overlap"
             )
         if self.exists:
-            return f"a regrasp exists on this outline at this orientation, through {len(self.walk)} holds"
-        return f"no regrasp exists on this outline at this orientation: {self.certificate}"
+            least, most = self.exchanges or (0, 0)
+            count = f"{most} exchanges" if least == most else f"{most} exchanges, {least} at the least"
+            return f"a regrasp exists on this outline {at}, through {len(self.walk)} holds by {count}"
+        return f"no regrasp exists on this outline {at}: {self.certificate}"

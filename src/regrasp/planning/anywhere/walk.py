@@ -8,7 +8,8 @@ MOST_HOLDS = 5_000
 """Of a walk; regions so thin that they take more leave the answer open."""
 _SHARE = 0.75  # of the way to a boundary that an exchange goes
 
-Hold = tuple[Place, Place]
+Hold = tuple[Place, Place, int]
+"""Two places, and the place of the load's force among those of the map."""
 At = tuple[float, float]
 
 
@@ -68,4 +69,4 @@ def _share(region: Region, here: At, way: At, axis: int) -> float:
 
 
 def _hold(region: Region, at: At) -> Hold:
-    return (region.sides[0], at[0]), (region.sides[1], at[1])
+    return (region.sides[0], at[0]), (region.sides[1], at[1]), region.turn

@@ -91,7 +91,8 @@ def widest_of_pairs(graph: AnyGraph, o: int | None = None) -> Array:
     members = Parts(graph).members
     for a, b in combinations(range(members.shape[1]), 2):
         np.maximum.at(result, (members[:, a], members[:, b]), margins)
-    return np.maximum(result, result.T)
+    both: Array = np.maximum(result, result.T)
+    return both
 
 
 def turns_between(graph: AnyGraph) -> Array:

@@ -97,7 +97,7 @@ def _in_space(graph: TripleGraph, o: int | None, ax: Axes | None, plan: RegraspP
     """Contacts by their numbers; a plan's hold is the three cells of its pairs below the diagonal."""
     count, ways = len(graph.contacts), len(graph.loads)
     ax = axes_or_new(ax, height=3.3)
-    _draw_margins(ax, np.arange(count + 1) + 0.5, widest_of_pairs(graph, o))
+    _draw_margins(ax, 0.5 + np.arange(count + 1.0), widest_of_pairs(graph, o))
     numbers = {contact.name: k for k, contact in enumerate(graph.contacts, 1)}
     seen: dict[tuple[float, float], list[str]] = {}
     for k, names in enumerate(_held(plan) if plan else (), 1):
@@ -108,8 +108,8 @@ def _in_space(graph: TripleGraph, o: int | None, ax: Axes | None, plan: RegraspP
         for at in corners:
             seen.setdefault(at, []).append(str(k))
         ax.plot(*zip(*corners, strict=True), "o", color=PATH, markersize=4, zorder=5, gid=f"hold {k}")
-    for at, words in seen.items():
-        note(ax, ", ".join(words), at, (1, 1), gap=4, color=INK)
+    for cell, words in seen.items():
+        note(ax, ", ".join(words), cell, (1, 1), gap=4, color=INK)
     ax.set_aspect("equal", adjustable="box")
     ax.set_xlabel("one finger at contact", fontsize=TEXT)
     ax.set_ylabel("another at", fontsize=TEXT)

@@ -2,7 +2,9 @@
 
 A finger anywhere between two ends of a straight side makes only sums of the edges of its cone at both ends,
 so a box of two stretches is excluded by a twist that does no negative work with any of these eight wrenches
-while the load does positive work. Normals are not normalised: cones are the same for every length of them.
+while the load does positive work. Where it does at both ends of a turn of less than half a turn it does
+between, for the load there is a sum of both. Normals are not normalised: cones are the same for every
+length of them.
 """
 
 from collections.abc import Iterator
@@ -37,6 +39,14 @@ class OutlineCut(Protocol):
         """(2,) on the object [N]."""
 
     @property
+    def turned(self) -> Array | None:
+        """(2,) at the other end of the turn [N]."""
+
+    @property
+    def forbidden(self) -> Array:
+        """Sides that no finger touches."""
+
+    @property
     def start(self) -> Array:
         """(3, 2) sides and fractions."""
 
@@ -58,25 +68,38 @@ class OutlineCut(Protocol):
 
 
 def verify_outline_cut(cut: OutlineCut) -> Verification:
-    """Whether no regrasp on this outline leads from the start to the goal at this orientation."""
+    """Whether no regrasp on this outline leads from the start to the goal at these orientations."""
     if not _is_formed(cut):
         words = "a cut has three places at either end and a twist for every box, all on sides of its outline"
         return Verification((words,), inf, 0.0, -inf)
     judged = _Cut(cut)
     broken = [] if judged.is_counter_clockwise() else ["the vertices do not run counter-clockwise"]
-    broken += [*judged.twists_at_work(), *judged.ends(), *judged.gaps()]
+    broken += [*judged.turn(), *judged.twists_at_work(), *judged.ends(), *judged.gaps()]
     return Verification(tuple(broken), 0.0, inf, inf, excluded=len(cut.boxes))
 
 
 def _is_formed(cut: OutlineCut) -> bool:
     """Whether sides, fractions and counts are such that the rest can be judged."""
     count = len(cut.vertices)
-    tables = (cut.vertices, cut.force, cut.twists, cut.start, cut.goal, cut.reached, cut.boxes)
+    forbidden, turned = np.asarray(cut.forbidden, dtype=float), _turned(cut)
+    tables = (
+        cut.vertices,
+        cut.force,
+        turned,
+        forbidden,
+        cut.twists,
+        cut.start,
+        cut.goal,
+        cut.reached,
+        cut.boxes,
+    )
     sides = [cut.start[:, :1], cut.goal[:, :1], cut.reached[:, :1], cut.boxes[:, :2]]
     fractions = [cut.start[:, 1:], cut.goal[:, 1:], cut.reached[:, 1:], cut.boxes[:, 2:]]
     return (
         all(np.isfinite(table).all() for table in tables)
         and cut.friction > 0
+        and np.shape(turned) == np.shape(cut.force) == (2,)
+        and bool(np.isin(forbidden, np.arange(count)).all())
         and len(cut.start) == len(cut.goal) == 3
         and len(cut.boxes) == len(cut.twists)
         and all(((s >= 0) & (s < count) & (s == np.floor(s))).all() for s in sides)
@@ -84,12 +107,18 @@ def _is_formed(cut: OutlineCut) -> bool:
     )
 
 
+def _turned(cut: OutlineCut) -> Array:
+    return cut.force if cut.turned is None else cut.turned
+
+
 class _Cut:
     """A cut in rationals."""
 
     def __init__(self, cut: OutlineCut) -> None:
         self.points = [exact(p) for p in cut.vertices.tolist()]
-        self.friction, self.force = Fraction(cut.friction), [*exact(cut.force.tolist()), Fraction(0)]
+        self.friction = Fraction(cut.friction)
+        self.forces = [[*exact(force.tolist()), Fraction(0)] for force in (cut.force, _turned(cut))]
+        self.forbidden = {int(side) for side in np.asarray(cut.forbidden).tolist()}
         self.start, self.goal = (
             [(int(i), Fraction(f)) for i, f in end.tolist()] for end in (cut.start, cut.goal)
         )
@@ -109,13 +138,19 @@ class _Cut:
         after = [*self.points[1:], self.points[0]]
         return sum((cross(p, q)[0] for p, q in zip(self.points, after, strict=True)), Fraction(0)) > 0
 
+    def turn(self) -> Iterator[str]:
+        """Loads at the ends of a turn that is half a turn: between them it may be from either side."""
+        one, other = self.forces
+        if cross(one, other)[2] == 0 and dot(one, other) <= 0:
+            yield "the ends of the turn are half a turn apart"
+
     def twists_at_work(self) -> Iterator[str]:
         """Boxes that their twists do not exclude."""
         for k, ((i, j), (a, b, c, d), y) in enumerate(
             zip(self.sides, self.boxes, self.twists, strict=True), 1
         ):
             places = ((i, a), (i, b), (j, c), (j, d))
-            if dot(y, self.force) <= 0:
+            if any(dot(y, force) <= 0 for force in self.forces):
                 yield f"box {k}: the load does no work along its twist"
             elif any(dot(y, w) < 0 for place in places for w in self.edges(place)):
                 yield f"box {k}: some force of a finger in it opposes its twist"
@@ -159,6 +194,8 @@ class _Cut:
 
     def rest(self, side: int) -> list[Span]:
         """What the reached arcs leave of a side, ends included."""
+        if side in self.forbidden:
+            return []
         rest, at = [], Fraction(0)
         for lo, hi in sorted(self.arcs.get(side, [])):
             if lo > at:
