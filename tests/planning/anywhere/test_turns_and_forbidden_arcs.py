@@ -58,7 +58,7 @@ def within(arcs, places):
 
 
 def test_samples_have_no_way_that_is_denied_nor_a_shorter_one():
-    rng = np.random.default_rng(1)
+    rng = np.random.default_rng(8)
     seen = Counter()
     while seen["tasks"] < 60:
         friction, angle = float(rng.uniform(0.02, 0.2)), rng.uniform(0, 2 * np.pi)

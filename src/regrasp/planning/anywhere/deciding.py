@@ -151,7 +151,7 @@ def _fewest(
     least = len(low) if low is not None else 0
     for room in _ROOMS:  # well inside regions, if that takes no more
         layers = fewest_layers(holds, start, goal, room)
-        few = fewest_walk(holds, start, goal, layers, room) if layers else None
+        few = None if layers is None else fewest_walk(holds, start, goal, layers, room)
         if few is not None and len(few) < len(walk) and _held(holds, few):
             walk = few
         if len(walk) - 1 <= least:

@@ -41,6 +41,10 @@ def fewest_walk(
     holds: HoldMap, start: tuple[Place, ...], goal: tuple[Place, ...], layers: list[Layer], room: float
 ) -> list[Hold] | None:
     """A walk through such layers: a hold of the start, one through each layer, a hold of the goal."""
+    if not layers:
+        every = {frozenset(pair): pair for pair in _held(holds, start, room)}
+        both = next(every[key] for pair in _held(holds, goal, room) if (key := frozenset(pair)) in every)
+        return [(*both, _turn(holds, both, room))]
     last = next(
         (pair for pair in _held(holds, goal, room) if any(_has(layers[-1], p, room) for p in pair)), None
     )
