@@ -12,6 +12,7 @@ from scipy.optimize import linprog
 
 import regrasp as rg
 from invariance import Frame, frames
+from regrasp.planning.surveys.extremes import load_reach
 from space import random_grasp, random_rotation, rotated, soft_random
 from strategies import held_pairs, held_triples
 
@@ -209,6 +210,44 @@ def test_largest_load_against_linear_programs(pair, angle: float, turn: float) -
     assert upper >= -answer.fun * (1 - 1e-7)
     assert found.state.is_balanced(reserve=0.0)
     np.testing.assert_allclose(found.state.load.vector, found.load.vector, rtol=1e-9, atol=1e-9)
+
+
+def test_two_planar_contacts_in_closed_form_against_the_programs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Any contacts, loads and bases; programs may miss what they say, never say more than the formula."""
+    rng = np.random.default_rng(7)
+    compared = {"bounded": 0, "unbounded": 0, "none": 0}
+    for k in range(45):
+        grasp = facing(0.4) if k % 9 == 0 else rg.Grasp(
+            rg.Contact(rng.normal(size=2), rng.normal(size=2), rng.uniform(0.1, 1.5)) for _ in range(2)
+        )  # fmt: skip
+        direction, base = (rg.Wrench(rng.normal(size=2), rng.normal()) for _ in range(2))
+        answers = []
+        for quick in (True, False):
+            with monkeypatch.context() as patch:
+                if not quick:
+                    patch.setattr(f"{load_reach.__name__}.reach_of_two", lambda *given: None)
+                try:
+                    found = rg.largest_load(grasp, direction, base if k % 2 else None)
+                    answers.append((found.factor, found.bounds[1], found.escape is None))
+                except rg.Infeasible:
+                    answers.append(None)
+                try:
+                    centres = rg.held_centres(grasp, direction)
+                    answers.append((centres.size, centres.is_bounded))
+                except rg.Infeasible:
+                    answers.append(None)
+        load, centres, other_load, other_centres = answers
+        assert (load is None) == (other_load is None)
+        if load is not None:
+            assert load[:2] == pytest.approx(other_load[:2], rel=1e-6, abs=1e-7)
+            assert load[2] == other_load[2]
+        assert other_centres is None or centres is not None
+        if centres is not None and other_centres is not None:
+            assert centres[0] >= other_centres[0] * (1 - 1e-6)
+            assert centres[1] == other_centres[1]
+        kind = "none" if load is None else "unbounded" if load[0] == inf else "bounded"
+        compared[kind] += 1
+    assert min(compared.values()) >= 2
 
 
 def test_largest_load_against_cone_programs() -> None:

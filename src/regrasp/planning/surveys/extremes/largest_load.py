@@ -75,9 +75,9 @@ def largest_load(
         grasp: the contacts that hold.
         direction: of the load, object frame, of any length but zero.
         base: external wrench that stays as it is, object frame [N, N m].
-        max_force: limits every force besides the contacts' own limits [N]. Friction counts in full. By one
-            conic program; its forces prove the factor from below and its dual the bound from above, both
-            checked.
+        max_force: limits every force besides the contacts' own limits [N]. Friction counts in full. Of two
+            planar contacts without limits in closed form, else by one conic program; forces prove the factor
+            from below and a twist, the program's dual, the bound from above, both checked.
 
     Raises:
         Infeasible: Where no factor above 0 is held and the base is not.
@@ -102,7 +102,8 @@ def largest_load(
     held = None
     if k is not None and not found.is_unbounded:
         found = found._replace(k=np.zeros(1)) if abs(k[0]) < _NOTHING else found
-        held = held_state(grasp, start, along, found, np.zeros(1), scaled, unit)
+        if found.k is not None and found.k[0] >= 0:
+            held = held_state(grasp, start, along, found, np.zeros(1), scaled, unit)
     if held is None:  # there may still be one factor, where base and direction cancel
         reason = infeasible(
             grasp, direction if base is None else base, Criteria("effort", max_force, reserve=0.0)

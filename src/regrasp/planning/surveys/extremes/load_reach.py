@@ -22,6 +22,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.linear.row_duals import counted
 from regrasp.planning.states.separation import cleared
 from regrasp.planning.states.solving import SLACK, Chooser
+from regrasp.planning.surveys.extremes.reach_of_two import reach_of_two
 from regrasp.programs import Program, Rows, Solution, Status, solve
 
 # Work against a twist below this fraction of its speed per newton is rounding of the twist.
@@ -63,6 +64,10 @@ def farthest(
     n, w = len(grasp), grasp.width
     p = directions.shape[1]
     t = n * w
+    if (n, w, p) == (2, 2, 1) and grasp.limit_rows is None and min(limits) == inf:
+        two = reach_of_two(grasp, base, directions[:, 0], float(np.sign(cost[0])), most)
+        if two is not None:
+            return Reached(np.array([two.k]), two.forces, two.twist, two.is_unbounded)
     weight = 1 / grasp.lengths
     rows = Rows(t + p)
     along, start = directions * weight[:, None], base * weight
