@@ -301,12 +301,6 @@ def test_rates_are_those_of_forces_without_torques() -> None:
         assert (said(plan) == "") == good
 
 
-def test_a_straight_path_promises_no_rates() -> None:
-    plan = Plan(*FINGERS, record=Record(rate_limits=(inf, inf, inf, 1e9)))
-    assert said(plan) == "a straight path promises no rates, this one promises 1e+09 for D"
-    assert said(Plan(*FINGERS, record=Record(rate_limits=(inf,) * 4))) == ""
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

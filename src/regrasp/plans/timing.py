@@ -28,6 +28,8 @@ from regrasp.mechanics.value import ArrayValue, numbers
 # Three tenths of a second added up are 0.30000000000000004 s.
 _ROUNDING = 2.0**-50
 
+_DEGREES = 20  # of splines whose steepest slope is found to rounding
+
 _LARGEST = float(np.finfo(float).max)
 
 PAPER_CONTROL = (1.0, 1.0, 0.5, 0.0, 0.0)
@@ -44,7 +46,7 @@ class TimeScaling(ArrayValue):
     Args:
         duration: [s], greater than 0.
         control: (k,) control values.
-        degree: of the polynomial pieces, at most k - 1.
+        degree: of the polynomial pieces, at most k - 1 and at most 20.
 
     Raises:
         InvalidInput: For control values that rise or do not fall from 1 to 0, and another degree or duration.
@@ -60,8 +62,9 @@ class TimeScaling(ArrayValue):
         falls = all(a >= b for a, b in pairwise(values))
         if len(values) < 2 or values[0] != 1 or values[-1] != 0 or not falls:
             raise InvalidInput(f"control values must fall from 1 to 0, got {values}")
-        if not 1 <= whole(self.degree, "degree", least=0) < len(values):
-            raise InvalidInput(f"degree must be from 1 to {len(values) - 1}, got {shown(self.degree)}")
+        highest = min(len(values) - 1, _DEGREES)
+        if not 1 <= whole(self.degree, "degree", least=0) <= highest:
+            raise InvalidInput(f"degree must be from 1 to {highest}, got {shown(self.degree)}")
         if duration * _LARGEST < len(values) ** 2:  # a bound on duration |T'|
             raise InvalidInput(f"duration is {shown(duration)} s, in which T falls faster than any number")
         object.__setattr__(self, "degree", int(self.degree))
@@ -185,11 +188,7 @@ class TimeScaling(ArrayValue):
             share = a[turns] / (a[turns] - b[turns])
             candidates = np.concatenate([knots, knots[turns] + share * np.diff(knots)[turns]])
         elif self.degree > 3:
-            from scipy.interpolate import BSpline, PPoly
-
-            bend = self._splines[2]
-            roots = PPoly.from_spline(BSpline(bend.knots, bend.control, bend.degree)).roots(extrapolate=False)
-            candidates = np.concatenate([knots, roots[np.isfinite(roots)]])
+            candidates = np.concatenate([knots, self._splines[2].roots()])
         inside = candidates[(candidates >= 0) & (candidates <= 1)]
         return float(abs(slope(inside)).max()) / self.duration
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from regrasp.display import Pictured
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, instance, number
+from regrasp.mechanics.checks import Array, ArrayLike, instance, limits, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
@@ -268,17 +268,22 @@ class Transition(ArrayValue, Documented, Pictured):
             raise InvalidInput(
                 "a path planned through instants keeps its times; plan it with another duration"
             )
-        return replace(self, scaling=scaling)
+        kept = replace(self.record, rate_limits=()) if self.record.rate_limits else self.record
+        return replace(self, scaling=scaling, record=kept)
 
     def fastest(self, rate_limit: ArrayLike) -> "Transition":
         """The same path and shape in the least time with |f_i'(t)| <= rate_limit, a number or (n,) [N/s].
 
-        Of a turn to the bound that ``steepest`` is.
+        Of a turn to the bound that ``steepest`` is. The record of a straight path keeps the limits.
 
         Args:
             rate_limit: a number or (n,), greater than 0 [N/s].
         """
-        return self.retimed(TimeScaling.fastest(self._steepest[:, None], rate_limit, self.scaling))
+        plan = self.retimed(TimeScaling.fastest(self._steepest[:, None], rate_limit, self.scaling))
+        if self.turn is not None:
+            return plan
+        kept = limits(rate_limit, "rate_limit", len(self.grasp))
+        return replace(plan, record=replace(plan.record, rate_limits=tuple(kept.tolist())))
 
     def to_dataframe(self, rate: float = 1000.0) -> "pandas.DataFrame":
         """Set-points as a table: index t [s], a column ``<name>_fx`` ... per contact and axis [N].

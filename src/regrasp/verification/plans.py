@@ -122,7 +122,8 @@ def verify(
         curvature = number(curvature, "curvature", least=0)
     given = disturbance, stiffness, friction, position, surface, early_loss
     asked = Asked.of(plan.start.grasp, *given)
-    violations = check_idle(plan) + _check_scaling(plan)
+    untimed = _check_scaling(plan)
+    violations = check_idle(plan) + untimed
     if plan.start.grasp != plan.end.grasp:
         violations.append("start and end have different contacts")
         return Verification(tuple(violations), *_NO_FORM)
@@ -135,7 +136,7 @@ def verify(
     violations += found.violations
     if found.worst_residual == inf:  # not of the form that the checks below take for granted
         return Verification(tuple(violations), *found[1:])
-    violations += check_record(plan)
+    violations += [] if untimed else check_record(plan)
     if asked is not None:
         violations += check_withstood(plan, asked)
     gap, proven = None, False
@@ -198,7 +199,9 @@ def _check_scaling(plan: Plan) -> list[str]:
     duration, control = scaling.duration, scaling.control
     if len(control) < 2 or not all(map(isfinite, control)):
         return ["time scaling needs two control values or more, all of them numbers"]
-    broken = []
+    broken, degree = [], getattr(scaling, "degree", 1)
+    if not isinstance(degree, int) or not 1 <= degree < len(control):
+        broken.append(f"time scaling is of degree {shown(degree)}, not from 1 to {len(control) - 1}")
     if control[0] != 1 or control[-1] != 0:
         broken.append(f"time scaling runs from {control[0]:g} to {control[-1]:g}, not from 1 to 0")
     if min(control) < 0 or max(control) > 1:

@@ -9,6 +9,7 @@ from regrasp.errors import shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import one_line
 from regrasp.verification.exact import RESOLUTION, dot, exact, root, rounded
+from regrasp.verification.falling import steepest
 from regrasp.verification.protocols import Plan
 
 
@@ -95,8 +96,14 @@ def _check_choices(plan: Plan) -> list[str]:
 def _check_rate(plan: Plan, i: int, name: str, limit: float) -> list[str]:
     """Whether the force of contact i changes no faster than ``limit`` [N/s]."""
     course, d = plan.course, plan.start.grasp.dimension
+    if plan.turn is not None:
+        return [f"a turning path promises no rates, this one promises {limit:.9g} for {name}"]
     if course is None:
-        return [f"a straight path promises no rates, this one promises {limit:.9g} for {name}"]
+        ends = (exact(state.forces[i, :d].tolist()) for state in (plan.start, plan.end))
+        change = [x - y for x, y in zip(*ends, strict=True)]
+        most = Fraction(limit) * Fraction(plan.scaling.duration) * (1 + RESOLUTION)
+        fast = dot(change, change) * steepest(plan.scaling) ** 2 > most**2
+        return [f"{name} changes faster than {limit:.9g} on the straight path"] if fast else []
     times = exact(course.times.tolist())
     for k in range(len(times) - 1):
         step = Fraction(limit) * (times[k + 1] - times[k])

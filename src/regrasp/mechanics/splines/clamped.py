@@ -1,8 +1,10 @@
 """Clamped B-splines of numbers."""
 
 from dataclasses import dataclass
+from math import factorial
 
 import numpy as np
+from numpy.polynomial.polynomial import polyroots
 
 from regrasp.mechanics.checks import Array
 
@@ -21,6 +23,17 @@ class ClampedSpline:
         if k == 0:
             return ClampedSpline(t, np.zeros_like(self.control), 0)
         return ClampedSpline(t[1:-1], k * np.diff(self.control) / (t[k + 1 : -1] - t[1 : -k - 1]), k - 1)
+
+    def roots(self) -> Array:
+        """Every place where it may be zero: real parts of the roots of each piece's Taylor series."""
+        edges = np.unique(self.knots)
+        half, middle = np.diff(edges) / 2, (edges[:-1] + edges[1:]) / 2
+        series, spline = [], self
+        for k in range(self.degree + 1):
+            series.append(spline(middle) * half**k / factorial(k))
+            spline = spline.derivative()
+        found = [polyroots(c).real.clip(-1, 1) for c in np.stack(series, axis=-1)]
+        return np.concatenate([m + h * x for m, h, x in zip(middle, half, found, strict=True)])
 
     def __call__(self, s: Array) -> Array:
         """The values at s, by de Boor's algorithm: k rounds of means of neighbours."""

@@ -118,12 +118,13 @@ def joined(
     least[~stays] = 0.0
     refuse_weak_ends(start, end, least)
     has_rates = bool((rates < inf).any())
-    record = replace(record, least_normals=tuple(least.tolist()) if least.any() else ())
+    promised = tuple(rates.tolist()) if has_rates else ()
+    record = replace(record, least_normals=tuple(least.tolist()) if least.any() else (), rate_limits=promised)
     if load is None:
         plan = Transition(start, end, scaling or TimeScaling.spline(1.0), record, leaving, arriving)
         if scaling is None:
             plan = plan.fastest(rates)
-        fast_enough = not has_rates or scaling is None or bool((plan.steepest <= rates * (1 + 1e-12)).all())
+        fast_enough = not has_rates or scaling is None or bool((plan.steepest <= rates * (1 + 1e-13)).all())
         if demands.path_objective is None and not demands.idle_times and fast_enough:
             return refuse_lost_load(plan)
         load = LoadSeries([0.0, plan.duration], [start.load.vector] * 2)
@@ -142,12 +143,7 @@ def joined(
     ends = load.vectors[[0, -1]]
     refuse_lost(grasp, np.stack([start.forces, end.forces]), ends)  # before a program with numbers far apart
     path = _path(change, scaling, load, rates, least, stays, criteria, demands, backend)
-    record = replace(
-        record,
-        path=backend,
-        path_objective=objective,
-        rate_limits=tuple(rates.tolist()) if has_rates else (),
-    )
+    record = replace(record, path=backend, path_objective=objective)
     return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving, path))
 
 
