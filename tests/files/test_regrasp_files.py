@@ -621,8 +621,9 @@ def test_parts_of_scenarios_are_the_parts_there_are() -> None:
 
 START_POINT = "[-0.01, -0.007]"
 TASK_KEYS = (
-    "kind, objective, states, least_margin_degrees, min_distance, min_normal, weights, max_force, "
-    "peak_ratio, reserve, step_duration, rate, orientations, goal_degrees, candidates, "
+    "kind, objective, states, least_margin_degrees, min_distance, min_normal, stiffness, early_loss, "
+    "limits, weights, max_force, peak_ratio, reserve, step_duration, rate, orientations, "
+    "goal_degrees, candidates, "
     "max_turn_degrees, one_finger, arcs"
 )
 
@@ -650,7 +651,7 @@ TASK_KEYS = (
         ([("friction = 0.6", "friction = -1.0\ncontacts = []"), ("force = [0.0, -2.0]", "torque = 1.0")],
          ["friction: expected a number of at least 0, got -1.0",
           "load.force: a required key is missing",
-          "load.torque: unknown key; known here: force",
+          "load.torque: unknown key; known here: force, disturbance",
           "contacts: unknown key; known here: title, friction, load, outline, start, goal, motions, task"]),
         ([("[load]", "[[load]]\ntime = 0.0")],
          ["load: expected a table, got [{'time': 0.0, 'force': [0.0, -2.0]}]"]),

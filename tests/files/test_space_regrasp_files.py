@@ -331,7 +331,10 @@ def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
     text = changed(
         TEXT,
         ('part = "bracket"', 'mesh = "part.stl"\nscale = 2.0\n#'),
-        ("orientations = 42", "orientations = 17\nseed = 3\nfacets = 12\nstates = 'joint'\nmax_force = 9.0"),
+        (
+            "orientations = 42",
+            "orientations = 17\nseed = 3\nfacets = 12\nstates = 'joint'\nmax_force = 9.0\nstiffness = 800.0\nearly_loss = true",
+        ),
         ("candidates = 30", "candidates = 21\nleast_margin_degrees = 2.0\npeak_ratio = 2.5\nreserve = 0.1"),
         ("max_turn_degrees = 90.0", "max_turn_degrees = 45.0"),
         ('objective = "angle"', 'objective = "effort"'),
@@ -357,6 +360,7 @@ def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
     assert options.pop("least_margin") == pytest.approx(np.radians(2))
     assert options == {
         "friction": 0.6, "orientations": 17, "candidates": 21, "objective": "effort", "states": "joint",
+        "stiffness": 800.0, "early_loss": True, "disturbance": None, "limits": None,
         "min_distance": 0.02, "max_force": 9.0, "peak_ratio": 2.5, "reserve": 0.1, "step_duration": 0.5,
         "facets": 12, "seed": 3, "min_normal": None, "weights": None,
     }  # fmt: skip
@@ -367,8 +371,9 @@ def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
 
 GOAL = "goal_axis = [0.0, -1.0, 0.0]"
 TASK_KEYS = (
-    "kind, objective, states, least_margin_degrees, min_distance, min_normal, weights, max_force, "
-    "peak_ratio, reserve, step_duration, rate, orientations, goal_degrees, goal_axis, candidates, "
+    "kind, objective, states, least_margin_degrees, min_distance, min_normal, stiffness, early_loss, "
+    "limits, weights, max_force, peak_ratio, reserve, step_duration, rate, orientations, "
+    "goal_degrees, goal_axis, candidates, "
     "seed, max_turn_degrees, facets"
 )
 
