@@ -26,7 +26,8 @@ def steepest(scaling: Scaling) -> Fraction:
     spans = len(control) - degree
     knots = [Fraction(min(max(i - degree, 0), spans), spans) for i in range(len(control) + degree + 1)]
     widths = [knots[i + degree + 1] - knots[i + 1] for i in range(len(control) - 1)]
-    slopes: Values = [degree * (b - a) / width for (a, b), width in zip(pairwise(control), widths, strict=True)]
+    steps = [b - a for a, b in pairwise(control)]
+    slopes: Values = [degree * step / width for step, width in zip(steps, widths, strict=True)]
     if degree == 1 or spans * degree**3 > _COSTLY:
         return max(map(abs, slopes))
     return _largest([_piece(slopes, knots[1:-1], degree - 1, k) for k in range(spans)])
