@@ -333,8 +333,9 @@ def test_every_key_arrives(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
         ('part = "bracket"', 'mesh = "part.stl"\nscale = 2.0\n#'),
         (
             "orientations = 42",
-            "orientations = 17\nseed = 3\nfacets = 12\nstates = 'joint'\nmax_force = 9.0\nstiffness = 800.0\nearly_loss = true",
+            "orientations = 17\nseed = 3\nfacets = 12\nstates = 'joint'",
         ),
+        ('kind = "regrasp"', 'kind = "regrasp"\nmax_force = 9.0\nstiffness = 800.0\nearly_loss = true'),
         ("candidates = 30", "candidates = 21\nleast_margin_degrees = 2.0\npeak_ratio = 2.5\nreserve = 0.1"),
         ("max_turn_degrees = 90.0", "max_turn_degrees = 45.0"),
         ('objective = "angle"', 'objective = "effort"'),
