@@ -91,3 +91,36 @@ def test_linear_limits_of_one_finger_alone_are_kept_on_the_way(torque) -> None:
     limited = PAIR.replaced("A", PAIR["A"].changed(limits=([[1.0, 0.0]], [1.001 * pushes.max()])))
     plan = rg.plan_rotation(limited, 2.0, load=load, objective="effort")
     assert rg.verify(plan).ok
+
+
+def test_what_is_lost_between_two_gentle_ends_is_refused() -> None:
+    """Nothing but the state between them, chosen for a still torque, is strong."""
+    load = rg.Wrench([0, -1e-15], 1e-16)
+    ends = [rg.choose_state(SKEW, turned_load(load, turn), "effort") for turn in (0.0, 0.5)]
+    with pytest.raises(rg.InvalidInput, match="times the load and round to"):
+        rg.plan_rotation(ends[0], 0.5, end=ends[1], objective="force", max_force=1.0)
+    plan = rg.plan_rotation(ends[0], 0.5, end=ends[1], objective="effort", max_force=1.0)
+    assert rg.verify(plan).ok
+
+
+@pytest.mark.parametrize("turn", [1e-12, -1e-12, 1e-300])
+def test_the_smallest_turns_have_one_step(turn) -> None:
+    plan = rg.plan_rotation(PAIR, turn, load=WEIGHT)
+    assert plan.turn.angles.tolist() == [0.0, turn]
+    assert rg.verify(plan).ok
+
+
+def test_without_a_load_nothing_is_lost() -> None:
+    plan = rg.plan_rotation(SKEW, 0.5, load=rg.Wrench([0, 0]), objective="force", max_force=1.0)
+    assert plan.peak == pytest.approx(1.0, rel=1e-6)
+    assert rg.verify(plan).ok
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_steps_are_halved_either_way(way) -> None:
+    pair = rg.Grasp([rg.Contact([-1, 0], [1, 0], 2.0), rg.Contact([1, 0], [-1, 0], 2.0)])
+    s, c = np.sin(np.linspace(1.1, 1.5, 10_001)), np.cos(np.linspace(1.1, 1.5, 10_001))
+    limit = np.hypot(2 * s + c / 2, c).max() * (1 + 1e-4)
+    plan = rg.plan_rotation(pair, 2.0 * way, load=WEIGHT, objective="effort", max_force=limit)
+    assert plan.turn.angles.size > 3
+    assert rg.verify(plan).ok

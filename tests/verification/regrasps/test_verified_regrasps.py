@@ -146,3 +146,21 @@ def test_places_belong_to_single_steps():
     for given in ({"position": np.zeros(3)}, {"surface": 0.0}):
         with pytest.raises(rg.InvalidInput, match="step by step"):
             rg.verify(plan, disturbance=shaken, **given)
+
+
+def test_a_row_of_stiffness_belongs_to_each_finger():
+    plan, shaken = PLANS["plane"], rg.LoadSet.ball(rg.Wrench([0, 0]), force=1e-6)
+    for count in (2, 4):
+        with pytest.raises(rg.InvalidInput, match="have a row for each of 3 fingers"):
+            rg.verify(plan, disturbance=shaken, stiffness=[1.0] * count)
+    with pytest.raises(rg.InvalidInput, match="does not resist every motion"):
+        rg.verify(plan, disturbance=shaken, stiffness=[1.0] * 3)
+
+
+@pytest.mark.parametrize(("beyond", "good"), [(0.0, True), (2.0**-40, True), (2.0**-39, False)])
+def test_a_margin_claimed_at_its_limit(beyond, good):
+    """One hold of two fingers has no state between steps: the widest cone alone decides."""
+    grasp = rg.Grasp(rg.Contact([x, 0], [-x, 0], 0.5) for x in (-1, 1))
+    hold = rg.plan_hold(rg.GraspState(grasp, rg.Wrench([0, -1]), [[2, 0.5], [-2, 0.5]]), objective="effort")
+    plan = rg.RegraspPlan((hold,), (0.0, 0.0), grasp[0].half_angle + beyond)
+    assert rg.verify(plan).ok is good
