@@ -19,12 +19,12 @@ from tempfile import TemporaryDirectory
 
 from regrasp.bench.families import FAMILIES
 from regrasp.bench.judging.judgement import is_near, is_proof
-from regrasp.bench.problems.answer import Claim
 from regrasp.bench.problems.problem import BenchProblem, Verdict
 from regrasp.bench.problems.settings import right_within
 from regrasp.bench.reporting.report import write_report
 from regrasp.bench.running.result import Key, Row
 from regrasp.bench.running.store import ROWS, read_rows
+from regrasp.programs.answer import Claim
 
 FOLDER = Path(__file__).parents[1] / "solvers"
 

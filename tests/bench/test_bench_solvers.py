@@ -15,7 +15,7 @@ from bench_toys import CONE, TOYS, UNKNOWN, by_problem, fake, solvable
 from processes import is_running
 from regrasp.bench.judging.judgement import judged
 from regrasp.bench.judging.residual import row_residual
-from regrasp.bench.problems.answer import Answer, understood
+from regrasp.bench.problems.answer import understood
 from regrasp.bench.problems.problem import BenchProblem, Known, Truth, Verdict
 from regrasp.bench.problems.settings import SETTINGS, options
 from regrasp.bench.reporting.report import write_report
@@ -24,6 +24,7 @@ from regrasp.bench.running.runner import run
 from regrasp.bench.running.solvers import Solver, chosen_solvers, installed_solvers
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program
+from regrasp.programs.answer import Answer
 
 pytestmark = pytest.mark.contract
 

@@ -7,11 +7,11 @@ import pytest
 from scipy import sparse
 
 from regrasp.bench.judging.judgement import judged
-from regrasp.bench.problems.answer import Answer
 from regrasp.bench.problems.problem import BenchProblem, Known, Truth, Verdict
 from regrasp.bench.reporting.closeness import closeness
 from regrasp.bench.reporting.outcomes import outcomes
 from regrasp.programs import Block, Cone, Program
+from regrasp.programs.answer import Answer
 from test_bench_report import row
 
 pytestmark = pytest.mark.contract

@@ -12,12 +12,12 @@ from scipy import sparse
 from regrasp.bench.families import FAMILIES
 from regrasp.bench.judging.judgement import CERTIFICATE, is_near, is_proof, judged
 from regrasp.bench.judging.residual import row_residual
-from regrasp.bench.problems.answer import Answer
 from regrasp.bench.problems.problem import NEAR_ZERO, BenchProblem, Known, Truth, Verdict
 from regrasp.bench.reporting.contests import contests
 from regrasp.bench.reporting.outcomes import Kind, outcomes
 from regrasp.bench.reporting.tables import contest_table, summary_table
 from regrasp.programs import Block, Cone, Program
+from regrasp.programs.answer import Answer
 from test_bench_report import LIMIT, WRONG, row, written
 
 pytestmark = pytest.mark.oracle

@@ -1,10 +1,6 @@
 """The house keeps its import rules (docs/architecture.md), checked by parsing the sources."""
 
-import ast
-import re
-import subprocess
 import sys
-from collections import Counter
 from collections.abc import Iterator, Set
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -14,12 +10,10 @@ import pytest
 import imports
 import regrasp
 from imports import imported
-from places import TESTS
 
 pytestmark = pytest.mark.architecture
 
 ROOT = Path(regrasp.__file__).parent
-HELPERS = [TESTS, TESTS.parent / "benchmarks"]
 
 # Floor (folder or module) -> floors it may import. A new floor needs a line here.
 FLOORS: dict[str, Set[str]] = {
@@ -191,34 +185,6 @@ SOLVERS = {
     "clarabel", "cvxpy", "qpsolvers", "osqp", "daqp", "quadprog", "piqp", "proxsuite", "scs", "ecos",
     "highspy", "gurobipy", "mosek", "qpoases", "cvxopt",
 }  # fmt: skip
-HEAVY = {
-    "matplotlib",
-    "cvxpy",
-    "clarabel",
-    "numba",
-    "scipy",
-    "pandas",
-    "pydantic",
-    "qpsolvers",
-    "click",
-    "rich",
-    "shapely",
-    "svgpathtools",
-    "ezdxf",
-    "trimesh",
-    "plotly",
-    "mujoco",
-    "rosbags",
-    "pyarrow",
-    "dask",
-    "distributed",
-    "xarray",
-    "anywidget",
-}
-LINES = 360
-"""Of a file, besides the sections Args, Returns and Raises of docstrings."""
-FILES = 15
-"""Files of a room, besides its ``__init__``."""
 
 
 def sources() -> dict[str, str]:
@@ -232,16 +198,6 @@ def floor(module: str) -> str:
 def room(module: str) -> str:
     """The two first names below the package, where they are a room with rules of its own."""
     return ".".join(module.split(".")[1:3])
-
-
-def private(module: str, source: str) -> Iterator[str]:
-    """Private names that a module takes from another room."""
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("regrasp"):
-            away = str(node.module).rpartition(".")[0] != module.rpartition(".")[0]
-            yield from (
-                a.name for a in node.names if away and a.name.startswith("_") and not a.name.startswith("__")
-            )
 
 
 def violations(module: str, modules: dict[str, str]) -> Iterator[str]:
@@ -297,11 +253,6 @@ def may_import(module: str, package: str) -> bool:
     return True
 
 
-def read(source: str) -> str:
-    """A source without the lists of its docstrings, which are looked up."""
-    return re.sub(r"^( +)(?:Args|Returns|Raises):\n(?:\1 +.*\n)+", "", source, flags=re.MULTILINE)
-
-
 def cycle(modules: dict[str, str]) -> list[str]:
     """Modules that import one another in a ring, or nothing."""
     graph = {module: imported(module, modules) & modules.keys() for module in modules}
@@ -310,15 +261,6 @@ def cycle(modules: dict[str, str]) -> list[str]:
     except CycleError as error:
         return list(error.args[1])
     return []
-
-
-def loaded(code: str) -> set[str]:
-    """The top-level packages a fresh interpreter has loaded after ``code``."""
-    show = "import sys; print(*{name.split('.')[0] for name in sys.modules})"
-    done = subprocess.run(
-        [sys.executable, "-c", f"{code}\n{show}"], capture_output=True, text=True, check=True
-    )
-    return set(done.stdout.split())
 
 
 def test_every_floor_has_its_rule() -> None:
@@ -334,43 +276,6 @@ def test_every_module_keeps_to_its_floor() -> None:
 
 def test_no_import_cycles() -> None:
     assert cycle(sources()) == []
-
-
-def test_files_read_in_one_sitting() -> None:
-    assert {m: n for m, text in sources().items() if (n := len(read(text).splitlines())) > LINES} == {}
-
-
-def test_lists_of_parameters_are_looked_up_and_all_else_is_read() -> None:
-    text = (
-        'def f(a):\n    """Words.\n\n    Args:\n        a: one,\n            more.\n\n    Words.\n    """\n'
-    )
-    assert read(text) == 'def f(a):\n    """Words.\n\n\n    Words.\n    """\n'
-
-
-@pytest.mark.parametrize("root", [ROOT, *HELPERS], ids=lambda root: root.name)
-def test_rooms_are_not_crowded(root: Path) -> None:
-    rooms = Counter(path.parent for path in root.rglob("*.py") if path.name != "__init__.py")
-    assert {str(room.relative_to(root)): n for room, n in rooms.items() if n > FILES} == {}
-
-
-def test_every_folder_says_what_it_is_for() -> None:
-    folders = {path.parent for path in ROOT.rglob("*.py")}
-    assert [f for f in folders if not ast.get_docstring(ast.parse((f / "__init__.py").read_text()))] == []
-
-
-def test_no_private_name_leaves_its_room() -> None:
-    assert {m: names for m, text in sources().items() if (names := list(private(m, text)))} == {}
-    assert list(private("regrasp.plots.look.style", "from regrasp.programs.assembly import _Rows")) == [
-        "_Rows"
-    ]
-
-
-def test_importing_regrasp_is_light() -> None:
-    assert loaded("import regrasp") & HEAVY == set()
-
-
-def test_what_is_loaded_is_seen() -> None:
-    assert loaded("import regrasp, pydantic") & HEAVY == {"pydantic"}
 
 
 # -- the rules above catch what they are for ------------------------------------------------------------

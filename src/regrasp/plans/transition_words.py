@@ -1,17 +1,14 @@
 """What a transition says of itself: both ends, how they were chosen, and what the way needs."""
 
 from math import degrees
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from regrasp.mechanics.margins import margins
 
-if TYPE_CHECKING:
-    from regrasp.plans.transition import Transition
 
-
-def told(plan: "Transition") -> str:
+def told(plan: Any) -> str:
     """The transition in words and numbers."""
     record, width = plan.record, max(8, *(len(name) + 1 for name in plan.grasp.names))
     lines = [
@@ -35,7 +32,7 @@ def told(plan: "Transition") -> str:
     return "\n".join(lines)
 
 
-def _rows(plan: "Transition", width: int) -> list[str]:
+def _rows(plan: Any, width: int) -> list[str]:
     """A line for each contact: its forces at both ends and its least margin on the way."""
     cones, forces = plan.grasp.cones, plan.path.deciding(plan.start, plan.end)
     angles = margins(cones.measured(forces), cones.normals, plan.grasp.frictions).angle

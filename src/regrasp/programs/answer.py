@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from regrasp.programs.program import Array
+from regrasp.programs.blocks import Array
 
 
 class Claim(Enum):

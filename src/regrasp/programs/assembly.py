@@ -4,8 +4,8 @@ import numpy as np
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
-from regrasp.programs.blocks import ArrayLike
-from regrasp.programs.program import Block, Cone, Program
+from regrasp.programs.blocks import ArrayLike, Block, Cone
+from regrasp.programs.program import Program
 
 
 class Rows:

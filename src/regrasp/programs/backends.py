@@ -9,12 +9,13 @@ from math import inf
 from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
+from regrasp.programs.blocks import Array
 from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS, Backend
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import judged
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status, failed
 
 _log = logging.getLogger("regrasp.programs")

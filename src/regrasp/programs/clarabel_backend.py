@@ -9,8 +9,9 @@ import clarabel
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
+from regrasp.programs.blocks import Array, Block, Cone
 from regrasp.programs.facts import BACKENDS
-from regrasp.programs.program import Array, Block, Cone, Program
+from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status
 
 # "Almost" verdicts are not verdicts.

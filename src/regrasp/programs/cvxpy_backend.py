@@ -9,7 +9,8 @@ import numpy as np
 from scipy import sparse
 
 from regrasp.errors import SolverUnavailable, shown
-from regrasp.programs.program import Cone, Program
+from regrasp.programs.blocks import Cone
+from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status
 
 _STATUS = {

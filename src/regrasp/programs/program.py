@@ -21,8 +21,6 @@ from regrasp.programs.blocks import Array, Block, Cone
 from regrasp.programs.cones import Cones
 from regrasp.programs.judging.terms import Terms, floors_of, is_small
 
-__all__ = ["Array", "Block", "Cone", "Program"]
-
 
 @dataclass(frozen=True, eq=False)
 class Program:

@@ -10,10 +10,11 @@ import numpy as np
 from scipy import sparse
 
 from regrasp.programs.answer import Answer, Claim
+from regrasp.programs.blocks import Array
 from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.proofs import unboundedness_residual
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status
 
 _STATUS = {

@@ -7,9 +7,10 @@ from math import inf, isnan
 
 import numpy as np
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.audit import Audit, audited
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 
 class Status(Enum):

@@ -164,6 +164,8 @@ OTHER_LISTS = {
 
 def words_compared(source: str) -> Iterator[str]:
     """Comparisons with the word of an objective, which are branches that a new one falls through."""
+    if not any(f'"{word}"' in source.replace("'", '"') for word in OBJECTIVES):
+        return
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Compare) and "objective" in ast.unparse(node):
             inside = [c.value for c in ast.walk(node) if isinstance(c, ast.Constant)]

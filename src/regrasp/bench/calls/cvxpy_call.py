@@ -4,8 +4,8 @@ from typing import Any
 
 from cvxpy.reductions.solvers.defines import INSTALLED_SOLVERS, SOC, SOLVER_MAP_CONIC
 
-from regrasp.bench.problems.answer import Answer
 from regrasp.programs import cvxpy_backend
+from regrasp.programs.answer import Answer
 from regrasp.programs.program import Program
 
 _CLAIMS = {"optimal": "found", "infeasible": "infeasible", "unbounded": "unbounded"}

@@ -5,7 +5,7 @@ from typing import Any
 
 import qpsolvers
 
-from regrasp.bench.problems.answer import Answer
+from regrasp.programs.answer import Answer
 from regrasp.programs.calls.form import Split, split
 from regrasp.programs.program import Program
 

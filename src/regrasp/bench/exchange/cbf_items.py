@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.programs.program import Array
+from regrasp.programs.blocks import Array
 
 _VERSIONS = ("1", "2", "3", "4")
 _CONES = ("F", "L=", "L+", "L-", "Q", "QR")

@@ -12,7 +12,7 @@ from scipy import sparse
 
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program
-from regrasp.programs.program import Array
+from regrasp.programs.blocks import Array
 
 _MATRICES = ("P", "G", "A")
 _VECTORS = ("q", "h", "b")

@@ -11,8 +11,8 @@ from math import isfinite, nan
 import numpy as np
 
 from regrasp.bench.judging.residual import row_residual
-from regrasp.bench.problems.answer import Answer, Claim
 from regrasp.bench.problems.problem import BenchProblem, Known, Verdict
+from regrasp.programs.answer import Answer, Claim
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.solution import Solution, Status

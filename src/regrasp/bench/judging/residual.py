@@ -4,8 +4,9 @@ from math import nan
 
 import numpy as np
 
+from regrasp.programs.blocks import Array, Cone
 from regrasp.programs.judging.units import units_of_unknowns
-from regrasp.programs.program import Array, Cone, Program
+from regrasp.programs.program import Program
 
 
 def row_residual(program: Program, x: Array) -> float:

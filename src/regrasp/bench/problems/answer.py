@@ -7,9 +7,8 @@ import numpy as np
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.programs.answer import Answer, Claim
-from regrasp.programs.program import Array, Program
-
-__all__ = ["Answer", "Claim", "printable", "understood"]
+from regrasp.programs.blocks import Array
+from regrasp.programs.program import Program
 
 
 def understood(given: Any, program: Program) -> Answer:

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil, inf
 
-from regrasp.bench.problems.answer import Claim
 from regrasp.bench.problems.settings import right_within
 from regrasp.bench.reporting.outcomes import Outcome, cold
+from regrasp.programs.answer import Claim
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from enum import Enum
 from statistics import median
 
-from regrasp.bench.problems.answer import Claim
 from regrasp.bench.problems.problem import Truth, Verdict
 from regrasp.bench.running.result import COLD, Row
+from regrasp.programs.answer import Claim
 
 PARTS = ("build_time", "setup_time", "solve_time")
 _EXACT = (Truth.CLOSED_FORM.value, Truth.PUBLISHED.value)

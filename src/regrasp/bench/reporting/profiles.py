@@ -13,7 +13,7 @@ import numpy as np
 
 from regrasp.bench.reporting.contests import Contest
 from regrasp.bench.reporting.outcomes import Outcome
-from regrasp.programs.program import Array
+from regrasp.programs.blocks import Array
 
 
 def ratios(contest: Contest) -> dict[str, Array]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from regrasp.bench.problems.answer import Answer, printable, understood
+from regrasp.bench.problems.answer import printable, understood
 from regrasp.bench.problems.problem import BenchProblem
 from regrasp.bench.problems.settings import options
 from regrasp.bench.running import machine
@@ -31,6 +31,7 @@ from regrasp.bench.running.result import (
 from regrasp.bench.running.runner import Told, header
 from regrasp.bench.running.solvers import Solver
 from regrasp.bench.running.store import NOT_COMPARABLE, Store
+from regrasp.programs.answer import Answer
 from regrasp.studies.cases import cases_of, key_of
 from regrasp.studies.cluster import Cluster
 from regrasp.studies.engines import Engine, Processes

@@ -5,11 +5,11 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, NamedTuple
 
 from regrasp.bench.judging.judgement import Judgement, judged
-from regrasp.bench.problems.answer import Answer, Claim
 from regrasp.bench.problems.problem import BenchProblem
 from regrasp.bench.problems.settings import SETTINGS, right_within
 from regrasp.bench.running.solvers import Solver
 from regrasp.errors import shown
+from regrasp.programs.answer import Answer, Claim
 
 # How a solve can end besides the words of ``Claim``.
 ERROR, TIMEOUT, CRASHED, MEMORY = "error", "timeout", "crashed", "out of memory"

@@ -5,7 +5,6 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from regrasp.bench.problems.answer import Answer
 from regrasp.bench.problems.problem import BenchProblem
 from regrasp.bench.problems.settings import options
 from regrasp.bench.running import machine
@@ -14,6 +13,7 @@ from regrasp.bench.running.process import Worker, WorkerLost
 from regrasp.bench.running.result import ERROR, MEMORY, TIMEOUT, Row, written
 from regrasp.bench.running.solvers import Solver
 from regrasp.bench.running.store import COMPARABLE, Store
+from regrasp.programs.answer import Answer
 
 # A first call shorter than this warms up only; what a first call adds is lost in a longer one, which counts.
 WARM_UP = 1.0

@@ -22,9 +22,9 @@ from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, v
 from importlib.util import find_spec
 from typing import Any
 
-from regrasp.bench.problems.answer import Answer
 from regrasp.bench.problems.settings import is_known
 from regrasp.errors import InvalidInput, shown
+from regrasp.programs.answer import Answer
 from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 

@@ -22,10 +22,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from regrasp.bench.problems.answer import Answer, printable, understood
+from regrasp.bench.problems.answer import printable, understood
 from regrasp.bench.running.machine import can_limit_memory
 from regrasp.bench.running.solvers import Solver
 from regrasp.process_limits import die_with, limit_memory
+from regrasp.programs.answer import Answer
 from regrasp.programs.calls.form import Call
 from regrasp.programs.program import Program
 

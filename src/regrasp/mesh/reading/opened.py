@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import choice, file_path, number
@@ -11,17 +11,14 @@ from regrasp.mesh.reading.files import advice, read
 from regrasp.mesh.reading.mending import BODIES
 from regrasp.outline.opening import naming
 
-if TYPE_CHECKING:
-    from regrasp.mesh.mesh import Mesh
-
 
 def opened(
-    make: Callable[..., "Mesh"],
+    make: Callable[..., Any],
     path: str | PathLike[str],
     scale: Any,
     bodies: Any,
     close_holes: Any,
-) -> tuple["Mesh", tuple[str, ...]]:
+) -> tuple[Any, tuple[str, ...]]:
     """The mesh that ``make`` makes of vertices and faces, and notes; arguments as of ``Mesh.from_file``."""
     factor = 1.0 if scale is None else number(scale, "scale", above=0)
     how, widest = choice(bodies, "bodies", BODIES), number(close_holes, "close_holes", least=0)

@@ -114,7 +114,8 @@ class HoldGraph(ArrayValue):
     @cached_property
     def margins(self) -> NDArray[np.float32]:
         """(O, P) margins [rad]; negative where a pair cannot hold the load or is not allowed."""
-        from regrasp.closed_form.compiled.holds import NO_HOLD, hold_margins
+        from regrasp.closed_form.compiled.holds import hold_margins
+        from regrasp.closed_form.turning_margin import NO_HOLD
 
         count, needed = len(self.contacts), 4 * self.pairs[0].size * len(self.angles)
         if needed > self.most_bytes:
@@ -143,7 +144,8 @@ class HoldGraph(ArrayValue):
             return WidestHolds(
                 table.max(axis=0), table.argmax(axis=0).astype(np.int32), (table >= 0).sum(axis=1)
             )
-        from regrasp.closed_form.compiled.holds import NO_HOLD, STRETCH, widest_margins
+        from regrasp.closed_form.compiled.holds import STRETCH, widest_margins
+        from regrasp.closed_form.turning_margin import NO_HOLD
 
         size = self.pairs[0].size
         margins, places = np.full(size, NO_HOLD, dtype=np.float32), np.zeros(size, dtype=np.int32)

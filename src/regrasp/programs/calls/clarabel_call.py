@@ -7,7 +7,8 @@ import clarabel
 import numpy as np
 
 from regrasp.programs.answer import Answer
-from regrasp.programs.program import Block, Cone, Program
+from regrasp.programs.blocks import Block, Cone
+from regrasp.programs.program import Program
 
 # "Almost" verdicts are not verdicts.
 _CLAIMS = {"Solved": "found", "PrimalInfeasible": "infeasible", "DualInfeasible": "unbounded"}

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from regrasp.programs.answer import Answer
-from regrasp.programs.program import Array, Cone, Program
+from regrasp.programs.blocks import Array, Cone
+from regrasp.programs.program import Program
 
 FEW = 16
 """Unknowns up to which PIQP and ProxQP are faster with dense matrices than with sparse ones."""

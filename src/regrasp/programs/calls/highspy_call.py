@@ -12,8 +12,9 @@ from scipy import sparse
 
 from regrasp.errors import InvalidInput
 from regrasp.programs.answer import Answer
+from regrasp.programs.blocks import Array
 from regrasp.programs.calls.form import bounded
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 _HIGHS: Any = highspy.Highs  # ships no types of its own
 _CLAIMS = {"kOptimal": "found", "kInfeasible": "infeasible", "kUnbounded": "unbounded"}

@@ -21,9 +21,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.terms import largest, most, reciprocal
 from regrasp.programs.judging.units import own_units_of_columns, units_of_unknowns, weight_of_terms
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 MOST = 2.0**13
 """Times its unit, that terms count for at the most; beyond, where more of them cancels, for less."""

@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.judging.terms import reciprocal
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 # Entries below this fraction of the largest are guessed to be noise, one guess after the other.
 _NOISE = (0.0, 1e-9, 1e-6, 1e-4, 1e-2)

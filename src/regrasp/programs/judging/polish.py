@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.terms import largest, reciprocal
 from regrasp.programs.judging.units import units_of_columns, units_of_unknowns
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 # Fractions of the largest entry below which entries are guessed to be noise.
 _NOISE = (0.0, 1e-9, 1e-7, 1e-5, 1e-3)

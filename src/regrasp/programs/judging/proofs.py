@@ -15,8 +15,9 @@ from math import inf
 
 import numpy as np
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.terms import largest
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 _ROUNDING = 2.0**-45
 """A sum this small beside its terms has no sign."""

@@ -7,9 +7,10 @@ inside their cones are not negative, and those outside by e at least -e |z|.
 
 import numpy as np
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.audit import Audit
 from regrasp.programs.judging.terms import most
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 
 def surely_sound(program: Program, x: Array, z: Array, close: float, allowed: float) -> Audit | None:

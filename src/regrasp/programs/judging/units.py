@@ -13,8 +13,9 @@ All here is written for inverses, so that nothing is zero and the least unit is 
 
 import numpy as np
 
+from regrasp.programs.blocks import Array
 from regrasp.programs.judging.terms import reciprocal
-from regrasp.programs.program import Array, Program
+from regrasp.programs.program import Program
 
 PASSES = 4
 """Through how many rows or columns in turn a unit is passed on to what has none. To what has one, through one
