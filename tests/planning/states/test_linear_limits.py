@@ -183,11 +183,6 @@ def _kept(result: Any) -> None:
 _NEW = rg.Contact([-3, 6], [1, -1], 0.3, name="P4")
 _ENDS = rg.Grasp(SQUARE_OUTLINE.contact_at(s, friction=0.5) for s in (5.0, 5.5, 12.0))
 _SQUARE = _ENDS.replaced("P1", _ENDS["P1"].changed(limits=([[1.0, 0.0]], [MOST])))
-_BOX = rg.Grasp(
-    rg.Contact(r, [-x for x in r], 0.8) for r in ([1, 0, 0], [-1, 1, 0], [-1, -1, 0.2], [0, 0, 1])
-)
-_SPACE = _BOX.replaced("P1", _BOX["P1"].changed(limits=([[1.0, 0.0, 0.0]], [MOST])))
-
 KEEPS: dict[str, Callable[[], Any]] = {
     "choose_state": lambda: rg.choose_state(LIMITED, LOAD),
     "plan_removal": lambda: rg.plan_removal(LIMITED, "P3", load=LOAD),
@@ -203,15 +198,6 @@ KEEPS: dict[str, Callable[[], Any]] = {
 REFUSES: dict[str, Callable[[], Any]] = {
     "EquilibriumLocus": lambda: rg.EquilibriumLocus(LIMITED.without("P3"), LOAD).best(),
     "SqueezeLocus": lambda: rg.SqueezeLocus(LIMITED, LOAD),
-    "plan_regrasp": lambda: rg.plan_regrasp(SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5),
-    "plan_regrasps": lambda: rg.plan_regrasps(SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5),
-    "RegraspProblem": lambda: rg.RegraspProblem(
-        SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5
-    ),
-    "RegraspProblem in space": lambda: rg.RegraspProblem(
-        rg.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
-        _SPACE, _SPACE, rg.Wrench([0, 0, -1]), friction=0.5,
-    ),
     "HoldGraph": lambda: rg.HoldGraph(tuple(_SQUARE), WEIGHT_IN_PLANE, [0.0]),
     "regrasps_on_outline": lambda: rg.regrasps_on_outline(
         SQUARE_OUTLINE, _SQUARE, _ENDS, WEIGHT_IN_PLANE, friction=0.5
@@ -223,6 +209,8 @@ ELSEWHERE = {
     "closure", "held_directions", "quality", "wrench_ball",
     # that choose by ``choose_state``, or judge forces as the tests above do
     "held_sphere", "pyramid_losses", "margin_curve", "tolerances", "least_stiffness", "verify",
+    # that keep them by their steps, tested where regrasps are
+    "plan_regrasp", "plan_regrasps", "RegraspProblem",
     # values that hold grasps and do nothing with them; a graph that refuses them at its making
     "bottleneck", "ChosenGrasp", "ChosenState", "Closure", "Contact", "ContactRegions", "Criteria",
     "EscapeTwist", "Grasp", "GraspState", "HeldCentres", "HeldSphere", "LargestLoad", "LeastFriction",
