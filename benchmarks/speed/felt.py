@@ -111,9 +111,9 @@ def first_calls(effort: Effort, quick: bool) -> Iterator[Row]:
             seconds = processor_time(code, folder)
             yield Row.alone(
                 f"cold_{key}", f"first {what}, nothing compiled before", seconds, Measure.SECONDS, cold,
-                "Numba compiles the holds of three fingers, some 6 s, of which typing and lowering 32 functions "
-                "take most (without LLVM's optimisation a tenth less), and the moves, some 2 s; it says so "
-                "meanwhile, and `regrasp warm-up` does it beforehand",
+                "Numba compiles the holds of three fingers, some 6 s, mostly typing and lowering 32 of "
+                "its functions (without LLVM's optimisation a tenth less), and the moves, some 2 s; it says "
+                "so meanwhile, and `regrasp warm-up` does it beforehand",
             )  # fmt: skip
             again = median(processor_time(code, folder) for _ in range(3))
             yield Row.alone(

@@ -138,8 +138,12 @@ class Contact(ArrayValue):
             name: of any letters, not empty.
         """
         _check_name(name)
+        return self._under(name)
+
+    def _under(self, name: str) -> "Contact":
         same = object.__new__(Contact)
-        vars(same).update(vars(self), name=name)
+        same.__dict__.update(self.__dict__)
+        same.__dict__["name"] = name
         return same
 
     def changed(self, **fields: Any) -> "Contact":

@@ -21,6 +21,10 @@ from regrasp.mechanics.wrench import torque
 _MOST = 1e50
 
 
+def _fits(size: float) -> bool:
+    return not size or 1 / _MOST <= size <= _MOST
+
+
 @dataclass(frozen=True, eq=False)
 class Grasp(ArrayValue):
     """Contacts on one object, addressed by name or by index.
@@ -45,7 +49,7 @@ class Grasp(ArrayValue):
         for contact in given:
             if not isinstance(contact, Contact):
                 raise InvalidInput(f"a grasp is made of Contacts, got {shown(contact)}")
-            if contact.dimension != given[0].dimension:
+            if len(contact.plain) != len(given[0].plain):  # worked out once for all grasps of a contact
                 raise InvalidInput(
                     f"contacts of one grasp must have one dimension, got {given[0].dimension} "
                     f"and {contact.dimension}"
@@ -85,13 +89,16 @@ class Grasp(ArrayValue):
 
         Values may be of any size, and proofs are exact; what is worked out from them may not.
         """
-        reach = float(np.abs(self.positions).max())
+        d = self.dimension
+        reach = max([max(map(abs, c.plain[:d])) for c in self.contacts])
+        if _fits(reach) and all(_fits(c.friction) and _fits(c.torsion or 0.0) for c in self.contacts):
+            return ""
         sizes = [("positions must reach", reach)]
         for c in self.contacts:
             label = f"{shown(c.name)} must be"
             sizes += [(f"friction of {label}", c.friction), (f"torsion of {label}", c.torsion or 0.0)]
         for what, size in sizes:
-            if size and not 1 / _MOST <= size <= _MOST:
+            if not _fits(size):
                 return f"{what} 0 or between {1 / _MOST:g} and {_MOST:g}, got {size:g}"
         return ""
 

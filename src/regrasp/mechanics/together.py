@@ -13,12 +13,14 @@ COINCIDENT = 1e-12
 def named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
     """Unnamed contacts get the name of their place, or the next P<k> that nobody has."""
     taken = {contact.name for contact in contacts}
+    if taken == {None}:
+        return tuple([contact._under(f"P{place}") for place, contact in enumerate(contacts, 1)])
     result = []
     for place, contact in enumerate(contacts, 1):
         if contact.name is None:
             name = next(name for k in count(place) if (name := f"P{k}") not in taken)
             taken.add(name)
-            contact = contact.named(name)
+            contact = contact._under(name)
         result.append(contact)
     return tuple(result)
 
@@ -26,6 +28,8 @@ def named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
 def refuse_equal_names(contacts: tuple[Contact, ...]) -> None:
     """Each name is of one contact."""
     names = [contact.name for contact in contacts]
+    if len(set(names)) == len(names):
+        return
     for name in names:
         if names.count(name) > 1:
             raise InvalidInput(f"contacts of one grasp must have different names, {shown(name)} came twice")
@@ -44,9 +48,11 @@ def refuse_coincident(contacts: tuple[Contact, ...]) -> None:
 
 def coincident(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
     """Pairs of contacts at one point, up to rounding of the largest coordinate."""
-    points = [contact.position.tolist() for contact in contacts]
-    near = COINCIDENT * max(abs(x) for p in points for x in p)
+    d = contacts[0].dimension
+    points = [contact.plain[:d] for contact in contacts]
+    near = COINCIDENT * max([max(map(abs, p)) for p in points])
     for j, p in enumerate(points):
-        for i, q in enumerate(points[:j]):
-            if all(abs(a - b) <= near for a, b in zip(p, q, strict=True)):
+        for i in range(j):
+            q = points[i]
+            if abs(p[0] - q[0]) <= near and abs(p[1] - q[1]) <= near and abs(p[-1] - q[-1]) <= near:
                 yield i, j
