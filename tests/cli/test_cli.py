@@ -345,3 +345,15 @@ def test_printed_plan_shows_digits_in_any_unit() -> None:
     micro = rg.plan_removal(rg.GraspState(grasp, load * 1e-6, PLAN.start.forces * 1e-6), "P3")
     assert "3.790e-06   3.003e-06" in str(micro)
     assert "3.7897     3.0034" in str(PLAN)
+
+
+def test_a_rate_too_large_is_refused_before_anything_is_planned(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from regrasp import files
+
+    monkeypatch.setattr(files, "plan_scenario", lambda scenario: pytest.fail("it was planned"))
+    (tmp_path / "fast.toml").write_text(edited(("rate = 1000.0", "rate = 1e12")))
+    status, _, err = regrasp(capsys, "plan", tmp_path / "fast.toml", "-o", tmp_path / "out")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "at most 1e+08 are made" in err

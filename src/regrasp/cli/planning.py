@@ -94,6 +94,17 @@ def plan(
     return _work(asked, scenario, output, draw=not no_figures, motions=motions, html=html, mcap=mcap)
 
 
+def _shortest(scenario: "PlannedScenario") -> float:
+    """A time that every plan of a scenario takes [s], as far as it is known before."""
+    from regrasp.plans.loads import LoadSeries
+
+    task, load = scenario.task, getattr(scenario, "external", None)
+    if isinstance(load, LoadSeries):
+        return load.duration
+    known = getattr(task, "step_duration", None) or getattr(task, "duration", None)
+    return known or (1.0 if getattr(task, "rate_limit", None) is None else 0.0)
+
+
 def _work(
     scenario: "PlannedScenario",
     name: str | Path,
@@ -115,7 +126,7 @@ def _work(
         write_setpoints,
         write_ways,
     )
-    from regrasp.files.plans.setpoints import checked, setpoint_blocks
+    from regrasp.files.plans.setpoints import check_rate, checked, setpoint_blocks
     from regrasp.files.source import legible, naming
     from regrasp.files.staging import whole_folder
     from regrasp.mechanics.value import one_line
@@ -125,6 +136,7 @@ def _work(
     given = [contact.name for contact in getattr(scenario, "contacts", ())]
     with legible(given), naming(name), progress_bar() as progress:
         task = progress.add_task("planning", total=None)
+        check_rate(rate, _shortest(scenario))
         ways = plan_scenario_motions(scenario) if motions else None
         planned = plan_scenario(scenario) if ways is None else ways.plan
         progress.update(task, description="verifying")

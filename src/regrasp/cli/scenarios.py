@@ -19,7 +19,8 @@ def new(kind: str, file: Path | None, space: bool) -> dict[str, Any]:
     """Write a scenario with comments to start from.
 
     KIND is removal, addition, exchange, hold, rotation, regrasp or grasp. FILE is KIND.toml unless given; one
-    that is there is left alone. The scenario plans as it is.
+    that is there is left alone. The scenario plans as it is. A grasp is chosen in the plane, so that
+    --space is an error there.
     """
     from regrasp.files.scenarios.templates import template, write_new
 

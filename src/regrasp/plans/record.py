@@ -24,8 +24,8 @@ class Record:
 
     reserve: fraction of every friction coefficient kept back. choices: the ends that were not given.
     balancing: largest change of a given force to reach exact equilibrium [N].
-    path: ``closed-form`` for Eq. 1-3, or the back end that planned the instants; path_objective: what for.
-    rate_limits [N/s], least_normals [N]: one for each contact; empty for none.
+    path: ``closed-form`` for Eq. 1-3, or what planned the instants: a back end, or ``time-banded``.
+    path_objective: what for. rate_limits [N/s], least_normals [N]: one for each contact; empty for none.
     """
 
     reserve: float

@@ -37,7 +37,7 @@ def task(start=(1.0, 1.0), end=(1.0, 1.0), lean=0.0, count=5, **changes) -> Path
 
 
 def planned(asked, objective="change", backend="clarabel"):
-    return planned_path(asked, objective, Criteria("angle"), backend)
+    return planned_path(asked, objective, Criteria("angle"), backend).forces
 
 
 def test_the_reference_goes_straight_from_end_to_end() -> None:

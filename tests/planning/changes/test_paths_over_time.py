@@ -75,6 +75,16 @@ def test_limits_rates_and_idle_fingers_are_left_to_the_whole_program() -> None:
         assert least_change(other) is None
 
 
+@pytest.mark.parametrize(("instants", "method"), [(41, "clarabel"), (241, "time-banded")])
+def test_the_record_names_what_found_the_path(instants: int, method: str) -> None:
+    grasp = rg.Grasp(rg.Contact(r, [0, s], 0.5) for r, s in (([-1, -1], 1), ([1, -1], 1), ([0, 1], -1)))
+    plan = rg.plan_hold(
+        grasp, lambda t: rg.Wrench([0.1 * np.sin(6 * t), -1]), objective="effort", instants=instants
+    )
+    assert plan.record.path == method
+    assert rg.verify(plan).ok
+
+
 def test_a_program_without_a_point_has_no_answer() -> None:
     A, h = np.array([[1.0], [-1.0]]), np.full((50, 2), -0.5)
     assert solved_over_time(A, h, np.full(51, 51.0), np.zeros((50, 1))) is None

@@ -36,6 +36,22 @@ def regrasp() -> rg.RegraspPlan:
     return rg.plan_regrasp(ELLIPSE, start, goal, load, goal_orientation=1.5, **options)
 
 
+def test_an_object_of_the_other_kind_is_no_input(removal: rg.Transition) -> None:
+    square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    solid = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
+    feet = rg.Grasp(rg.Contact([x, y, 0], [0, 0, 1], 0.5) for x, y in ((1, 0), (-1, 1), (-1, -1)))
+    for value, given, words in (
+        (removal, {"mesh": solid}, "mesh is of an object in space, which this is not; give outline"),
+        (
+            rg.choose_state(feet, rg.Wrench([0, 0, -1]), "effort"),
+            {"outline": square},
+            "outline is of an object in the plane, which this is not; give mesh",
+        ),
+    ):
+        with pytest.raises(rg.InvalidInput, match=words):
+            plots.html(value, **given)
+
+
 def shown(page: str) -> Any:
     found = re.search(r'<script type="application/json" id="shown">(.*?)</script>', page, re.DOTALL)
     assert found is not None

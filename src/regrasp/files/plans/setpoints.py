@@ -35,16 +35,21 @@ def setpoint_blocks(plan: Transition | RegraspPlan, rate: float) -> Iterator[Row
     Raises ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points.
     """
     check_plan(plan)
-    if plan.duration * number(rate, "rate", above=0) > _MOST:
-        raise InvalidInput(
-            f"rate {rate:g} for {plan.duration:g} s makes {plan.duration * rate:.3g} set-points; "
-            f"at most {_MOST:g} are made"
-        )
+    check_rate(rate, plan.duration)
     for k, step in enumerate(_steps(plan)):
         times = step.times(rate)
         for first in range(0, times.size, _BLOCK):
             t = times[first : first + _BLOCK]
             yield Rows(k, t, step.orientation(t), step.forces(t))
+
+
+def check_rate(rate: float, duration: float) -> None:
+    """Raise ``InvalidInput`` for a rate of 0 or less, or one that makes more than 1e8 set-points."""
+    if duration * number(rate, "rate", above=0) > _MOST:
+        raise InvalidInput(
+            f"rate {rate:g} for {duration:g} s makes {duration * rate:.3g} set-points; "
+            f"at most {_MOST:g} are made"
+        )
 
 
 def checked(plan: Transition | RegraspPlan, rows: Rows) -> Verification:

@@ -142,8 +142,8 @@ def joined(
     backend = DEFAULT_BACKEND if demands.method == "auto" else demands.method
     ends = load.vectors[[0, -1]]
     refuse_lost(grasp, np.stack([start.forces, end.forces]), ends)  # before a program with numbers far apart
-    path = _path(change, scaling, load, rates, least, stays, criteria, demands, backend)
-    record = replace(record, path=backend, path_objective=objective)
+    path, method = _path(change, scaling, load, rates, least, stays, criteria, demands, backend)
+    record = replace(record, path=method, path_objective=objective)
     return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving, path))
 
 
@@ -157,7 +157,7 @@ def _path(
     criteria: Criteria,
     demands: Demands,
     backend: str,
-) -> SampledPath:
+) -> tuple[SampledPath, str]:
     from regrasp.planning.changes.path_program import PathTask
     from regrasp.planning.changes.path_search import planned_path
 
@@ -210,12 +210,12 @@ def _path(
             limits=np.maximum(task.limits - demand.largest_changes(), ends),
             row_bounds=demand.row_bounds(),
         )
-    forces = planned_path(task, demands.path_objective or "change", criteria, backend, demands.facets)
-    forces = grasp.cones.forces(forces)
+    found = planned_path(task, demands.path_objective or "change", criteria, backend, demands.facets)
+    forces = grasp.cones.forces(found.forces)
     forces[0], forces[-1] = start.forces, end.forces
     if demand is not None:
         refuse_giving_path(demand, forces, times, np.array(criteria.limits(grasp)))
-    return SampledPath(times, forces, fine.vectors)
+    return SampledPath(times, forces, fine.vectors), found.method
 
 
 def refuse_giving_path(demand: Demand, forces: Array, times: Array, limits: Array) -> None:

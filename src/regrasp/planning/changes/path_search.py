@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +24,20 @@ _ATTEMPTS = 4
 _MOVED = 1e-5
 
 
+BANDED = "time-banded"
+"""The method of a path of least change over many instants, in records of plans."""
+
+
+class PlannedPath(NamedTuple):
+    """Forces (K, n, w) [N] and who found them: ``BANDED`` or a back end."""
+
+    forces: Array
+    method: str
+
+
 def planned_path(
     task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None = None
-) -> Array:
+) -> PlannedPath:
     """The best path (K, n, d) [N], in exact equilibrium inside cones and limits at every instant.
 
     objective: ``change``, ``effort``, ``peak`` or ``force``; of the paths with the least peak or the widest
@@ -36,13 +48,13 @@ def planned_path(
     if objective == "change" and backend == "clarabel":
         quick = _over_time(task, _kept(task, slack))
         if quick is not None:
-            return quick
+            return PlannedPath(quick, BANDED)
     for _ in range(_ATTEMPTS):
         answer = _best(_kept(task, slack), objective, criteria, backend, facets)
         forces = _exact(task, answer)
         breach = _breach(task, forces)
         if breach <= 0:
-            return forces
+            return PlannedPath(forces, backend)
         slack += 2 * breach
     raise SolverFailed(
         f"{backend}: the path breaks a rate or linear limit or a least normal force by {breach:.2g} of it",

@@ -96,6 +96,13 @@ def html(
         raise InvalidInput(
             f"a page shows a GraspState, a Transition, a RegraspPlan or Motions; got {type(value).__name__}"
         )
+    for name, given, d in (("mesh", mesh, 3), ("outline", outline, 2)):
+        if given is not None and _dimension(value) != d:
+            other = "outline" if d == 3 else "mesh"
+            raise InvalidInput(
+                f"{name} is of an object {'in space' if d == 3 else 'in the plane'}, which this is not; give "
+                f"{other}, got {name} a {type(given).__name__}"
+            )
     if _dimension(value) == 2:
         from regrasp.plots.pages.planar_page import planar_page
 
