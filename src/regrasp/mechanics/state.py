@@ -241,9 +241,10 @@ class GraspState(ArrayValue):
 def check_load(grasp: Grasp, load: Wrench) -> None:
     """Raise ``InvalidInput`` unless ``load`` is a wrench of the grasp's dimension that can be worked with."""
     _check_dimension(grasp, load)
-    if grasp.out_of_range:
-        raise InvalidInput(grasp.out_of_range)
-    not_huge(max(load.plain, key=abs), "load")
+    if beyond := grasp.out_of_range:
+        raise InvalidInput(beyond)
+    if max(map(abs, load.plain)) > LARGEST:
+        not_huge(max(load.plain, key=abs), "load")
 
 
 def _check_dimension(grasp: Grasp, load: Wrench) -> None:

@@ -49,7 +49,8 @@ class EquilibriumLocus(ArrayValue):
 
     def __post_init__(self) -> None:
         instance(self.grasp, "grasp", Grasp)
-        if len(self.grasp) != 2 or self.grasp.dimension != 2:
+        contacts = self.grasp.contacts
+        if len(contacts) != 2 or contacts[0].dimension != 2:
             raise InvalidInput(
                 f"an equilibrium locus needs two planar contacts, got {len(self.grasp)} of dimension "
                 f"{self.grasp.dimension}; use grasp.subset([...]), or a SqueezeLocus"
@@ -215,9 +216,10 @@ class EquilibriumLocus(ArrayValue):
 
 def is_one_point(grasp: Grasp) -> bool:
     """Whether two planar contacts are at one point: the squeeze between them has no direction."""
-    x1, y1, x2, y2 = *grasp.contacts[0].plain[:2], *grasp.contacts[1].plain[:2]
-    largest = max(abs(x1), abs(y1), abs(x2), abs(y2))
-    return max(abs(x2 - x1), abs(y2 - y1)) <= ONE_POINT * largest
+    one, other = grasp.contacts
+    p, q = one.plain, other.plain
+    near = ONE_POINT * max(abs(p[0]), abs(p[1]), abs(q[0]), abs(q[1]))
+    return abs(q[0] - p[0]) <= near and abs(q[1] - p[1]) <= near
 
 
 def best_forces(grasp: Grasp, load: Wrench, criteria: Criteria) -> ChosenForces:
@@ -260,9 +262,10 @@ def _asked(grasp: Grasp, criteria: Criteria) -> _Question | None:
     code = criteria.objective.closed_form
     if len(grasp) != 2 or grasp.dimension != 2 or code is None or criteria.presses or criteria.withstands:
         return None
-    if is_one_point(grasp) or grasp.limit_rows is not None:
+    one, other = grasp.contacts
+    if is_one_point(grasp) or one.limits is not None or other.limits is not None:
         return None
-    first, second = (_plain(contact)[:4] for contact in grasp.contacts)
+    first, second = _plain(one)[:4], _plain(other)[:4]
     mu1, mu2 = criteria.frictions(grasp)
     bound1, bound2 = criteria.limits(grasp)
     sought = code, bound1, bound2, criteria.peak_ratio

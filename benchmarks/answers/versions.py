@@ -1,7 +1,7 @@
 """Two versions of the package beside each other: rows of both in turn, each round a process of its own.
 
     git worktree add ../before COMMIT
-    python benchmarks/speed/versions.py ../before/src src --rounds 7
+    python benchmarks/answers/versions.py ../before/src src --rounds 7
 
 Processor time of one call, the median of the rounds' ratios: a busy machine disturbs both alike.
 """
