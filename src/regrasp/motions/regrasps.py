@@ -89,8 +89,9 @@ def plan_regrasp(
     one of the widest margin. None stands for the few grasps of least largest normal force that
     ``choose_grasp`` finds under the load, in the orientation asked for.
 
-    With ``motions`` the best sequence is taken whose free fingers have ways (``plan_motions``). Where a
-    finger of one finds none, those are next that lack the hold meanwhile, or those before it, or after it.
+    With ``motions`` the best sequence is taken if its free fingers have ways (``plan_motions``). Where a
+    finger of one finds none, those are next that lack the hold meanwhile, or those before it, or after it; a
+    better one that has all three, in another order, is not looked at.
 
     What is proven: every state, every path between two, and that no regrasp on the sampled points has fewer
     moves or, with as few, a wider least margin; or costs less. Points between the samples are not looked at.
@@ -104,8 +105,8 @@ def plan_regrasp(
             an outline None, of which one is chosen.
         goal: as many, at the end; as ``start``.
         load: a force through the centre of mass, seen from the object before it turns [N].
-        motions: whether the fingers' ways through the air are planned, too; the best regrasp that has them is
-            then ``plan`` of what is returned.
+        motions: whether the fingers' ways through the air are planned, too; the first regrasp that has them
+            is then ``plan`` of what is returned.
         tip_radius: as for ``plan_motions`` [m]; needed with ``motions``, as ``clearance`` is.
         clearance: as for ``plan_motions`` [m]; fingers that hold together are apart by as much.
         speed: as for ``plan_motions``, 0.1 if not given [m/s].

@@ -1,11 +1,11 @@
 """What the best margin or the least effort is most sensitive to."""
 
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from regrasp.mechanics.checks import Array, instance
 from regrasp.planning.surveys.sensitivity import Sensitivity
@@ -26,6 +26,8 @@ from regrasp.plots.look.units import SI, Units
 
 _BAR, _GAP = 1.0, 0.8
 _LINE = 36  # letters that fit above the axes
+_HATCHES = ("", "//////", "......", "\\\\\\\\\\\\", "xxxxxx", "||||||")  # fingers in grey
+_SEEN: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.0}
 
 
 def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units: Units = SI) -> Axes:
@@ -52,7 +54,8 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
     top, ticks = 0.0, []
     for label, values, colours in rows:
         places = top + _BAR * (np.arange(len(values)) + 0.5)
-        ax.barh(places, factor * values, 0.8 * _BAR, color=colours, gid=label)
+        for place, value, colour, hatch in zip(places, values, colours, _hatches(len(values)), strict=True):
+            ax.barh(place, factor * value, 0.8 * _BAR, color=colour, gid=label, hatch=hatch, **_SEEN)
         ticks.append((float(places.mean()), label))
         top += len(values) * _BAR + _GAP
     ax.axvline(0, color=INK, linewidth=0.8)
@@ -66,8 +69,8 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
     label_axis(ax.xaxis, f"change ({arrow})", unit, largest)
     value = quantity(factor * sensitivity.value, "" if unit == "-" else unit).strip()
     handles = [
-        Line2D([], [], color=colour, linewidth=5, solid_capstyle="butt", label=literal(name))
-        for name, colour in names.items()
+        Patch(facecolor=colour, hatch=hatch, label=literal(name), **_SEEN)
+        for (name, colour), hatch in zip(names.items(), _hatches(len(names)), strict=True)
     ]
     title = f"{sensitivity.objective.words} {value}"
     legend(ax, handles, ncols=columns, title=title, title_fontsize=TEXT, alignment="left")
@@ -77,6 +80,11 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
 def sensitivity_png(sensitivity: Sensitivity) -> bytes:
     """``plot_sensitivity`` as a PNG image, for display in notebooks."""
     return png(cast(Figure, plot_sensitivity(sensitivity).figure))
+
+
+def _hatches(count: int) -> list[str]:
+    """For each finger, so that bars are told apart without colour."""
+    return [_HATCHES[i % len(_HATCHES)] for i in range(count)]
 
 
 def _rows(

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, instance
@@ -26,6 +27,7 @@ from regrasp.plots.wrench_space.planes_and_cones import (
 )
 
 _DASHED: dict[str, Any] = {"linestyle": (0, (3, 1.5)), "linewidth": 1.0}
+_LETTERS = 8  # of a name that fits beside its arrow
 
 
 def plot_wrench_loop(
@@ -62,6 +64,7 @@ def plot_wrench_loop(
     ax = _draw_sets(ax, [loop], ordered, colours)
     _draw_load(ax, loop)
     _draw_wrenches(ax, loop, colours, "wrench")
+    _name_wrenches(ax, loop)
     legend(ax, [_key(literal(name), colours[name]) for name in loop.order])
     return finish(ax, units)
 
@@ -109,6 +112,7 @@ def plot_wrench_paths(transition: Transition, ax: Any = None, *, units: Units = 
         ax.plot(*path.T, color=colours[owner], linewidth=3, alpha=0.5, zorder=4, gid=f"path {owner}")
     _draw_load(ax, start)
     _draw_wrenches(ax, start, colours, "start wrench")
+    _name_wrenches(ax, loops[0], 0.2)
     _draw_wrenches(ax, end, colours, "end wrench", **_DASHED)
     legend(ax, [_key(literal(name), colours[name]) for name in grasp.names])
     ax.add_artist(ax.get_legend())
@@ -176,6 +180,17 @@ def _draw_wrenches(ax: Any, loop: WrenchLoop, colours: Colours, what: str, **loo
     for name, tail, head in zip(loop.order, corners[1:], corners[2:], strict=False):
         if name in used:
             arrow3d(ax, tail, head, gid=f"{what} {name}", color=colours[name], zorder=6, **look)
+
+
+def _name_wrenches(ax: Any, loop: WrenchLoop, out: float = 0.08) -> None:
+    """Fingers' names beside their arrows, nearer the heads, so that a picture in grey is read, too."""
+    corners, used = loop.vertices, loop.state.in_use
+    middle = corners[:-1].mean(axis=0)
+    for name, tail, head in zip(loop.order, corners[1:], corners[2:], strict=False):
+        if name in used and len(name) <= _LETTERS:
+            at = (1 + out) * (0.35 * tail + 0.65 * head) - out * middle
+            words = ax.text(*at, literal(name), fontsize=SMALL, ha="center", va="center", zorder=9)
+            words.set_path_effects([withStroke(linewidth=1.8, foreground="white")])
 
 
 def _key(label: str, colour: str, **look: Any) -> Line2D:
