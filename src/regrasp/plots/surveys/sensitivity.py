@@ -73,7 +73,7 @@ def plot_sensitivity(sensitivity: Sensitivity, ax: Axes | None = None, *, units:
         for (name, colour), hatch in zip(names.items(), _hatches(len(names)), strict=True)
     ]
     title = f"{sensitivity.objective.words} {value}"
-    legend(ax, handles, ncols=columns, title=title, title_fontsize=TEXT, alignment="left")
+    legend(ax, handles, ncols=columns, title=title, title_fontsize=TEXT, alignment="left")  # type: ignore[arg-type]
     return ax
 
 
