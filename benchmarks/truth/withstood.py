@@ -281,6 +281,7 @@ def judge_tolerances(state: rg.GraspState, stiffness: Any, counts: Counter[str])
     counts[
         "states, stiffness by contact and direction" if stiffness is not None else "states, all alike"
     ] += 1
+    counts[f"states in {'the plane' if d == 2 else 'space'}"] += 1
 
     def least(members: Array, friction: float = 1.0) -> float:
         return slack(
@@ -318,6 +319,27 @@ def judge_tolerances(state: rg.GraspState, stiffness: Any, counts: Counter[str])
         moments = np.cross(flat, np.pad(load.force, (0, 3 - d)))
         moments = np.pad(moments[:, 2:] if d == 2 else moments, ((0, 0), (d, 0)))
         judged("centre", *(least(k * found.centre * moments) for k in (LESS, MORE)))
+    for i, length in enumerate(found.position.tolist()):
+        if length < inf:
+            judged("position", *(off(state, stiffness, i, k * length) for k in (LESS, MORE)))
+
+
+def off(state: rg.GraspState, stiffness: Any, i: int, length: float) -> float:
+    """The least slack when one contact is off along its tangents, either way, in space eight ways."""
+    grasp, f = state.grasp, state.forces
+    axes = frame(grasp.contacts[i])[1:]
+    ways = [1.0, -1.0] if len(axes) == 1 else [[cos(k * pi / 4), sin(k * pi / 4)] for k in range(8)]
+    least = inf
+    for way in ways:
+        contacts = list(grasp)
+        step = length * np.ravel(way) @ axes
+        c = contacts[i]
+        kept = {"max_force": c.max_force, "torsion": c.torsion, "limits": c.limits, "name": c.name}
+        contacts[i] = rg.Contact(c.position + step, c.normal, c.friction, **kept)
+        moved = rg.Grasp(contacts)
+        error = (grasp_matrix(moved) - grasp_matrix(grasp)) @ f.ravel()
+        least = min(least, slack(moved, f + (answers(moved, stiffness) @ error).reshape(f.shape)))
+    return least
 
 
 def around(unit: Array) -> Array:

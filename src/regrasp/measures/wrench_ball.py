@@ -23,6 +23,7 @@ GAP = 0.01
 
 _STARTS, _STEPS = 60, 200
 _CONES = 4_000_000  # some seconds
+_FEW = 20_000  # more than all but one in a hundred grasps with closure need
 _LOOSER = (0.05, 0.2, 0.5)
 _ROUNDING = 1e-12
 _FARTHEST = 1e50  # facets have normals of products, whose squares are numbers
@@ -130,7 +131,8 @@ def radius(
     m = wrenches.axes.shape[1]
     d = np.ones(m) if metric is None else metric
     if m == 6 and metric is None:
-        found = _searched(wrenches, d, gap)  # a lower bound above 0 proves closure, too
+        # a lower bound above 0 proves closure, too; without closure no search ends
+        found = _searched(wrenches, d, gap, _FEW)
         if found[0] > 0 or (gap >= 1 and found[1] > _SURELY * np.abs(wrenches.axes).max()):
             return found
     if (twist := closure(grasp).escape) is not None:
@@ -150,7 +152,10 @@ def radius(
     return float(values[least]), float(values[least]), -facets[least]
 
 
-def _searched(wrenches: WrenchSet, metric: Array, gap: float) -> tuple[float, float, Array]:
+def _searched(
+    wrenches: WrenchSet, metric: Array, gap: float, most: int | None = None
+) -> tuple[float, float, Array]:
+    """``most``: cones, of which no wider gap is tried where they do not suffice."""
     from regrasp.closed_form.compiled.direction_search import descend, prove
 
     # torques beside forces as large as they are, so that the cones start with the same shape in all
@@ -160,8 +165,9 @@ def _searched(wrenches: WrenchSet, metric: Array, gap: float) -> tuple[float, fl
     starts = np.vstack([np.eye(6), -np.eye(6), np.random.default_rng(0).normal(size=(_STARTS, 6))])
     upper, u = descend(*parts, metric, starts, _STEPS)
     lower = 0.0
-    for asked in (gap, *(g for g in _LOOSER if g > gap)) if gap < 1 else ():
-        upper, u, _, done = prove(*parts, metric, u, asked, _CONES)
+    looser = () if most is not None else tuple(g for g in _LOOSER if g > gap)
+    for asked in (gap, *looser) if gap < 1 else ():
+        upper, u, _, done = prove(*parts, metric, u, asked, _CONES if most is None else most)
         if done:
             lower = upper * (1 - asked) * (1 - _ROUNDING)
             break
