@@ -14,7 +14,7 @@ def test_it_starts_without_fcntl_and_resource(tmp_path: Path) -> None:
     for name in ("fcntl", "resource"):
         (tmp_path / f"{name}.py").write_text(f"raise ModuleNotFoundError('No module named {name}')\n")
     code = (
-        "import regrasp.bench.running.worker, regrasp.files.staging\n"
+        "import regrasp.bench.running.worker, regrasp.disk.staging\n"
         "from pathlib import Path\n"
         "from regrasp.bench.running.machine import can_limit_memory\n"
         "from regrasp.bench.running.jobs import Limits\n"
@@ -22,7 +22,7 @@ def test_it_starts_without_fcntl_and_resource(tmp_path: Path) -> None:
         "from regrasp.errors import InvalidInput\n"
         "assert not can_limit_memory() and Limits().memory_of(1) == 0\n"
         "with Store(Path('rows'), {'solvers': {}}): pass\n"
-        "with regrasp.files.staging.whole_folder('out') as folder: (folder / 'a').write_text('b')\n"
+        "with regrasp.disk.staging.whole_folder('out') as folder: (folder / 'a').write_text('b')\n"
         "try: Limits(memory_limit=1).memory_of(1)\n"
         "except InvalidInput as error: print(error)\n"
     )

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import regrasp as rg
 from places import ROOT
+from regrasp.disk.staging import whole_file, whole_folder
 from regrasp.files import (
     parse_scenario,
     plan_scenario,
@@ -27,7 +28,6 @@ from regrasp.files import (
     write_plan,
     write_setpoints,
 )
-from regrasp.files.staging import whole_file, whole_folder
 from regrasp.plans.record import Choice, Record
 from scenarios import PAPER, edited
 

@@ -20,6 +20,7 @@ FLOORS: dict[str, Set[str]] = {
     "errors": set(),
     "display": {"errors"},
     "compilation": set(),
+    "disk": {"errors", "mechanics", "disk"},  # output written whole or not at all
     "closed_form": {"closed_form", "compilation"},
     "programs": {"errors", "compilation", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
@@ -57,6 +58,7 @@ FLOORS: dict[str, Set[str]] = {
     "outline": {"errors", "mechanics", "outline"},
     "mesh": {"errors", "mechanics", "outline", "mesh"},
     "files": {
+        "disk",
         "errors",
         "mechanics",
         "outline",
@@ -81,6 +83,7 @@ FLOORS: dict[str, Set[str]] = {
         "studies",
     },
     "plots": {
+        "disk",
         "errors",
         "mechanics",
         "outline",
@@ -107,6 +110,7 @@ FLOORS: dict[str, Set[str]] = {
         "explore",
     },
     "bench": {
+        "disk",
         "errors",
         "process_limits",
         "mechanics",
@@ -120,6 +124,7 @@ FLOORS: dict[str, Set[str]] = {
         "bench",
     },
     "cli": {
+        "disk",
         "",
         "errors",
         "mechanics",

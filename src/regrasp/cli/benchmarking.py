@@ -66,7 +66,7 @@ def bench(
     from regrasp.bench.families.catalogue import FAMILIES
     from regrasp.bench.running.jobs import Limits, chosen_problems
     from regrasp.bench.running.solvers import chosen_solvers
-    from regrasp.files.staging import check_folder
+    from regrasp.disk.staging import check_folder
 
     check_folder(output)
     if quick:
@@ -149,7 +149,7 @@ def _hand_over(context: click.Context) -> None:
 def bench_merge(context: click.Context, folders: tuple[Path, ...], output: Path | None) -> dict[str, Any]:
     """Lay the rows of several runs, of other machines too, into one folder."""
     from regrasp.bench.running.merging import merge
-    from regrasp.files.staging import check_folder
+    from regrasp.disk.staging import check_folder
 
     output = output or (context.obj or {}).get("output")  # one that stood before the subcommand counts, too
     if output is None:
@@ -183,7 +183,7 @@ def bench_export(context: click.Context, folder: Path, families: tuple[str, ...]
     """Write the problems to files in DIR, CBF for conic ones and NPZ for QPs, with a manifest."""
     from regrasp.bench.exchange import export
     from regrasp.bench.families.catalogue import FAMILIES
-    from regrasp.files.staging import check_folder
+    from regrasp.disk.staging import check_folder
 
     before = (context.obj or {}).get("families", ())  # those that stood before the subcommand count, too
     families = tuple(dict.fromkeys((*before, *families)))

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 def choose(scenario: "GraspScenario", name: str | Path, output: Path, *, draw: bool) -> dict[str, Any]:
     """Write the chosen grasp with its proof as plan.json, and draw it."""
+    from regrasp.disk.staging import whole_folder
     from regrasp.files import plan_scenario, write_plan
     from regrasp.files.source import naming
-    from regrasp.files.staging import whole_folder
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
 

@@ -38,8 +38,8 @@ def demo(output: Path) -> dict[str, Any]:
     """
     from importlib.resources import files
 
+    from regrasp.disk.staging import check_folder
     from regrasp.files import parse_scenario
-    from regrasp.files.staging import check_folder
 
     check_folder(output)
     name = "paper.toml"
@@ -80,8 +80,8 @@ def plan(
     SCENARIO is a TOML file. The plan is verified, then written with its set-points and figures.
     """
     from regrasp.cli.choosing import choose
+    from regrasp.disk.staging import check_folder
     from regrasp.files import GraspScenario, read_scenario
-    from regrasp.files.staging import check_folder
 
     check_folder(output)
     if mcap and find_spec("rosbags") is None:
@@ -117,6 +117,7 @@ def _work(
     mcap: bool = False,
 ) -> dict[str, Any]:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
+    from regrasp.disk.staging import whole_folder
     from regrasp.files import (
         plan_scenario,
         plan_scenario_motions,
@@ -128,7 +129,6 @@ def _work(
     )
     from regrasp.files.plans.setpoints import check_rate, checked, setpoint_blocks
     from regrasp.files.source import legible, naming
-    from regrasp.files.staging import whole_folder
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify, verify_motions
 

@@ -54,8 +54,8 @@ def simulate(
     status 1 if it does not hold. Needs the extra ``regrasp[mujoco]``.
     """
     from regrasp import ChosenGrasp, execution
+    from regrasp.disk.staging import check_folder
     from regrasp.files import read_plan
-    from regrasp.files.staging import check_folder
 
     if output is not None:
         check_folder(output)
@@ -131,7 +131,7 @@ def _write(run: Any, output: Path) -> list[Path]:
     """The run as a table, a figure and a film."""
     import csv
 
-    from regrasp.files.staging import whole_folder
+    from regrasp.disk.staging import whole_folder
     from regrasp.plots import animate_execution, execution_figure
     from regrasp.plots.look.png import save_png
 

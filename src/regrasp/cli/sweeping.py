@@ -58,7 +58,7 @@ def run(
 
     A run that was ended goes on where it was when the same command is given again.
     """
-    from regrasp.files.staging import check_folder
+    from regrasp.disk.staging import check_folder
     from regrasp.files.study_file import read_study_file
     from regrasp.studies.sweeping import sweep as swept
 

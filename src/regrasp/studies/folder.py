@@ -17,8 +17,8 @@ from secrets import token_hex
 from types import TracebackType
 from typing import Any, Self
 
+from regrasp.disk.locks import HAS_LOCKS, is_locked
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.locks import HAS_LOCKS, is_locked
 from regrasp.studies import columns as kinds
 from regrasp.studies.axes import Plain
 from regrasp.studies.columns import Columns

@@ -10,8 +10,8 @@ from typing import Any
 from regrasp.bench.exchange.cbf import write_cbf
 from regrasp.bench.exchange.npz import write_npz
 from regrasp.bench.problems.problem import BenchProblem, Family
+from regrasp.disk.staging import whole_folder
 from regrasp.errors import InvalidInput
-from regrasp.files.staging import whole_folder
 
 MANIFEST = "manifest.json"
 _LICENCE = "MIT"

@@ -32,8 +32,8 @@ from regrasp.bench.reporting.tables import (
 )
 from regrasp.bench.reporting.warmth import warmths
 from regrasp.bench.running.store import read_rows, read_run, times_compare
+from regrasp.disk.staging import whole_folder
 from regrasp.errors import InvalidInput
-from regrasp.files.staging import whole_folder
 
 PAGE, TEXT, FAILURES = "report.html", "report.md", "failures.csv"
 _COLUMNS = (

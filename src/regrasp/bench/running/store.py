@@ -8,8 +8,8 @@ from types import TracebackType
 from typing import Any
 
 from regrasp.bench.running.result import Key, Row, row_of
+from regrasp.disk.locks import HAS_LOCKS, is_locked
 from regrasp.errors import InvalidInput
-from regrasp.files.locks import HAS_LOCKS, is_locked
 
 ROWS, RUN = "rows.jsonl", "run.json"
 # Of a run that goes on: more solvers change nothing for the rows of the others.

@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from regrasp.disk.staging import whole_file
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.json_text import data_of
-from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import file_path
 from regrasp.plans.outline_cut import OutlineCut
 from regrasp.plans.regrasp_cut import RegraspCut

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from regrasp.disk.staging import whole_file
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.orientation.quaternion import quaternion
 from regrasp.motions.value import Motions

@@ -9,11 +9,11 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+from regrasp.disk.staging import whole_file
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.json_text import data_of
 from regrasp.files.plans.plan_schema import StoredPlan, StoredRecord, StoredRegrasp, StoredTransition
 from regrasp.files.source import naming
-from regrasp.files.staging import whole_file
 from regrasp.files.strict import validated
 from regrasp.mechanics.checks import array, file_path
 from regrasp.mechanics.contact import Contact

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from regrasp.disk.staging import whole_file
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.regrasp_table import RegraspTable
 from regrasp.files.plans.setpoint_rows import Rows, check_angles, check_spacing, check_times
 from regrasp.files.source import text_of
-from regrasp.files.staging import whole_file
 from regrasp.mechanics.checks import Array, file_path, number
 from regrasp.mechanics.value import one_line
 from regrasp.plans.regrasp_plan import RegraspPlan

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from regrasp.disk.staging import whole_file
 from regrasp.errors import InvalidInput, shown
 from regrasp.files.plans.json_text import data_of
 from regrasp.files.plans.setpoints import check_plan
 from regrasp.files.source import naming
-from regrasp.files.staging import whole_file
 from regrasp.files.strict import Strict, validated
 from regrasp.mechanics.checks import array, file_path
 from regrasp.mesh.mesh import Mesh

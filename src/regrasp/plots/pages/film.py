@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
+from regrasp.disk.staging import whole_path
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import number
 from regrasp.motions.value import Motions
@@ -22,7 +23,6 @@ from regrasp.plots.look.space_axes import space_panel
 from regrasp.plots.look.style import SMALL, TEXT, label_axis, new_figure, short, tidy
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import shared_view
-from regrasp.plots.look.written import written
 from regrasp.plots.pages.timeline import LIFT, timeline
 from regrasp.plots.regrasps.moments import Moment, Stage, as_regrasp, moment_of
 from regrasp.plots.regrasps.space_moments import SpaceStage, measures
@@ -82,7 +82,7 @@ def animate(
         frames = _in_motion(plan, rate, units)
     else:
         frames = moments(whole, rate, pause, scene.stage.radius, units)
-    with written(target) as part:
+    with whole_path(target) as part:
         film = _film(scene, frames, rate)
         if ending == ".html":
             part.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")

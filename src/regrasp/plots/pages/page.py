@@ -7,6 +7,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from regrasp.disk.staging import whole_path
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.state import GraspState
 from regrasp.motions import Motions
@@ -19,7 +20,6 @@ from regrasp.plots.grasps.state import force_scale_of, surface_of
 from regrasp.plots.look.style import INK, contact_colours
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import facing_view
-from regrasp.plots.look.written import written
 from regrasp.plots.pages.histories import histories
 from regrasp.plots.pages.page_look import layout_of, playing
 from regrasp.plots.pages.page_regrasp import regrasp_figure
@@ -112,7 +112,7 @@ def html(
     if path is None:
         return text
     target = Path(path)
-    with written(target) as part:
+    with whole_path(target) as part:
         part.write_text(text, encoding="utf-8")
     return target
 

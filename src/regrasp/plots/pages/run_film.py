@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
+from regrasp.disk.staging import whole_path
 from regrasp.errors import InvalidInput, shown
 from regrasp.execution.measured import Execution
 from regrasp.mechanics.checks import Array, instance, number
@@ -16,7 +17,6 @@ from regrasp.outline.outline import Outline
 from regrasp.plots.look.solids import creases
 from regrasp.plots.look.style import GREY, PALETTE, SMALL, WIDTH, label_axis, new_figure, tidy
 from regrasp.plots.look.units import SI, Units
-from regrasp.plots.look.written import written
 
 _DPI = 100
 _MOST = 10_000  # frames; more are a slip of the pen
@@ -79,7 +79,7 @@ def animate_execution(
         return []
 
     writer = (PillowWriter if target.suffix.lower() == ".gif" else FFMpegWriter)(fps=rate)  # type: ignore[arg-type]
-    with written(target) as part:
+    with whole_path(target) as part:
         film = FuncAnimation(figure, draw, frames=rows.tolist(), init_func=list, blit=False)
         film.save(part, writer=writer, dpi=_DPI)
     return target

@@ -13,8 +13,8 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import TextIO
 
+from regrasp.disk.locks import HAS_LOCKS, lock
 from regrasp.errors import InvalidInput
-from regrasp.files.locks import HAS_LOCKS, lock
 from regrasp.mechanics.checks import file_path
 
 _PREFIX = ".regrasp-"
@@ -23,8 +23,8 @@ _OLD = 86400.0
 
 
 @contextmanager
-def whole_file(path: str | Path) -> Iterator[TextIO]:
-    """A text file that appears at ``path``, in place of an earlier one, when the block ends without error.
+def whole_path(path: str | Path) -> Iterator[Path]:
+    """Where to write a file, under a name of the same ending; moved to ``path`` at the end of the block.
 
     What is there and is no file, a pipe or a device, is written to directly.
     Raises ``InvalidInput`` where it cannot be written.
@@ -35,14 +35,20 @@ def whole_file(path: str | Path) -> Iterator[TextIO]:
         if path.is_dir():
             raise InvalidInput(f"{path}: expected a file to write, found a folder")
         if path.exists() and not path.is_file():
-            with path.open("w", encoding="utf-8", newline="") as file:
-                yield file
+            yield path
             return
         with _temporary_in(path.parent) as temporary:
-            part = temporary / path.name
-            with part.open("w", encoding="utf-8", newline="") as file:
-                yield file
+            part = temporary / f"part{path.suffix}"
+            yield part
             part.replace(path)
+
+
+@contextmanager
+def whole_file(path: str | Path) -> Iterator[TextIO]:
+    """A text file that appears at ``path`` as of ``whole_path``."""
+    path = file_path(path)
+    with whole_path(path) as part, _writing(path), part.open("w", encoding="utf-8", newline="") as file:
+        yield file
 
 
 def check_folder(path: str | Path) -> None:

@@ -1,0 +1,1 @@
+"""Folders and files of any kind, written whole or not at all."""
