@@ -28,7 +28,10 @@ from closed_form import Effort as Times
 from command import command
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
-from regrasp.planning.holds.sequences import sequences
+from regrasp.planning.holds.sequences import MAX_TURN, sequences
+from regrasp.planning.holds.turning.arcs import Arcs
+from regrasp.planning.holds.turning.margins import Candidates
+from regrasp.planning.holds.turning.search import ExactSearch, apart_from_each_other
 from report import Measure, Row
 from timing import Side
 
@@ -117,6 +120,44 @@ def best_sequence(effort: Effort) -> Iterator[Row]:
         "sequence",
         f"best sequence on {effort.points} x {effort.orientations}, the longest of {len(found)} found",
         float(np.median(taken)), Measure.SECONDS, 0.5, "sweeps over the whole table",
+    )  # fmt: skip
+
+
+def all_orientations(effort: Effort) -> Iterator[Row]:
+    """Which pairs hold at any orientation, the widest margin of each, and the best sequence among arcs."""
+    graph = hold_graph(effort.points, effort.orientations)
+    _, points, normals, mu = described(graph)
+    loads, first_second = turned_loads(graph), graph.pairs
+
+    def numpy(_: object) -> np.ndarray:
+        return holds.margins(points, normals, mu, loads, graph.peak_ratio, first_second)
+
+    def exact(one: HoldGraph) -> np.ndarray:
+        found = Arcs(Candidates(one.contacts, one.load, one.peak_ratio, one_finger=False)).bounds()
+        return found[first_second]
+
+    best = numpy(None).max(axis=0)
+    if (exact(graph) < best - 1e-6).any():
+        raise RuntimeError("a sampled margin is wider than that over all orientations")
+    yield Row.of(
+        "exact_numpy",
+        f"arcs of {effort.points} points over all orientations, with the widest margin without force limits",
+        f"chunked NumPy at {effort.orientations} orientations",
+        effort.times.of(Side(exact, 1, lambda: hold_graph(effort.points, 1)), Side(numpy, 1)),
+        Measure.FASTER, 200.0, "a dozen nanoseconds a pair, in which other work on the machine shows",
+    )  # fmt: skip
+    candidates = Candidates(graph.contacts, graph.load, graph.peak_ratio, one_finger=False)
+    apart = apart_from_each_other(candidates.points, 0.0)
+    rng, taken = np.random.default_rng(5), []
+    for _ in range(20):
+        start, goal = (tuple(rng.choice(effort.points, 3, replace=False).tolist()) for _ in range(2))
+        search = ExactSearch(candidates, apart, None, MAX_TURN, 0.0)
+        taken.append(timed(lambda: search.sequences(start, goal, 1.0)))  # noqa: B023
+    yield Row.alone(
+        "exact_sequence", f"best sequence among the arcs of {effort.points} points, median of {len(taken)}",
+        float(np.median(taken)), Measure.SECONDS, 0.003,
+        "every move sweeps the margins of all pairs in NumPy, once for each two fingers; then steps and "
+        "turns are chosen among all rows as wide as the best",
     )  # fmt: skip
 
 
@@ -242,7 +283,7 @@ def timed(call) -> float:
 def rows(quick: bool) -> Iterator[Row]:
     """Every row of the benchmark."""
     effort = QUICK if quick else FULL
-    for part in (sweep, growth, best_sequence, memory):
+    for part in (sweep, growth, best_sequence, all_orientations, memory):
         yield from part(effort)
 
 
