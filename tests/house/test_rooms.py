@@ -18,6 +18,15 @@ ROOT = Path(regrasp.__file__).parent
 HELPERS = [TESTS, TESTS.parent / "benchmarks"]
 LINES = 360
 """Of a file, besides the sections Args, Returns and Raises of docstrings."""
+LONG = {
+    "test_bad_scenarios.py", "test_bad_values_in_scenarios.py", "test_bench_report.py",
+    "test_choose_grasp.py",
+    "test_drawing_kinds.py", "test_extremes.py", "test_mesh_kinds.py", "test_plots.py",
+    "test_regrasp_files.py", "test_regrasp_limits.py", "test_regrasps_of_others.py",
+    "test_setpoints_are_the_plans.py", "test_space_plots.py", "test_space_regrasp_files.py",
+    "test_statuses.py", "test_transitions_of_others.py", "withstood.py", "wrong_calls.py",
+}  # fmt: skip
+"""Tables of cases, and tests that share what they look at."""
 FILES = 15
 """Files of a room, besides its ``__init__``."""
 
@@ -73,6 +82,16 @@ def test_lists_of_parameters_are_looked_up_and_all_else_is_read() -> None:
         'def f(a):\n    """Words.\n\n    Args:\n        a: one,\n            more.\n\n    Words.\n    """\n'
     )
     assert read(text) == 'def f(a):\n    """Words.\n\n\n    Words.\n    """\n'
+
+
+def test_tests_and_benchmarks_read_in_one_sitting() -> None:
+    """Those of ``LONG`` are to be split where they are touched; none is added to them."""
+    found = {path.name for root in HELPERS for path in root.rglob("*.py") if _lines(path) > LINES}
+    assert found - LONG == set()
+
+
+def _lines(path: Path) -> int:
+    return len(path.read_text(encoding="utf-8").splitlines())
 
 
 @pytest.mark.parametrize("root", [ROOT, *HELPERS], ids=lambda root: root.name)

@@ -1,6 +1,6 @@
 """Regrasps in space: how many directions of the load are enough, and what looking at few triples saves.
 
-    python benchmarks/speed/load_directions.py [TASKS]
+    python benchmarks/answers/load_directions.py [TASKS]
 
 Random regrasps of a box, four fingers, 40 candidates: moves, margin and processor time with 42, 162 and 400
 directions of the load, of which 42 also with all margins found beforehand. Prints a table.
