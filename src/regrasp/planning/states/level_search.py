@@ -1,6 +1,6 @@
 """The highest level of a narrowing that forces reach, from below and from above; see ``narrowing``."""
 
-from math import inf
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -105,14 +105,23 @@ def _without_noise(chooser: Chooser, narrowing: Narrowing, forces: Array, limits
 def _lowest_proof(
     chooser: Chooser, narrowing: Narrowing, limits: list[float], above: float, proven: float
 ) -> float:
-    """A level proven out of reach, not far above ``above``: nearer the best level rounding hides proofs."""
-    step = LEVEL_TOLERANCE
-    while above + step < proven:
+    """The lowest level proven out of reach, to a tenth of what it is above ``above``.
+
+    Nearer the best level rounding hides proofs. They are of whole cones: what pyramids lose is in them.
+    """
+
+    def is_lost(step: float) -> bool:
         cones = narrowing.narrowed(above + step)
-        if chooser.of(cones).is_lost(list(cones.values()), [limits[i] for i in cones]):
-            return above + step
-        step *= 4
-    return proven
+        return chooser.of(cones).is_lost(list(cones.values()), [limits[i] for i in cones])
+
+    low = step = LEVEL_TOLERANCE
+    while above + step < proven and not is_lost(step):
+        low, step = step, 64 * step
+    step = min(step, proven - above)
+    while step > 1.1 * low:
+        middle = sqrt(low * step)
+        low, step = (low, middle) if is_lost(middle) else (middle, step)
+    return above + step
 
 
 class _Level(NamedTuple):

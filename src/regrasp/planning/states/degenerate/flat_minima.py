@@ -23,8 +23,8 @@ from regrasp.programs import Solution
 _KINDS = {Bound.NONE: 0, Bound.FORCE: 1, Bound.NORMAL: 2, Bound.MARGIN: 3}
 """The words of ``faces``."""
 _UNEVEN = 1e6  # squares that differ by more are left to others
-PATIENCE = 5_000
-"""Calls of arrays or interpreted loops, at a millisecond each at most: then compiled ones pay."""
+PATIENCE = 100_000
+"""Calls of arrays or interpreted loops, a fifth of a millisecond more each: then compiling, 17 s, pays."""
 _calls = count()
 
 
