@@ -53,7 +53,8 @@ def best_between(
     if found:
         return min(found, key=_rank)
     first = refused[0]
-    more = "" if len(refused) == 1 else f"; nor for {len(refused) - 1} other pairs of grasps"
+    others = len(refused) - 1
+    more = f"; nor for {others} other pair{'s' * (others > 1)} of grasps" if others else ""
     raise Infeasible(f"{first}{more}", first.certificate)
 
 

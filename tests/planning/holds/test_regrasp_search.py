@@ -1,6 +1,6 @@
 """Sequences of holds are the best there are, by exhaustive search on small graphs."""
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -81,6 +81,27 @@ def test_no_sequence_has_fewer_moves_or_is_safer(labelled, max_turn):
             mine = 1e3 * sequence.moves + steps + 1e-4 * turning
             assert mine == pytest.approx(cost, abs=1e-5)
     assert min(seen.values()) >= 1, seen
+
+
+def test_ends_that_no_two_fingers_hold_are_left_and_reached_just_where_brute_force_does():
+    """With turns, three fingers take the object to where two hold it; without, they cannot."""
+    rng = np.random.default_rng(1)
+    seen = set()
+    for k in range(90):
+        graph = small_graph(rng, 7, 1 if k % 4 == 0 else int(rng.integers(2, 6)))
+        o = int(rng.integers(len(graph.angles)))
+        start, goal = (tuple(rng.choice(7, 3, replace=False).tolist()) for _ in range(2))
+        able = [
+            any(graph.margins[at, graph.pair(i, j)] >= 0 for i, j in combinations(sorted(end), 2))
+            for end, at in ((start, 0), (goal, o))
+        ]
+        expected = least_cost(graph, start, goal, o, MAX_TURN)
+        found = sequences(graph, start, goal, o)
+        assert [s.moves for s in found] == ([] if expected is None else [round(expected)])
+        seen.add((len(graph.angles) > 1, *able, bool(found)))
+    turning = {(True, a, b, found) for a in (True, False) for b in (True, False) for found in (True, False)}
+    fixed = {(False, a, b, False) for a, b in ((True, False), (False, True), (False, False))}
+    assert turning | fixed <= seen, turning | fixed - seen
 
 
 def test_start_and_goal_of_the_same_contacts_need_no_move():
