@@ -95,3 +95,32 @@ def test_parts_of_the_time_are_medians_of_those_that_were_told() -> None:
     ]
     rows = [row(1, "s", repeat=k, **given) for k, given in enumerate(times)]
     assert outcomes(rows)[0].parts == (3.0, None, 2.0)
+
+
+def test_a_gap_is_told_of_duals_alone_and_numbers_are_finite() -> None:
+    """At x = 1/2 without a dual: x'P x + q'x = -1/2."""
+    assert judged(BOWL, answered(0.5, 0.0), 1e-2).absolute_gap == 0.5
+    assert judged(BOWL, answered(0.5, 0.0), 1e-2).gap == 0.0625
+    assert judged(BOWL, answered(0.5, None), 1e-2).gap is None
+    far = judged(BOWL, answered(1e200, 0.0), 1e-2)
+    assert (far.objective, far.distance, far.correct) == (None, None, False)
+
+
+def test_a_proof_of_what_nobody_knows_is_not_right_yet() -> None:
+    """x >= 0 and x <= -1, by (1, 1)."""
+    program = Program(
+        sparse.csc_matrix((1, 1)), np.zeros(1), sparse.csc_matrix([[-1.0], [1.0]]), np.array([0.0, -1.0]),
+        (Block(Cone.NONNEGATIVE, 1, 2),),
+    )  # fmt: skip
+    for known, right in ((UNKNOWN, None), (Known(Verdict.INFEASIBLE, Truth.PROOF), True)):
+        problem = BenchProblem("toy/two", "toy", program, known)
+        found = judged(problem, Answer("infeasible", duals=np.ones(2)), 1e-2)
+        assert (found.correct, found.certificate_residual) == (right, 0.0)
+
+
+def test_shares_begin_with_the_nearest() -> None:
+    near = {"primal_residual": 0.0}
+    rows = [row(k, "s", distance=d, **near) for k, d in enumerate((1e-9, 1e-7, 1e-3))]
+    rows.append(row(9, "s", distance=1e-12, primal_residual=None))
+    found = closeness(outcomes(rows), rows[0].settings)["s"]
+    assert [found.share(part) for part in (0.0, 0.25, 0.5, 1.0)] == [1e-9, 1e-9, 1e-7, float("inf")]

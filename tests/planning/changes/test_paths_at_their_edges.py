@@ -226,3 +226,35 @@ def test_one_foot_balances_no_torque_of_its_own() -> None:
     assert np.isinf(moved).all()
     moved = _balanced(task(), np.array([[[0.0, 1.9]]]), np.array([[0.0, -2.0, 2.0]]), np.arange(1))
     assert moved == pytest.approx(np.array([[[0.0, 2.0]]]), abs=1e-15)
+
+
+def test_a_rate_of_one_finger_alone_is_to_blame() -> None:
+    for who in (0, 1):
+        rates = np.full(2, inf)
+        rates[who] = 0.25
+        with pytest.raises(rg.Infeasible, match=r"times the rate limits"):
+            planned(task(lean=0.5, rates=rates))
+
+
+def test_rates_that_would_do_are_not_to_blame() -> None:
+    asked = task(lean=0.5, least_normals=np.array([0.0, 0.7501]), rates=np.full(2, 100.0))
+    with pytest.raises(rg.Infeasible, match=r"no path keeps every normal force at 0\.7501 or more"):
+        planned(asked)
+
+
+@pytest.mark.parametrize(
+    ("off", "unit", "good"), [(1e-7, 1, True), (1e-4, 1, False), (1e-4, 100, True), (1e-2, 100, False)]
+)
+def test_an_answer_that_balance_moves_is_no_path(off, unit, good, monkeypatch) -> None:
+    """By more than a hundred-thousandth of the forces, or of their unit."""
+
+    def spoilt(program, backend, **options):
+        answer = solve(program, backend, **options)
+        return replace(answer, value=answer.value + off * 2 / unit * (np.arange(answer.value.size) == 1))
+
+    monkeypatch.setattr(searched, "solve", spoilt)
+    if good:
+        assert planned(task(unit=unit), "effort").shape == (5, 2, 2)
+    else:
+        with pytest.raises(SolverFailed, match="no equilibrium inside the cones"):
+            planned(task(unit=unit), "effort")
