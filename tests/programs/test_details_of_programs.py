@@ -169,3 +169,11 @@ def test_a_direction_is_measured_whatever_its_length(size) -> None:
     assert unboundedness_residual(p, size * np.array([1, e])) == pytest.approx(e, rel=1e-9)
     bent = program(np.diag([0.0, 1.0]), [-1, 0], [[-1, 0]], [1], nonnegative(1), size=1.0)
     assert unboundedness_residual(bent, size * np.array([1, e])) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_a_sound_answer_is_left_as_it_is() -> None:
+    """x^2 / 2 for x >= 2: an objective of 2 is no miss."""
+    answer = solve(program([[1]], [0], [[-1]], [-2], nonnegative(1)), "clarabel")
+    assert answer.objective == pytest.approx(2)
+    assert answer.residual < 1e-8
+    assert "polished" not in answer.said
