@@ -30,7 +30,7 @@ import regrasp as rg
 Array = NDArray[np.float64]
 LESS, MORE = 0.999, 1.001
 _FINE = {"xatol": 1e-12, "fatol": 1e-15, "maxiter": 2000}
-STATES, LOADS, PLANS, MEMBERS = 3000, 2000, 50, 2000
+STATES, LOADS, PLANS, MEMBERS, GRASPS = 3000, 2000, 50, 2000, 2000
 
 
 def main() -> None:
@@ -53,6 +53,10 @@ def main() -> None:
         judge_members(plan, loads, rng, MEMBERS // share, counts)
     for state, _ in states(rng, LOADS // share):
         judge_largest(state, counts)
+    for k in range(GRASPS // share):
+        judge_laws(random_grasp(rng, 2, 2 + k % 4)[0], counts)
+        if k % 10 == 0:
+            judge_growth(random_grasp(rng, 2, 2 + k % 3), counts)
     save()
     for k, (state, stiffness) in enumerate(states(rng, STATES // share)):
         judge_tolerances(state, stiffness, counts)
@@ -350,6 +354,44 @@ def around(unit: Array) -> Array:
     angles = np.linspace(0, 2 * pi, 1441)[:, None]
     result: Array = np.cos(angles) * basis[0] + np.sin(angles) * basis[1]
     return result
+
+
+def judge_laws(grasp: rg.Grasp, counts: Counter[str]) -> None:
+    """Ferrari and Canny's radii against one another and the least weight."""
+    one, each = (rg.wrench_ball(grasp, limit=1.0, norm=norm, length=1.0).radius for norm in ("L1", "Linf"))
+    sound = one <= each * (1 + 1e-9) and each <= len(grasp) * one * (1 + 1e-9)
+    counts[f"eps_1 <= eps_inf <= n eps_1: {'holds' if sound else 'BROKEN'}"] += 1
+    sides = grasp.frictions[:, None] * np.stack([-grasp.normals[:, 1], grasp.normals[:, 0]], axis=1)
+    edges = np.concatenate([grasp.normals + sides, grasp.normals - sides])
+    arms = np.concatenate([grasp.positions, grasp.positions])
+    w = np.vstack([edges.T, arms[:, 0] * edges[:, 1] - arms[:, 1] * edges[:, 0]])
+    m, k = w.shape
+    answer = linprog(
+        [0] * k + [-1],
+        A_eq=np.block([[w, np.zeros((m, 1))], [np.ones(k), 0]]),
+        b_eq=[0] * m + [1],
+        A_ub=np.c_[-np.eye(k), np.ones(k)],
+        b_ub=np.zeros(k),
+        bounds=[(None, None)] * (k + 1),
+    )
+    if answer.status == 0 and -answer.fun > 1e-6:
+        bound = -answer.fun * np.linalg.svd(w - w.mean(axis=1, keepdims=True))[1][-1]
+        counts[f"eps_L1 >= l sigma_min: {'holds' if one >= bound * (1 - 1e-9) else 'BROKEN'}"] += 1
+
+
+def judge_growth(problem: tuple[rg.Grasp, rg.Wrench], counts: Counter[str]) -> None:
+    """Tolerances shrink as the set grows that is withstood besides."""
+    grasp, load = problem
+    small = rg.LoadSet.ball(0.0 * load, force=0.02, torque=0.01)
+    try:
+        state = rg.choose_state(grasp, load, "force", disturbance=small)
+    except rg.Infeasible:
+        return
+    wide, narrow = (rg.tolerances(state, disturbance=loads).withstood for loads in (None, small.scaled(0.9)))
+    pairs = [(getattr(wide, key), getattr(narrow, key)) for key in ("load", "tilt", "centre")]
+    shrinks = all(a >= b * (1 - 1e-9) for a, b in pairs) and wide.friction <= narrow.friction * (1 + 1e-9)
+    shrinks &= bool((wide.position >= narrow.position * (1 - 1e-9) - 1e-9).all())
+    counts[f"tolerances shrink as sets grow: {'holds' if shrinks else 'BROKEN'}"] += 1
 
 
 def judge_largest(state: rg.GraspState, counts: Counter[str]) -> None:
