@@ -72,6 +72,7 @@ FLOORS: dict[str, Set[str]] = {
         "files",
     },
     "studies": {
+        "disk",
         "errors",
         "process_limits",
         "mechanics",

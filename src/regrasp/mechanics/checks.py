@@ -17,12 +17,14 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike as ArrayLike
 
     Array = NDArray[np.float64]
+    Flags = NDArray[np.bool_]
 else:
     # Classes that print as their short names alone in signatures and ``help``.
-    Array, ArrayLike = (
+    Array, Flags, ArrayLike = (
         type(name, (), {"__doc__": words, "__module__": "builtins"})
         for name, words in (
             ("Array", "A NumPy array of floats."),
+            ("Flags", "A NumPy array of truth values."),
             ("ArrayLike", "Whatever NumPy makes an array of: numbers, lists of numbers, arrays."),
         )
     )

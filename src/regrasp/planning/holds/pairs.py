@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, function, items, number, whole
+from regrasp.mechanics.checks import Array, Flags, array, function, items, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.loads.rotated import turned_load
@@ -18,7 +18,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import PEAK_RATIO
 
-Filter = Callable[[Array, Array, float], NDArray[np.bool_]]
+Filter = Callable[[Array, Array, float], Flags]
 """(m, 2) first points, (m, 2) second points, the object's angle [rad] -> (m,) which pairs are allowed."""
 
 MOST_ORIENTATIONS = 1_000_000

@@ -13,7 +13,7 @@ from regrasp.closed_form.pyramid import facet_angles
 from regrasp.closed_form.three_fingers import HOLDS, three_finger_hold
 from regrasp.closed_form.triple_program import Fingers
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, array, number, whole
+from regrasp.mechanics.checks import Array, ArrayLike, Flags, array, number, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
@@ -24,7 +24,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import MOST_FACETS
 from regrasp.planning.states.criteria import PEAK_RATIO
 
-TripleFilter = Callable[[Array, Array, Array], NDArray[np.bool_]]
+TripleFilter = Callable[[Array, Array, Array], Flags]
 """(m, 3) first, second and third points -> (m,) which triples are allowed."""
 
 FACETS = 8

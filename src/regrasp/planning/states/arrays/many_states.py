@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from regrasp.closed_form.conic.grasp_states import FAR, HELD, NONE, OPEN
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, finite, number, numbers_in, read_only
+from regrasp.mechanics.checks import Array, ArrayLike, Flags, finite, number, numbers_in, read_only
 from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.reserve import NEGLIGIBLE, RESERVE, reserve_fraction
@@ -39,8 +39,8 @@ class BatchStates(ArrayValue):
             needed.
     """
 
-    held: NDArray[np.bool_]
-    refused: NDArray[np.bool_]
+    held: Flags
+    refused: Flags
     values: Array
     forces: Array
     margins: Margins
