@@ -266,3 +266,13 @@ def test_without_the_extra(tmp_path: Path, monkeypatch, kind: str) -> None:
     message = rf"^reading {kind.upper()} needs trimesh: pip install 'regrasp\[meshes\]'$"
     with pytest.raises(ImportError, match=message):
         rg.Mesh.from_file(path)
+
+
+def test_what_another_library_logs_is_not_printed(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "damaged.stl"
+    path.write_text(
+        "solid x\nfacet normal 0 0 oops\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+    )
+    with pytest.raises(rg.InvalidInput):
+        rg.Mesh.from_file(path)
+    assert capfd.readouterr() == ("", "")

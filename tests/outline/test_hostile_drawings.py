@@ -242,3 +242,10 @@ def test_memory_is_bounded(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     assert "more than 300000 commands" in done.stdout
+
+
+@pytest.mark.parametrize("text", ["0\nSECTION", "0\nSECTION\n2\n", "0", "999\n"])
+def test_a_dxf_that_ends_at_once_is_refused(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "short.dxf"
+    path.write_text(text)
+    assert "cannot be read as DXF" in refusal(rg.Outline.from_file, path)

@@ -74,8 +74,9 @@ def reason(error: BaseException) -> str:
 def quiet(logger: str) -> Iterator[None]:
     """Without what another library would log: what matters of it is an error or a note here."""
     log = logging.getLogger(logger)
-    before, log.disabled = log.disabled, True
+    before = log.level
+    log.setLevel(logging.CRITICAL + 1)  # which its children take from it, unlike being disabled
     try:
         yield
     finally:
-        log.disabled = before
+        log.setLevel(before)

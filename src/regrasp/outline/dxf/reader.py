@@ -41,12 +41,22 @@ def dxf_drawing(path: Path, size: int, layers: tuple[str, ...] | None = None) ->
     """
     with quiet("ezdxf"):
         document, notes = _document(path, size)
+    from ezdxf.lldxf.const import DXFError
+
     for note in notes:
         warn(f"{path}: {note}: look at what was read", stacklevel=5)
-    walk = _Walk(document, layers)
     try:
+        walk = _Walk(document, layers)
         walk.entities(document.modelspace(), _Place(np.eye(3), np.zeros(3)))
-    except (ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
+    except (
+        ValueError,
+        TypeError,
+        AttributeError,
+        ArithmeticError,
+        LookupError,
+        RuntimeError,
+        DXFError,
+    ) as error:
         if isinstance(error, InvalidInput):
             raise
         raise InvalidInput(f"the file cannot be read as DXF: {reason(error)}") from None
@@ -65,7 +75,10 @@ def _document(path: Path, size: int) -> tuple[Any, list[str]]:
         from ezdxf.lldxf.const import DXFError
     except ImportError:
         raise ImportError("reading DXF needs ezdxf: pip install 'regrasp[outlines]'") from None
-    wrong = (OSError, ValueError, TypeError, AttributeError, LookupError, ArithmeticError, DXFError)
+    wrong = (
+        OSError, ValueError, TypeError, AttributeError, LookupError, ArithmeticError, DXFError,
+        StopIteration, EOFError, RuntimeError, AssertionError,
+    )  # fmt: skip
     try:
         return readfile(path), []
     except wrong as error:
