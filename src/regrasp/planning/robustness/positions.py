@@ -21,7 +21,7 @@ from regrasp.mechanics.robust.withstanding import EXCEEDS, OPENS, SLIPS, Withsta
 from regrasp.mechanics.wrench import torque
 from regrasp.planning.robustness.views import View
 
-_STEPS = 16
+_STEPS = 24  # finer near 0, where little may fail and hold again
 _SECTIONS, _ROUNDS = 12, 9
 _DIRECTIONS = 8
 _TURN = 3.0  # of a normal, at most [rad]
@@ -45,14 +45,14 @@ def farthest_offsets(
 def _first_failure(moving: "_Moving", most: float) -> tuple[float, tuple[str, str]]:
     """The least length in any direction, and which finger fails there and how."""
     ways = _directions(moving.view.grasp.dimension)
-    steps = most * (np.arange(_STEPS) + 1) / _STEPS
+    steps = most * ((np.arange(_STEPS) + 1) / _STEPS) ** 2
     fails = moving.fails(steps, ways)  # (ways, steps)
     first = np.where(fails.any(axis=1), fails.argmax(axis=1), _STEPS)
     if first.min() == _STEPS:
         return inf, ("", "")
     ways = ways[first == first.min()]
-    low = float(steps[first.min()] - steps[0])
-    width = float(steps[0])
+    ends = np.append(0.0, steps)[first.min() : first.min() + 2]
+    low, width = float(ends[0]), float(ends[1] - ends[0])
     for _ in range(_ROUNDS):
         inner = low + width * (np.arange(_SECTIONS) + 1) / _SECTIONS
         fails = moving.fails(inner, ways)
