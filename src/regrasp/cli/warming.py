@@ -90,6 +90,7 @@ def _places() -> None:
 
     square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     rg.choose_grasp(square, 2, rg.Wrench([0.1, -1.0]), friction=0.6)
+    rg.choose_grasp(rg.Mesh.box(1, 1, 1), 3, rg.Wrench([0, 0, -1.0]), friction=0.6, tolerance=0.1)
 
 
 def _wrench_balls() -> None:

@@ -393,5 +393,5 @@ def test_fingers_that_do_nothing_in_the_worst_load_are_on_the_outline_too() -> N
 
 def test_fingers_further_apart_than_the_outline_is_wide_are_refused_at_once() -> None:
     square = rg.Outline([[0, 0], [3, 0], [3, 4], [0, 4]])
-    with pytest.raises(rg.InvalidInput, match=r"no two points of the outline are further apart than 5$"):
+    with pytest.raises(rg.InvalidInput, match=r"no two points of the shape are further apart than 5$"):
         rg.choose_grasp(square, 2, rg.Wrench([0, -1]), friction=0.5, objective="peak", min_distance=5.001)

@@ -71,5 +71,5 @@ def _deviations(disturbance: LoadSet) -> Array:
 def check_task(shape: Outline, load: Wrench | LoadSet) -> None:
     """``InvalidInput`` for what is no outline or no load of the plane."""
     if not isinstance(shape, Outline):
-        raise InvalidInput(f"shape must be an Outline, got {shown(shape)}")
+        raise InvalidInput(f"shape must be an Outline or a Mesh, got {shown(shape)}")
     check_planar(load)

@@ -8,6 +8,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, function, number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
+from regrasp.mesh.mesh import Mesh
 from regrasp.outline.boundary import check_arcs
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
@@ -21,6 +22,7 @@ from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
 from regrasp.planning.placement.search import MOST_BOXES, Progress, Search
+from regrasp.planning.placement.space.choosing import check_space, choose_on_mesh
 from regrasp.planning.states.objectives import Objective
 
 FROM_CORNERS = 1e-3
@@ -31,7 +33,7 @@ DISTINCT = 1e-6
 
 
 def choose_grasp(
-    shape: Outline,
+    shape: Outline | Mesh,
     fingers: int,
     load: Wrench | LoadSet,
     *,
@@ -59,7 +61,9 @@ def choose_grasp(
     returns the best so far, with its gap.
 
     Args:
-        shape: a polygon or a smooth outline; contacts are on its outer boundary.
+        shape: a polygon or a smooth outline, where contacts are on its outer boundary, or a mesh of flat
+            faces. On a mesh the objectives are the first four, and of the options ``tolerance``,
+            ``min_distance``, ``from_corners``, ``most_boxes`` and ``progress``.
         fingers: how many, 2 to 4; all alike.
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
             forces for each load, has to hold; the value is that of the worst load [N, N m].
@@ -90,10 +94,12 @@ def choose_grasp(
         tolerance: gap at which the search ends, as a fraction of the value [-].
         min_distance: least distance between two fingers [m]; a millionth of the object's size if not given,
             for two fingers at one point are one.
-        from_corners: least distance of a finger from a corner, along the boundary [m]; a thousandth of the
-            length if not given, and 0 lets a finger be on a corner with the normal of either side.
+        from_corners: least distance of a finger from a corner, along the boundary, or from a sharp edge of a
+            mesh, along the face [m]; a thousandth of the length, or of the root of the area, if not given;
+            0 lets a finger be on a corner or edge with the normal of either side.
         most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
-            200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help.
+            200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help, and
+            1,000,000 on a mesh.
         progress: called with the bound and the least value so far as the search goes on: the norm of forces
             behind the objective [N].
 
@@ -101,7 +107,8 @@ def choose_grasp(
         Infeasible: Where no placement holds the loads; the certificate is the proof.
         InvalidInput: For arguments that are not what they must be.
     """
-    check_task(shape, load)
+    if not isinstance(shape, Mesh):
+        check_task(shape, load)
     if progress is not None and not callable(progress):
         raise InvalidInput(f"progress must be a function of bound and value, got {shown(progress)}")
     whole(fingers, "fingers", least=2, most=4)
@@ -110,15 +117,34 @@ def choose_grasp(
     if number(tolerance, "tolerance", above=0) >= 1:
         raise InvalidInput(f"tolerance is a fraction below 1, got {shown(tolerance)}")
     apart = None if min_distance is None else number(min_distance, "min_distance", above=0)
-    widest = 0.0 if apart is None else _width(shape.polygon())
+    points = shape.polygon() if isinstance(shape, Outline) else shape.surface()[0]
+    widest = 0.0 if apart is None else _width(points)
     if apart is not None and apart > widest:
         raise InvalidInput(
-            f"min_distance is {apart:g}, and no two points of the outline are further apart than {widest:g}"
+            f"min_distance is {apart:g}, and no two points of the shape are further apart than {widest:g}"
         )
     away = None if from_corners is None else number(from_corners, "from_corners", least=0)
     limit = None if max_force is None else number(max_force, "max_force", above=0)
     constraints = Constraints(limit, number(min_normal, "min_normal", least=0), keep, removable)
     _check_constraints(constraints, goal, fingers)
+    if isinstance(shape, Mesh):
+        cap = None if most_boxes is None else whole(most_boxes, "most_boxes", least=64, most=10_000_000)
+        named: dict[str, object] = {
+            "max_force": limit,
+            "min_normal": min_normal,
+            "keep": keep,
+            "removable": removable,
+        }
+        named |= {"arcs": arcs, "tip_radius": tip_radius, "load_offset": load_offset}
+        named |= {"disturbance": disturbance, "length": length}
+        unused = {
+            name: value is not None and value is not False and value != 0 for name, value in named.items()
+        }
+        return choose_on_mesh(
+            shape, fingers, check_space(shape, load, goal, unused), mu, goal, law, tolerance=tolerance,
+            apart=DISTINCT * float(np.linalg.norm(points, axis=1).max()) if apart is None else apart,
+            away=away, most=cap, progress=progress,
+        )  # fmt: skip
     most = CONSTRAINED_BOXES if constraints.any and goal not in LEVELS else MOST_BOXES
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
@@ -145,8 +171,8 @@ def choose_grasp(
 
 
 def _width(vertices: Array) -> float:
-    """The largest distance between two points of a polygon, one vertex after the other for little memory."""
-    return max(float(np.hypot(*(vertices - vertex).T).max()) for vertex in vertices)
+    """The largest distance between two vertices, one after the other for little memory."""
+    return max(float(np.linalg.norm(vertices - vertex, axis=1).max()) for vertex in vertices)
 
 
 def _pairs(arcs: Sequence[Sequence[float]], length: float) -> list[tuple[float, float]]:

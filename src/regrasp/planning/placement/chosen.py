@@ -10,8 +10,10 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.plain import entries, listed
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
+from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.proof import PlacementProof
+from regrasp.planning.placement.space.patch_proof import PatchProof
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -20,7 +22,7 @@ class OtherGrasp(ArrayValue):
 
     Args:
         grasp: its contacts, relative to the centre of mass.
-        places: (k,) arc lengths of its fingers [m].
+        places: (k,) arc lengths of its fingers, or (k, 3) their points in the mesh's coordinates [m].
         value: of its worst load, as the search computed it, in the unit of the objective.
     """
 
@@ -29,7 +31,7 @@ class OtherGrasp(ArrayValue):
     value: float
 
     def __repr__(self) -> str:
-        places = ", ".join(f"{s:.6g}" for s in self.places)
+        places = _words(self.places)
         return f"OtherGrasp(value {self.value:.6g}, at {places})"
 
 
@@ -38,14 +40,15 @@ class ChosenGrasp(ArrayValue):
     """Where fingers go on a shape, what that reaches, and the proof that nothing better exists.
 
     Args:
-        shape: the outline.
+        shape: the outline or mesh.
         objective: its word.
         grasp: the contacts, F1, F2, ... along the boundary, relative to the centre of mass.
         states: the best forces for every load asked: of a round set for a polygon around it.
         value: of the worst load, in the unit of the objective.
         bound: no placement reaches less; of a margin or a factor, which are largest at best, more.
-        places: (k,) arc lengths of the fingers [m].
-        others: the best of the grasps tried that differ in a finger by a twentieth of the length or more.
+        places: (k,) arc lengths of the fingers, or (k, 3) their points in the mesh's coordinates [m].
+        others: the best of the grasps tried that differ in a finger by a twentieth of the length, or of the
+            root of the mesh's area, or more.
         certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
         max_force: limit on every force that was given [N]; None where none was.
         min_normal: with which every finger pushes at the least [N].
@@ -53,7 +56,7 @@ class ChosenGrasp(ArrayValue):
         deviations: (m, 3) of ``answered``, whose multiple by ``value`` is held on top of the load [N, N m].
     """
 
-    shape: Outline
+    shape: Outline | Mesh
     objective: str
     grasp: Grasp
     states: tuple[GraspState, ...]
@@ -61,7 +64,7 @@ class ChosenGrasp(ArrayValue):
     bound: float
     places: Array
     others: tuple[OtherGrasp, ...]
-    certificate: PlacementProof
+    certificate: PlacementProof | PatchProof
     max_force: float | None = None
     min_normal: float = 0.0
     deviations: Array | None = None
@@ -79,7 +82,7 @@ class ChosenGrasp(ArrayValue):
     def to_dict(self) -> dict[str, Any]:
         """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one."""
         return {
-            "shape": self.shape.to_dict(),
+            "shape": _shape_data(self.shape),
             "objective": self.objective,
             "grasp": self.grasp.to_dict(),
             "states": [state.to_dict() for state in self.states],
@@ -114,25 +117,27 @@ class ChosenGrasp(ArrayValue):
         others = [
             entries(o, "others", ("grasp", "places", "value")) for o in listed(given["others"], "others")
         ]
+        shape = _shape(given["shape"])
+        flat = isinstance(shape, Outline)
         if not isinstance(given["objective"], str):
             raise InvalidInput(f"objective must be a word, got {given['objective']!r}")
         return cls(
-            Outline.from_dict(given["shape"]),
+            shape,
             given["objective"],
             grasp,
             tuple(GraspState.from_dict(state) for state in listed(given["states"], "states")),
             number(given["value"], "value"),
             number(given["bound"], "bound"),
-            array(given["places"], "places", (len(grasp),)),
+            array(given["places"], "places", (len(grasp),) if flat else (len(grasp), 3)),
             tuple(
                 OtherGrasp(
                     Grasp.from_dict(o["grasp"]),
-                    array(o["places"], "places", (None,)),
+                    array(o["places"], "places", (None,) if flat else (None, 3)),
                     number(o["value"], "value"),
                 )
                 for o in others
             ),
-            PlacementProof.from_dict(given["certificate"]),
+            (PlacementProof if flat else PatchProof).from_dict(given["certificate"]),
             None if limit is None else number(limit, "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
             None if deviations is None else array(deviations, "deviations", (None, 3)),
@@ -140,11 +145,14 @@ class ChosenGrasp(ArrayValue):
         )
 
     def __str__(self) -> str:
-        rows = [f"{'':10}{'arc length':>14}{'position':>26}{'inward normal':>22}"]
-        for contact, s in zip(self.grasp, self.places, strict=True):
-            x, y = (f"{v:.6g}" for v in contact.position)
-            nx, ny = (f"{v + 0.0:.4f}" for v in contact.normal)
-            rows.append(f"{contact.name or '':10}{s:14.6g}{f'({x}, {y})':>26}{f'({nx}, {ny})':>22}")
+        arcs = [f"{s:14.6g}" for s in self.places] if self.places.ndim == 1 else [""] * len(self.places)
+        width = 26 if arcs[0] else 36
+        head = f"{'arc length':>14}" if arcs[0] else ""
+        rows = [f"{'':10}{head}{'position':>{width}}{'inward normal':>{width - 4}}"]
+        for contact, s in zip(self.grasp, arcs, strict=True):
+            at = ", ".join(f"{v:.6g}" for v in contact.position)
+            normal = ", ".join(f"{v + 0.0:.4f}" for v in contact.normal)
+            rows.append(f"{contact.name or '':10}{s}{f'({at})':>{width}}{f'({normal})':>{width - 4}}")
         better = "above" if self.bound > self.value else "below"
         return "\n".join(
             [
@@ -155,8 +163,27 @@ class ChosenGrasp(ArrayValue):
         )
 
     def __repr__(self) -> str:
-        places = ", ".join(f"{s:.6g}" for s in self.places)
+        places = _words(self.places)
         return (
             f"ChosenGrasp({self.objective} {self.value:.6g}, bound {self.bound:.6g}, gap {self.gap:.2g}, "
             f"fingers at {places})"
         )
+
+
+def _words(places: Array) -> str:
+    if places.ndim == 1:
+        return ", ".join(f"{s:.6g}" for s in places)
+    return ", ".join("(" + ", ".join(f"{v:.6g}" for v in p) + ")" for p in places)
+
+
+def _shape_data(shape: Outline | Mesh) -> dict[str, Any]:
+    if isinstance(shape, Outline):
+        return shape.to_dict()
+    return {"vertices": shape.vertices.tolist(), "faces": shape.faces.tolist()}
+
+
+def _shape(data: Any) -> Outline | Mesh:
+    if not isinstance(data, Mapping) or "faces" not in data:
+        return Outline.from_dict(data)
+    given = entries(data, "a mesh", ("vertices", "faces"))
+    return Mesh(given["vertices"], given["faces"])

@@ -8,8 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
+from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
+from regrasp.outline.outline import Outline
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.regions import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
@@ -28,11 +30,15 @@ def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Uni
     Above stand the value and the bound that no placement is better than; arc lengths are marked outside.
 
     Args:
-        chosen: what ``regrasp.choose_grasp`` found.
+        chosen: what ``regrasp.choose_grasp`` found on an outline.
         ax: the axes to draw on; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(chosen, "chosen", ChosenGrasp)
+    if not isinstance(chosen.shape, Outline):
+        raise InvalidInput(
+            "chosen is a grasp on a mesh: draw one of its states, plot_state(chosen.states[0], chosen.shape)"
+        )
     ax = plot_outline(chosen.shape, ax, units=units)
     size = float(np.ptp(chosen.shape.polygon(), axis=0).max())
     for other in chosen.others:

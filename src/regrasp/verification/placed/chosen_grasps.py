@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 from math import atan, hypot, inf, isfinite
-from typing import Protocol
+from typing import Any, Protocol, cast
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.balls import makes_ball
 from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.protocol import Proof
+from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, share_of, touches
 from regrasp.verification.placed.touching import Touching
 from regrasp.verification.verdict import Verification
 
@@ -31,8 +32,8 @@ class Chosen(Protocol):
     """What ``verify`` needs to know of a chosen grasp, whoever chose it."""
 
     @property
-    def shape(self) -> Shape:
-        """The outline."""
+    def shape(self) -> Any:
+        """The outline, a ``Shape``, or the mesh."""
 
     @property
     def objective(self) -> str:
@@ -55,8 +56,8 @@ class Chosen(Protocol):
         """No placement is better."""
 
     @property
-    def certificate(self) -> Proof:
-        """The proof of the bound."""
+    def certificate(self) -> Any:
+        """The proof of the bound, a ``Proof`` or a ``SurfaceProof``."""
 
     @property
     def max_force(self) -> float | None:
@@ -115,7 +116,13 @@ def verify_chosen(chosen: Chosen) -> Verification:
     if not chosen.states:
         broken.append("no state shows the value")
     broken += _check_bound(chosen, proof)
-    broken += check_proof(proof) or _check_places(chosen, proof)
+    in_space = hasattr(proof, "normals")
+    if in_space:
+        broken += check_surface_proof(cast(SurfaceProof, proof)) or _check_spots(
+            chosen, cast(SurfaceProof, proof)
+        )
+    else:
+        broken += check_proof(proof) or _check_places(chosen, proof)
     boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
     return Verification(
         tuple(broken),
@@ -124,15 +131,16 @@ def verify_chosen(chosen: Chosen) -> Verification:
         min(slacks),
         excluded=boxes,
         bound=chosen.bound,
-        asked="" if broken else _part(proof),
+        asked="" if broken else _area(chosen, proof) if in_space else _part(proof),
     )
 
 
 def verify_proof(proof: Proof) -> Verification:
     """The verdict on a proof alone."""
     boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
-    broken = check_proof(proof)
-    part = "" if broken else _part(proof)
+    in_space = hasattr(proof, "normals")
+    broken = check_surface_proof(cast(SurfaceProof, proof)) if in_space else check_proof(proof)
+    part = "" if broken or in_space else _part(proof)
     return Verification(tuple(broken), 0.0, inf, inf, excluded=boxes, bound=proof.bound, asked=part)
 
 
@@ -142,12 +150,42 @@ def _part(proof: Proof) -> str:
     return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the outline that was asked about"
 
 
+def _area(chosen: Chosen, proof: Any) -> str:
+    """Which part of a mesh the places are on that a proof is about; empty for all of it."""
+    share = share_of(proof, *cast(Any, chosen.shape).surface())
+    return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the surface that was asked about"
+
+
+def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
+    """That the contacts are fingers that the proof is about, on the mesh given."""
+    shape: Any = chosen.shape
+    if not hasattr(shape, "surface") or share_of(proof, *shape.surface()) < 0:
+        return ["the proof is about another mesh"]
+    if chosen.objective in _LEVELS:
+        return [f"objective {chosen.objective!r} has no bound on meshes"]
+    if len(chosen.grasp) != proof.fingers:
+        return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]
+    broken = []
+    for contact in chosen.grasp:
+        if not touches(proof, contact):
+            broken.append(f"contact {contact.name} is on none of the faces that the proof is about")
+        if contact.friction > proof.friction:
+            broken.append(f"contact {contact.name} has more friction than the proof is about")
+    positions = chosen.grasp.positions
+    away = np.linalg.norm(positions[:, None] - positions, axis=2)[np.triu_indices(len(positions), 1)]
+    if away.min(initial=inf) < proof.min_distance - float(RESOLUTION) * np.abs(positions).max():
+        broken.append("two contacts are nearer than the least distance")
+    if not _all_shown(chosen, np.asarray(proof.loads)):
+        broken.append("a load of the proof has no state")
+    return broken
+
+
 def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     """That a state shows the value."""
     size, norm, power = _MEANINGS[chosen.objective]
     found, value = _norm(state, size, norm), chosen.value
     limit = inf if chosen.max_force is None or chosen.objective == "wrench_ball" else chosen.max_force
-    if np.hypot(*state.forces.T).max() > limit * (1 + _CLOSE):
+    if np.linalg.norm(state.forces, axis=1).max() > limit * (1 + _CLOSE):
         return [f"state {i}: a force is above the limit {limit:.12g}"]
     if not ((state.forces * state.grasp.normals).sum(axis=1) >= chosen.min_normal * (1 - _CLOSE)).all():
         return [f"state {i}: a finger pushes with less than {chosen.min_normal:.12g}"]
@@ -243,7 +281,7 @@ def _scaled(chosen: Chosen, loads: Array, factor: float) -> bool:
 
 def _norm(state: GraspState, size: str, norm: str) -> float:
     forces = state.forces
-    sizes = (forces * state.grasp.normals).sum(axis=1) if size == "normal" else np.hypot(*forces.T)
+    sizes = (forces * state.grasp.normals).sum(axis=1) if size == "normal" else np.linalg.norm(forces, axis=1)
     return float({"sum": sizes.sum(), "largest": sizes.max(), "squares": np.sqrt((sizes**2).sum())}[norm])
 
 
@@ -277,7 +315,7 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
 
 def _all_shown(chosen: Chosen, loads: Array) -> bool:
     """Whether states hold all loads: each is that of a state, or lies between those of two."""
-    shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, 3)
+    shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, loads.shape[1])
     size = np.abs(loads).max(axis=0)
     scale = np.where(size > 0, size, size.max() or 1.0)  # forces and torques have units of their own
     shown, loads = shown / scale, loads / scale

@@ -1,0 +1,188 @@
+"""The least forces that make a wrench in space by fingers that may push at corners of patches, and a twist.
+
+A finger at p with inward normal n and force f in its cone K = { n.f >= 0, |f_t| <= mu n.f } does the work
+v . f along a twist y = (v_0, omega), v = v_0 + omega x p. With sigma(v) the most of v . f over forces of K
+of size 1, all fingers together do at most s(y) = N*(largest sigma of each), N* the dual of the norm of
+the sizes: so forces that make w have the norm w . y / s(y) at least. The best y is found by the simplex
+method in six unknowns, whose columns are made as they are needed: the wrenches at which s(y) is attained.
+"""
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from regrasp.closed_form.compiled.compiling import VIEWS
+
+NEVER = 1e5
+"""Norm, as a multiple of the wrench's, from which nothing is held: what columns cost that no finger makes."""
+_MOST = 150  # columns made
+_TILT = 1e-7  # of the wrench, which keeps it off faces of the bodies that columns span
+
+
+@njit(**VIEWS)
+def _sigma(row, y, mu, size, force):  # type: ignore[no-untyped-def]
+    """The most work of a force of size 1 along a twist, and the force that does it."""
+    vx = y[0] + y[4] * row[2] - y[5] * row[1]
+    vy = y[1] + y[5] * row[0] - y[3] * row[2]
+    vz = y[2] + y[3] * row[1] - y[4] * row[0]
+    along = vx * row[3] + vy * row[4] + vz * row[5]
+    tx, ty, tz = vx - along * row[3], vy - along * row[4], vz - along * row[5]
+    across = sqrt(tx * tx + ty * ty + tz * tz)
+    slope, most = mu, along + mu * across
+    if size == 1:  # |f| = 1
+        if across <= mu * along:
+            slope = across / along if along > 0.0 else 0.0
+        most = (along + slope * across) / sqrt(1.0 + slope * slope)
+    if most <= 0.0:
+        force[0] = force[1] = force[2] = 0.0
+        return 0.0
+    length = 1.0 if size == 0 else 1.0 / sqrt(1.0 + slope * slope)
+    share = slope / across if across > 0.0 else 0.0
+    force[0] = (row[3] + share * tx) * length
+    force[1] = (row[4] + share * ty) * length
+    force[2] = (row[5] + share * tz) * length
+    return most
+
+
+@njit(**VIEWS)
+def support(rows, first, count, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
+    """s(y), and the column at which it is attained: its wrench, and each finger's row and weight."""
+    k = len(first)
+    column, at, weight, force, best, most = work[:6]
+    dual, top, squares = 0.0, 0, 0.0
+    for i in range(k):
+        if i > 0 and first[i] == first[i - 1] and count[i] == count[i - 1]:
+            at[i], most[i] = at[i - 1], most[i - 1]
+            for c in range(3):
+                best[i, c] = best[i - 1, c]
+        else:
+            most[i], at[i] = 0.0, first[i]
+            for c in range(3):
+                best[i, c] = 0.0
+            for r in range(first[i], first[i] + count[i]):
+                found = _sigma(rows[r], y, mu, size, force)
+                if found > most[i]:
+                    most[i], at[i] = found, r
+                    for c in range(3):
+                        best[i, c] = force[c]
+        if most[i] > most[top]:
+            top = i
+        dual += most[i]
+        squares += most[i] * most[i]
+    if norm == 0:
+        dual = most[top]
+    elif norm == 1:
+        dual = sqrt(squares)
+    for c in range(6):
+        column[c] = 0.0
+    for i in range(k):
+        share = 1.0
+        if norm == 0:
+            share = 1.0 if i == top else 0.0
+        elif norm == 1:
+            share = most[i] / dual if dual > 0.0 else 0.0
+        weight[i] = share if most[i] > 0.0 else 0.0
+        if weight[i] > 0.0:
+            p, fx, fy, fz = rows[at[i]], share * best[i, 0], share * best[i, 1], share * best[i, 2]
+            column[0] += fx
+            column[1] += fy
+            column[2] += fz
+            column[3] += p[1] * fz - p[2] * fy
+            column[4] += p[2] * fx - p[0] * fz
+            column[5] += p[0] * fy - p[1] * fx
+    return dual
+
+
+@njit(**VIEWS)
+def bound_by(rows, first, count, w, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
+    """What a twist proves of the norm of forces that make w; infinite where none do."""
+    gain = 0.0
+    for c in range(6):
+        gain += w[c] * y[c]
+    if gain <= 0.0:
+        return 0.0
+    dual = support(rows, first, count, y, mu, size, norm, work)
+    return gain / dual if dual > 0.0 else np.inf
+
+
+@njit(**VIEWS)
+def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work):  # type: ignore[no-untyped-def]
+    """A bound of the norm of forces that make w, within ``precision`` or not below ``level``, and its twist.
+
+    rows: (P, 6) points and inward normals. first, count: (k,) rows of each finger's patch. best: (6,) the
+    twist. In ``work`` stay the columns that make w (``make``): each finger's rows (6, k), weights (6, k), x.
+    """
+    column, at, weight, _, _, _, inverse, x, y, d, made, shares = work
+    k = len(first)
+    scale = 0.0
+    for c in range(6):
+        scale += abs(w[c])
+        best[c] = 0.0
+    if scale == 0.0:
+        for c in range(6):
+            x[c] = 0.0
+        return 0.0
+    for r in range(6):
+        for c in range(6):
+            inverse[r, c] = 0.0
+        push = w[r] + _TILT * scale * (1.0 + 0.37 * r)
+        inverse[r, r] = NEVER if push >= 0.0 else -NEVER
+        x[r] = abs(push) * NEVER
+        for i in range(k):
+            shares[r, i] = 0.0
+            made[r, i] = first[i]
+    proven = 0.0
+    for _ in range(_MOST):
+        value = 0.0
+        for c in range(6):
+            y[c] = 0.0
+            for r in range(6):
+                y[c] += inverse[r, c]
+            value += w[c] * y[c]
+        dual = support(rows, first, count, y, mu, size, norm, work)
+        bound = 0.0
+        if value > 0.0:
+            bound = value / dual if dual > 0.0 else np.inf
+        if bound > proven:
+            proven = bound
+            for c in range(6):
+                best[c] = y[c]
+        if proven >= level or dual <= 1.0 + precision:
+            break
+        total = 0.0
+        for r in range(6):
+            total += x[r]
+        if total - proven <= precision * total:
+            break
+        leaving, least = -1, np.inf
+        for r in range(6):
+            d[r] = 0.0
+            for c in range(6):
+                d[r] += inverse[r, c] * column[c]
+            if d[r] > 1e-11 and x[r] < least * d[r]:
+                leaving, least = r, x[r] / d[r]
+        if leaving < 0:
+            break
+        for r in range(6):
+            if r != leaving:
+                x[r] = max(x[r] - least * d[r], 0.0)
+        x[leaving] = least
+        for c in range(6):
+            inverse[leaving, c] /= d[leaving]
+        for r in range(6):
+            if r != leaving:
+                for c in range(6):
+                    inverse[r, c] -= d[r] * inverse[leaving, c]
+        for i in range(k):
+            made[leaving, i], shares[leaving, i] = at[i], weight[i]
+    return proven
+
+
+def workspace(k: int) -> tuple[Any, ...]:
+    """Memory for ``gauge`` and what it leaves there, for k fingers."""
+    return (
+        np.zeros(6), np.zeros(k, np.int64), np.zeros(k), np.zeros(3), np.zeros((k, 3)), np.zeros(k),
+        np.zeros((6, 6)), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros((6, k), np.int64), np.zeros((6, k)),
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Where fingers go on surfaces in space."""

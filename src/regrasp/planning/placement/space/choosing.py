@@ -1,0 +1,172 @@
+"""Choosing where the fingers go on a mesh."""
+
+from math import inf, sqrt
+
+import numpy as np
+
+from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
+from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.mesh.clear import clear_faces
+from regrasp.mesh.mesh import Mesh
+from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
+from regrasp.planning.placement.laws import LEVELS, Law
+from regrasp.planning.placement.search import Progress
+from regrasp.planning.placement.space.patch_proof import PatchProof
+from regrasp.planning.placement.space.patches import patches_of
+from regrasp.planning.placement.space.surface_search import MOST_BOXES, SurfaceSearch
+from regrasp.planning.states.choosing import choose_state
+
+FROM_EDGES = 1e-3
+"""Default distance of fingers from sharp edges, as a fraction of the root of the surface's area."""
+_ATTEMPTS = 20  # placements whose forces are computed, the best first, until one has them
+_AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found is at the edge of what holds
+_DIFFERENT = 0.05  # of the root of the area
+_OTHERS = 4
+_NARROW = 1e-6  # of the size: triangles of smaller sides are not halved
+_SAMPLED = 200  # points, on which a first placement is sought
+_SAMPLED_BOXES = 20_000
+
+
+def check_space(shape: Mesh, load: Wrench | LoadSet, goal: str, given: dict[str, bool]) -> Array:
+    """(L, 6) the loads. ``InvalidInput`` for what a mesh is not searched with; given: options of outlines."""
+    if not isinstance(load, Wrench | LoadSet):
+        raise InvalidInput(f"load must be a Wrench or a LoadSet, got {shown(load)}")
+    if load.dimension != 3:
+        raise InvalidInput("the shape is in space and load in the plane; give a load in space")
+    if goal in LEVELS:
+        raise InvalidInput(
+            f"objective {goal!r} has no bound on meshes: sum_normal, peak_normal, peak and effort have"
+        )
+    if shape.smooth:
+        raise InvalidInput(
+            "a smooth mesh has no bound: its normals turn within a face; give Mesh(vertices, faces), whose "
+            "faces are flat"
+        )
+    unknown = [name for name, there in given.items() if there]
+    if unknown:
+        raise InvalidInput(f"{', '.join(unknown)}: on outlines only, and the shape is a mesh")
+    if isinstance(load, Wrench):
+        return load.vector[None]
+    if load.vertices is None:
+        raise InvalidInput("in space load is a Wrench or the LoadSet.hull of some; got a round set")
+    return np.unique(load.vertices, axis=0)
+
+
+def choose_on_mesh(
+    shape: Mesh, fingers: int, loads: Array, friction: float, objective: str, law: Law, *, tolerance: float,
+    apart: float, away: float | None, most: int | None, progress: Progress | None,
+) -> ChosenGrasp:  # fmt: skip
+    """The best places on the faces; the arguments are those of ``choose_grasp``, checked."""
+    root = sqrt(shape.area)
+    corners, normals = clear_faces(shape, FROM_EDGES * root if away is None else away)
+    if not len(corners):
+        raise InvalidInput("from_corners leaves no place for a finger: no face reaches so far from its edges")
+    half = 0.5 * tolerance / law.power
+    search = SurfaceSearch(patches_of(corners, normals), fingers, friction, loads, law, apart, half)
+    for spots in _on_samples(corners, normals, search):
+        search.accept(spots)
+    search.run(half, MOST_BOXES if most is None else most, _NARROW, progress)
+    power = law.power
+    for norm, spots in search.placements()[:_ATTEMPTS]:
+        try:
+            grasp = _grasp(spots, friction)
+            states = [choose_state(grasp, Wrench.from_vector(w), objective) for w in loads]
+        except RegraspError:
+            continue
+        worst = max(state.value for state in states)
+        if worst > _AS_FOUND * norm**power:
+            continue
+        bound = min(search.bound, worst ** (1 / power))
+        return ChosenGrasp(
+            shape, objective, grasp, tuple(GraspState(s.grasp, s.load, s.forces) for s in states), worst,
+            min(bound**power, worst), read_only(spots[:, :3] + shape.centre_of_mass),
+            _others(search, spots, friction, shape, power, _DIFFERENT * root), _proof(search, bound),
+        )  # fmt: skip
+    raise _none_holds(search)
+
+
+def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> list[Array]:
+    """The best placements on some points spread over the faces, found as on faces: exact on these points."""
+    sides = corners[:, 1:] - corners[:, :1]
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    steps = (np.arange(_SAMPLED) + 0.5) / _SAMPLED * areas.sum()
+    on = np.minimum(np.searchsorted(np.cumsum(areas), steps), len(areas) - 1)
+    # a sequence that fills the square evenly (Roberts, 2018), folded into the triangle
+    u, v = ((np.arange(_SAMPLED)[:, None] + 0.5) * [0.7548776662466927, 0.5698402909980532] % 1.0).T
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    points = corners[on, 0] + u[:, None] * sides[on, 0] + v[:, None] * sides[on, 1]
+    few = SurfaceSearch(
+        patches_of(np.repeat(points[:, None], 3, axis=1), normals[on]), search.fingers, search.friction,
+        search.loads, search.law, search.apart, 0.01,
+    )  # fmt: skip
+    few.run(0.01, _SAMPLED_BOXES, _NARROW, None)
+    return [spots for _, spots in few.placements()[:_OTHERS]]
+
+
+def _grasp(spots: Array, friction: float) -> Grasp:
+    return Grasp(Contact(s[:3], s[3:] + 0.0, friction, name=f"F{i + 1}") for i, s in enumerate(spots))
+
+
+def _others(
+    search: SurfaceSearch, spots: Array, friction: float, shape: Mesh, power: int, least: float
+) -> tuple[OtherGrasp, ...]:
+    """The best placements tried that differ from the chosen one and from one another."""
+    kept = [spots]
+    found: list[OtherGrasp] = []
+    for norm, other in search.placements():
+        if len(found) == _OTHERS:
+            break
+        if min(_farthest(other, one) for one in kept) < least:
+            continue
+        try:
+            grasp = _grasp(other, friction)
+        except RegraspError:
+            continue
+        kept.append(other)
+        found.append(OtherGrasp(grasp, read_only(other[:, :3] + shape.centre_of_mass), norm**power))
+    return tuple(found)
+
+
+def _farthest(spots: Array, other: Array) -> float:
+    """The farthest finger of one placement from all of another, either way [m]."""
+    away = np.linalg.norm(spots[:, None, :3] - other[None, :, :3], axis=2)
+    return float(max(away.min(axis=0).max(), away.min(axis=1).max()))
+
+
+def _proof(search: SurfaceSearch, bound: float) -> PatchProof:
+    patches, arrays = search.patches, search.arrays()
+    points = patches.rows.reshape(-1, 3, 6)
+    return PatchProof(
+        read_only(points[:, :, :3].copy()), read_only(points[:, 0, 3:].copy()), search.fingers,
+        search.friction, read_only(search.loads.copy()), search.law.size, search.law.norm, search.apart,
+        bound, **{name: _frozen(values) for name, values in arrays.items()},
+    )  # fmt: skip
+
+
+def _frozen(values: np.ndarray) -> np.ndarray:
+    copy = values.copy()
+    copy.setflags(write=False)
+    return copy
+
+
+def _none_holds(search: SurfaceSearch) -> Infeasible:
+    from regrasp.closed_form.compiled.patch_gauge import NEVER
+
+    most = 0.01 * NEVER * search.unit
+    if search.best == inf and search.bound >= most:
+        return Infeasible(
+            f"no {search.fingers} fingers anywhere on this mesh hold the loads with friction "
+            f"{search.friction:g}, not by forces of {most:.3g} N either",
+            _proof(search, most),
+        )
+    proof = _proof(search, min(search.bound, most))
+    return Infeasible(
+        f"no placement was found whose forces hold the loads, and none needs less than {proof.bound:.6g} N; "
+        f"it is not proven that there is none: {search.count} boxes were looked at, allow more by most_boxes",
+        proof,
+    )

@@ -1,0 +1,202 @@
+"""Running the branch and bound over patches of a surface, and reading what it found."""
+
+from math import inf
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.reserve import RESERVE, kept_friction
+from regrasp.planning.placement.laws import Law
+from regrasp.planning.placement.search import Progress
+from regrasp.planning.placement.space.patches import Patches
+
+MOST_BOXES = 1_000_000
+"""Boxes of a search in space unless told otherwise: about 300 bytes each for three fingers."""
+_FIRST_BOXES = 4096
+_AT_A_TIME = 512
+_TRIED = 4096
+_PRECISE, _TRY_PRECISE = 1e-3, 1e-6
+_SAFE = 1e-9  # of a bound, given up to rounding
+_STEP, _SHORTEST = 0.2, 1e-5  # of slides, of the size
+_GAINED = 0.01  # a placement better by so much is worth a slide
+
+
+class SurfaceSearch:
+    """A search for the best places of fingers on patches.
+
+    apart: least distance of fingers [m]. precise: how near each bound is to the best for its box, a fraction.
+    """
+
+    def __init__(
+        self,
+        patches: Patches,
+        fingers: int,
+        friction: float,
+        loads: Array,
+        law: Law,
+        apart: float,
+        tolerance: float,
+    ) -> None:
+        self.patches, self.fingers, self.friction = patches, fingers, friction
+        self.loads, self.law, self.apart = loads, law, apart
+        self.size = float(np.linalg.norm(patches.rows[:, :3], axis=1).max()) or 1.0
+        self._unit = np.repeat([1.0, self.size], 3)
+        self.unit = float(np.abs(loads / self._unit).max()) or 1.0
+        self._wanted = np.ascontiguousarray(-loads / self._unit / self.unit)
+        size, norm = law.codes()
+        self._law = (friction, size, norm, min(0.1 * tolerance, _PRECISE))
+        self._usable = kept_friction(friction, 2 * RESERVE)
+        rows = patches.rows / [self.size, self.size, self.size, 1, 1, 1]
+        room = 2 * len(patches.spans) + _FIRST_BOXES
+        self._rows = _room(rows, len(rows) + 3 * room)
+        self._spans, self._tree = _room(patches.spans, room), _room(patches.tree, room)
+        self._radius = _room(patches.radius / self.size, room)
+        self._boxes = _memory(_FIRST_BOXES, fingers)
+        self._heap = np.zeros(_FIRST_BOXES, np.int64)
+        self._state = np.array([1, 1, 0, len(patches.spans), len(rows)])
+        self._found = np.full(1 + 6 * fingers, inf)
+        self._tried = np.zeros((_TRIED, 1 + 6 * fingers))
+        self.closed = False
+
+    def run(self, tolerance: float, most: int, narrow: float, progress: Progress | None) -> None:
+        """Search until no placement can be better by the fraction ``tolerance``, or ``most`` boxes are used.
+
+        An interrupt from the keyboard ends the search, too, and leaves what it has found.
+        """
+        from regrasp.closed_form.compiled.patch_search import search, spare
+        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL
+
+        memory, slid = spare(self.fingers), inf
+        try:
+            while True:
+                ended = search(
+                    self._rows, self._spans, self._tree, self._radius, self._wanted, self._law, self._usable,
+                    tolerance, self.apart / self.size, narrow, self._boxes, self._heap, self._state,
+                    self._found, self._tried, _AT_A_TIME, memory,
+                )  # fmt: skip
+                if self._found[0] < slid * (1 - _GAINED):
+                    self._slide(_STEP, _SHORTEST if ended == CLOSED else 0.1 * _STEP)
+                    slid = self._found[0]
+                if progress is not None:
+                    progress(self.bound, self.best)
+                self.closed = ended == CLOSED
+                if self.closed or (ended == FULL and not self._grow(most)):
+                    break
+            self._slide(0.1 * _STEP, _SHORTEST)
+        except KeyboardInterrupt:
+            if self.best == inf:
+                raise
+
+    def accept(self, spots: Array) -> None:
+        """Take a placement (k, 6) [m] for found, where it is better."""
+        scaled = np.array(spots / [self.size, self.size, self.size, 1, 1, 1])
+        self._take(scaled, self._value(scaled))
+
+    def _take(self, scaled: Array, value: float) -> None:
+        if value < self._found[0]:
+            self._found[0], self._found[1:] = value, scaled.ravel()
+            row = self._state[2] % _TRIED
+            self._state[2] += 1
+            self._tried[row] = self._found
+
+    def _value(self, scaled: Array) -> float:
+        from regrasp.closed_form.compiled.patch_search import spare
+        from regrasp.closed_form.compiled.patch_slide import slide
+
+        law = (self._usable, *self._law[1:3], _TRY_PRECISE)
+        return float(
+            slide(
+                self._rows, 0, self._wanted, law, self.apart / self.size, 0.0, 1.0, scaled, inf,
+                scaled.copy(), np.zeros((2, 3)), spare(self.fingers),
+            )
+        )  # fmt: skip
+
+    def _slide(self, step: float, shortest: float) -> None:
+        from regrasp.closed_form.compiled.patch_search import spare
+        from regrasp.closed_form.compiled.patch_slide import slide
+
+        if self._found[0] == inf or not self._radius[: len(self.patches.order)].any():
+            return
+        spots = self._found[1:].reshape(-1, 6).copy()
+        law = (self._usable, *self._law[1:3], _TRY_PRECISE)
+        value = slide(
+            self._rows, len(self.patches.order), self._wanted, law, self.apart / self.size, step, shortest,
+            spots, self._found[0], spots.copy(), np.zeros((2, 3)), spare(self.fingers),
+        )  # fmt: skip
+        self._take(spots, value)
+
+    def _grow(self, most: int) -> bool:
+        have = len(self._heap)
+        room = min(2 * have, most) if self.count + self.fingers + 1 > have else have
+        if self.count + self.fingers + 1 > room:
+            return False
+        if room > have:
+            larger = _memory(room, self.fingers)
+            for old, new in zip(self._boxes, larger, strict=True):
+                new[:have] = old
+            self._boxes, self._heap = larger, _room(self._heap, room)
+        patches, rows = int(self._state[3]), int(self._state[4])
+        if patches + 2 > len(self._spans) or rows + 6 > len(self._rows):
+            self._rows = _room(self._rows, 2 * len(self._rows))
+            self._spans, self._tree = (_room(a, 2 * len(a)) for a in (self._spans, self._tree))
+            self._radius = _room(self._radius, 2 * len(self._radius))
+        return True
+
+    @property
+    def count(self) -> int:
+        """Boxes made."""
+        return int(self._state[0])
+
+    @property
+    def best(self) -> float:
+        """The least norm found [N]; infinite before one is."""
+        return self._held(self._found[0])
+
+    def _held(self, norm: float) -> float:
+        from regrasp.closed_form.compiled.patch_gauge import NEVER
+
+        return float(norm) * self.unit if norm < 0.1 * NEVER else inf
+
+    @property
+    def bound(self) -> float:
+        """No placement has a smaller norm [N]."""
+        bounds, kinds = self._boxes[1][: self.count], self._boxes[4][: self.count]
+        return float(bounds[(kinds == 0) | (kinds == 1)].min(initial=inf)) * self.unit * (1 - _SAFE)
+
+    def placements(self) -> list[tuple[float, Array]]:
+        """Placements tried, the best first: their norm [N] and spots (k, 6) [m]."""
+        rows = np.vstack([self._found, self._tried[: min(int(self._state[2]), _TRIED)]])
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        scale = [self.size, self.size, self.size, 1, 1, 1]
+        found = ((self._held(row[0]), row[1:].reshape(-1, 6) * scale) for row in rows)
+        return [(norm, spots) for norm, spots in found if norm < inf]
+
+    def arrays(self) -> dict[str, Array]:
+        """What a proof is made of: patches, boxes, and what bounds them."""
+        n, p = self.count, int(self._state[3])
+        patches, _, twists, critical, kinds, children, *_ = (values[:n] for values in self._boxes)
+        spans = self._spans[: len(self.patches.spans)] // 3
+        split = kinds == 2
+        return {
+            "spans": spans,
+            "halves": self._tree[:p],
+            "boxes": patches,
+            "children": np.where(split[:, None], children, 0),
+            "number": np.where(split, 0, np.where(kinds == 3, -1, critical)),
+            "twists": np.where(split[:, None], 0.0, twists / self._unit),
+        }
+
+
+def _room(values: np.ndarray, room: int) -> np.ndarray:
+    larger = np.zeros((room, *values.shape[1:]), values.dtype)
+    larger[: len(values)] = values
+    return larger
+
+
+def _memory(room: int, k: int) -> tuple[np.ndarray, ...]:
+    """Arrays for so many boxes, as the compiled search takes them."""
+    return (
+        np.zeros((room, k), np.int64), np.zeros(room), np.zeros((room, 6)), np.zeros(room, np.int64),
+        np.zeros(room, np.int64), np.zeros((room, 2), np.int64), np.zeros((room, k, 6)),
+        np.zeros(room, np.int64),
+    )  # fmt: skip

@@ -1,0 +1,297 @@
+"""The check of a proof that no placement of fingers on the faces of a mesh is better than a bound.
+
+Boxes of patches cover all placements, and a twist y = (v_0, omega) excludes each that is not split. A finger
+at p with inward normal n does along y the work v . f, v = v_0 + omega x p, which is affine in p. The most of
+it over forces of its cone of size 1, sigma(v), is convex in v, and so largest at a corner of its patch:
+
+    sigma = max(0, n.v + mu |v_t|)                        size n.f
+    sigma = |v| inside the cone, else max(0, n.v + mu |v_t|) / sqrt(1 + mu^2)     size |f|
+
+Then (-w) . y <= N*(largest sigma of each finger) N(sizes), as in the plane (``placements``). Doubles decide
+where more than all of their rounding is left, and rationals, roots rounded up, where it is not.
+"""
+
+from fractions import Fraction
+from math import inf
+from typing import Any, Protocol
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.roots import root_above
+
+_ROUNDING = 1e-12  # of the terms: far more than the roundings of sums and of halving edges
+_ON = 1e-9  # of the reach: a triangle is on a face
+_AT_A_TIME = 4096
+
+
+class SurfaceProof(Protocol):
+    """What is needed to know of a proof on a surface, whoever made it, as of ``PatchProof``."""
+
+    corners: Array
+    normals: Array
+    fingers: int
+    friction: float
+    loads: Array
+    size: str
+    norm: str
+    min_distance: float
+    bound: float
+    spans: Any
+    halves: Any
+    boxes: Any
+    children: Any
+    number: Any
+    twists: Array
+
+
+def check_surface_proof(proof: SurfaceProof) -> list[str]:
+    """What is wrong with the tree of boxes or with what excludes them, in words; nothing for a proof."""
+    broken = _shapes(proof)
+    if broken:
+        return broken
+    patches = _Patches(proof)
+    return patches.wrong() or _boxes_wrong(proof) or _exclusions_wrong(proof, patches)
+
+
+def _shapes(proof: SurfaceProof) -> list[str]:
+    m, n, k = len(proof.normals), len(proof.children), proof.fingers
+    wanted = [
+        (np.shape(proof.corners), (m, 3, 3)), (np.shape(proof.normals), (m, 3)),
+        (np.shape(proof.loads), (len(proof.loads), 6)),
+        (np.shape(proof.spans), (len(proof.spans), 2)), (np.shape(proof.halves), (len(proof.halves), 3)),
+        (np.shape(proof.boxes), (n, k)), (np.shape(proof.children), (n, 2)),
+        (np.shape(proof.number), (n,)), (np.shape(proof.twists), (n, 6)),
+    ]  # fmt: skip
+    if any(found != shape for found, shape in wanted) or not (m and n and k and len(proof.loads)):
+        return ["proof: its arrays do not have the shapes that they must have"]
+    numbers = (proof.corners, proof.normals, proof.loads, proof.twists, proof.bound)
+    if not all(np.isfinite(a).all() for a in numbers) or not 0 <= proof.friction < inf:
+        return ["proof: its numbers must be finite, and friction 0 or more"]
+    if proof.size not in ("normal", "force") or proof.norm not in ("sum", "squares", "largest"):
+        return ["proof: size or norm has no meaning"]
+    if not 0 <= proof.min_distance < inf or proof.bound < 0:
+        return ["proof: min_distance and bound must be 0 or more"]
+    lengths = np.linalg.norm(proof.normals, axis=1)
+    return [] if (np.abs(lengths - 1) < _ROUNDING).all() else ["proof: normals must be of length 1"]
+
+
+class _Patches:
+    """The tree of patches: groups of triangles, and triangles halved across edges."""
+
+    def __init__(self, proof: SurfaceProof) -> None:
+        self.spans, self.halves = np.asarray(proof.spans), np.asarray(proof.halves)
+        self.corners, self.normals = np.asarray(proof.corners), np.asarray(proof.normals)
+
+    def wrong(self) -> list[str]:
+        """What is wrong with the halves; and where the parts of triangles are, for ``rows``."""
+        p, q, m = len(self.spans), len(self.halves), len(self.normals)
+        if not p or p > q or tuple(self.spans[0]) != (0, m):
+            return ["proof: patch 0 must be the whole surface"]
+        self._part: dict[int, tuple[int, Array]] = {}
+        for patch in range(q):
+            left, right, edge = (int(c) for c in self.halves[patch])
+            first, count = (int(c) for c in self.spans[patch]) if patch < p else (0, 1)
+            if patch < p and not (0 <= first < first + count <= m):
+                return [f"proof: patch {patch} is no group of triangles"]
+            if patch >= p and patch not in self._part:
+                return [f"proof: patch {patch} is a half of none"]
+            if patch < p and count == 1:
+                self._part[patch] = first, self.corners[first]
+            if left < 0:
+                continue
+            if not (patch < left < q and patch < right < q) or left == right:
+                return [f"proof: patch {patch} has no two halves"]
+            if count > 1:
+                a, b = (tuple(self.spans[half]) if half < p else (0, 0) for half in (left, right))
+                if a[0] != first or b[0] != first + a[1] or a[1] + b[1] != count or not (a[1] and b[1]):
+                    return [f"proof: the halves of patch {patch} do not cover it"]
+                continue
+            on, t = self._part[patch]
+            if edge not in (0, 1, 2) or left < p or right < p:
+                return [f"proof: patch {patch} has no two halves"]
+            a, b, o = t[edge], t[(edge + 1) % 3], t[(edge + 2) % 3]
+            middle = 0.5 * (a + b)
+            self._part[left] = on, np.array([a, middle, o])
+            self._part[right] = on, np.array([middle, b, o])
+        return []
+
+    def rows(self, patch: int) -> tuple[Array, Array]:
+        """(c, 3) corners and their normals."""
+        if patch in self._part:
+            on, corners = self._part[patch]
+            return corners, np.repeat(self.normals[on : on + 1], len(corners), axis=0)
+        first, count = self.spans[patch]
+        corners = self.corners[first : first + count]
+        normals = np.repeat(self.normals[first : first + count], corners.shape[1], axis=0)
+        return corners.reshape(-1, 3), normals
+
+
+def _boxes_wrong(proof: SurfaceProof) -> list[str]:
+    """That the boxes are a tree, and that each is covered by those it is split into."""
+    boxes, children, halves = (np.asarray(a) for a in (proof.boxes, proof.children, proof.halves))
+    n = len(boxes)
+    if boxes.min() < 0 or boxes.max() >= len(halves) or boxes[0].any():
+        return ["proof: box 0 must give every finger the whole surface, and all boxes patches"]
+    parents = np.flatnonzero(children[:, 1])
+    first, count = children[parents].T
+    inside = [np.arange(a, a + c) for a, c in zip(first.tolist(), count.tolist(), strict=True)]
+    everyone = np.sort(np.concatenate(inside)) if inside else np.zeros(0, int)
+    if not np.array_equal(everyone, np.arange(1, n)) or (first <= parents).any():
+        return ["proof: the boxes are no tree"]
+    for c in np.unique(count).tolist():
+        these = parents[count == c]
+        whole = boxes[these]
+        parts = boxes[children[these, 0][:, None] + np.arange(c)]
+        split = (parts[:, 0] != whole) | (parts[:, -1] != whole)
+        at = split.argmax(axis=1)
+        patch = np.take_along_axis(whole, at[:, None], axis=1)
+        left, right = halves[patch, 0], halves[patch, 1]
+        place = np.cumsum(split, axis=1) - 1
+        good = (split.sum(axis=1) == c - 1) & (left[:, 0] >= 0) & (~split | (whole == patch)).all(axis=1)
+        for number in range(c):
+            expected = np.where(split, np.where(place < c - 1 - number, left, right), whole)
+            good &= (parts[:, number] == expected).all(axis=1)
+        if c < 2 or not good.all():
+            return [f"proof: box {these[~good][0]} is not covered by the boxes it is split into"]
+    return []
+
+
+def _exclusions_wrong(proof: SurfaceProof, patches: _Patches) -> list[str]:
+    boxes, number = np.asarray(proof.boxes), np.asarray(proof.number)
+    leaves = np.flatnonzero(np.asarray(proof.children)[:, 1] == 0)
+    near = leaves[number[leaves] == -1]
+    for box in near.tolist():
+        if not _near(proof, patches, boxes[box]):
+            return [f"proof: fingers of box {box} may be far enough apart"]
+    rest = leaves[number[leaves] != -1]
+    if (number[rest] < 0).any() or (number[rest] >= len(proof.loads)).any():
+        return ["proof: a box has no load"]
+    if proof.bound == 0:
+        return []
+    reach = float(np.linalg.norm(proof.corners, axis=2).max())
+    most = np.zeros((len(rest), proof.fingers))
+    for finger in range(proof.fingers):  # boxes that share a patch together
+        order = np.argsort(boxes[rest, finger], kind="stable")
+        here = boxes[rest[order], finger]
+        for group in np.split(order, np.flatnonzero(np.diff(here)) + 1) if len(order) else []:
+            points, normals = patches.rows(int(boxes[rest[group[0]], finger]))
+            for some in np.split(group, range(_AT_A_TIME, len(group), _AT_A_TIME)):
+                most[some, finger] = _sigma(proof, proof.twists[rest[some]], points, normals)
+    y, w = proof.twists[rest], np.asarray(proof.loads)[number[rest]]
+    speed = np.linalg.norm(y[:, :3], axis=1) + np.linalg.norm(y[:, 3:], axis=1) * reach
+    most += (_ROUNDING * (1 + proof.friction) * speed)[:, None]
+    dual = most.max(axis=1) if proof.norm == "sum" else most.sum(axis=1)
+    if proof.norm == "squares":
+        dual = np.sqrt((most**2).sum(axis=1))
+    terms = -w * y
+    work = terms.sum(axis=1) - _ROUNDING * np.abs(terms).sum(axis=1)
+    clear = (work > proof.bound * dual * (1 + _ROUNDING)) & (work > 1e-140)
+    for box in rest[~clear].tolist():
+        if not _excluded(proof, patches, box):
+            return [f"proof: the twist of box {box} does not exclude it"]
+    return []
+
+
+def _sigma(proof: SurfaceProof, y: Array, points: Array, normals: Array) -> Array:
+    """(b,) largest sigma over corners (c, 3) of twists (b, 6), but for rounding."""
+    v = y[:, None, :3] + np.cross(y[:, None, 3:], points)
+    along = (v * normals).sum(axis=2)
+    across = np.linalg.norm(v - along[..., None] * normals, axis=2)
+    edge = along + proof.friction * across
+    if proof.size == "force":
+        inside = across <= proof.friction * along
+        edge = np.where(inside, np.linalg.norm(v, axis=2), edge / np.sqrt(1 + proof.friction**2))
+    result: Array = np.maximum(edge.max(axis=1), 0.0)
+    return result
+
+
+def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
+    """The same of one box in rationals. Halves of edges are as doubles, off by their last digits."""
+    y = [Fraction(c) for c in proof.twists[box].tolist()]
+    w = proof.loads[int(proof.number[box])].tolist()
+    work = -sum((Fraction(a) * b for a, b in zip(w, y, strict=True)), start=Fraction(0))
+    mu, most = Fraction(proof.friction), []
+    for patch in proof.boxes[box].tolist():
+        largest = Fraction(0)
+        for p, n in zip(*(a.tolist() for a in patches.rows(patch)), strict=True):
+            (px, py, pz), (nx, ny, nz) = map(Fraction, p), map(Fraction, n)
+            v = (y[0] + y[4] * pz - y[5] * py, y[1] + y[5] * px - y[3] * pz, y[2] + y[3] * py - y[4] * px)
+            along, length2 = v[0] * nx + v[1] * ny + v[2] * nz, nx * nx + ny * ny + nz * nz
+            speed2 = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
+            across2 = speed2 * length2 - along * along
+            sigma = (along + mu * root_above(across2)) * _upper(length2)
+            if proof.size == "force":
+                if along > 0 and across2 <= (mu * along) ** 2:
+                    sigma = root_above(speed2)
+                else:
+                    sigma *= root_above(1 / (1 + mu * mu))
+            largest = max(largest, sigma)
+        most.append(largest)
+    if proof.norm == "sum":
+        dual = max(most)
+    elif proof.norm == "largest":
+        dual = sum(most, start=Fraction(0))
+    else:
+        dual = root_above(sum((s * s for s in most), start=Fraction(0)))
+    return work >= Fraction(proof.bound) * dual and (dual > 0 or work > 0)
+
+
+def _upper(square: Fraction) -> Fraction:
+    """At or above one over a root."""
+    return root_above(1 / square)
+
+
+def _near(proof: SurfaceProof, patches: _Patches, box: Array) -> bool:
+    """Whether two fingers are nearer than they must be, wherever they are on their patches."""
+    rows = [patches.rows(patch)[0] for patch in box.tolist()]
+    reach = float(np.abs(proof.corners).max())
+    for i, one in enumerate(rows):
+        for other in rows[:i]:
+            far = np.linalg.norm(one[:, None] - other[None], axis=2).max()
+            if far < proof.min_distance + _ROUNDING * reach:
+                return True
+    return False
+
+
+def touches(proof: SurfaceProof, contact: Contact) -> bool:
+    """Whether a contact is on one of the triangles, with its inward normal."""
+    corners, n = np.asarray(proof.corners), np.asarray(proof.normals)
+    reach = float(np.linalg.norm(corners, axis=2).max())
+    facing = np.linalg.norm(n - contact.normal, axis=1) <= 4 * float(RESOLUTION)
+    return bool((_away(corners[facing], contact.position) <= float(RESOLUTION) * reach).any())
+
+
+def _away(corners: Array, point: Array) -> Array:
+    """(m,) distances of a point from triangles (m, 3, 3)."""
+    a, b, c = (corners[:, i] for i in range(3))
+    normal = np.cross(b - a, c - a)
+    square = (normal**2).sum(axis=1)
+    height = ((point - a) * normal).sum(axis=1) / np.sqrt(square)
+    inside = np.ones(len(corners), bool)
+    away = np.full(len(corners), inf)
+    for p, q in ((a, b), (b, c), (c, a)):
+        side = q - p
+        inside &= (np.cross(side, point - p) * normal).sum(axis=1) >= 0
+        t = np.clip(((point - p) * side).sum(axis=1) / (side**2).sum(axis=1), 0, 1)
+        away = np.minimum(away, np.linalg.norm(p + t[:, None] * side - point, axis=1))
+    return np.where(inside, np.abs(height), away)
+
+
+def share_of(proof: SurfaceProof, vertices: Array, faces: Any) -> float:
+    """The part of a mesh's area that the proof is about, -1 where a triangle of it is on no face [-]."""
+    t = np.asarray(vertices)[np.asarray(faces)]
+    cross = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
+    area = np.linalg.norm(cross, axis=1)
+    inward, reach = -cross / area[:, None], float(np.abs(vertices).max())
+    corners = np.asarray(proof.corners)
+    for triangle, normal in zip(corners, proof.normals, strict=True):
+        facing = np.linalg.norm(inward - normal, axis=1) <= _ON
+        if not (_away(t[facing], triangle.mean(axis=0)) <= _ON * reach).any():
+            return -1.0
+        if np.abs((triangle - triangle.mean(axis=0)) @ normal).max() > _ON * reach:
+            return -1.0
+    sides = corners[:, 1:] - corners[:, :1]
+    return float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / area.sum())

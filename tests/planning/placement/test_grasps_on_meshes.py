@@ -1,0 +1,157 @@
+"""Grasps chosen on meshes, against all triples of points, random placements, and proofs that were spoiled."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from refusals import refusal
+from regrasp.mesh import parts
+from regrasp.mesh.clear import clear_faces
+
+pytestmark = pytest.mark.oracle
+
+BOX = rg.Mesh.box(0.04, 0.03, 0.05)
+TURNED = rg.Mesh.extruded(rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]]), 2.0)
+LOADS = rg.LoadSet.hull(
+    [rg.Wrench([0, 0, -2]), rg.Wrench([1.5, 0, -1]), rg.Wrench([0, -1, -1], [0, 0.01, 0])]
+)
+HEAVY = rg.LoadSet.hull([rg.Wrench([0, 0, -2]), rg.Wrench([0, 1, -1], [0.2, 0, 0.3])])
+
+
+@cache
+def chosen(objective: str, fingers: int = 3) -> rg.ChosenGrasp:
+    return rg.choose_grasp(BOX, fingers, LOADS, friction=0.5, objective=objective, tolerance=0.02)
+
+
+@pytest.mark.parametrize("objective", ["sum_normal", "peak_normal", "peak", "effort"])
+def test_no_triple_of_points_is_better_than_the_bound(objective: str) -> None:
+    found = chosen(objective)
+    assert found.bound <= found.value
+    assert found.gap <= 0.02
+    assert rg.verify(found).ok, rg.verify(found)
+    best = np.inf
+    contacts = BOX.contacts(12, friction=0.5)
+    for three in combinations(contacts, 3):
+        try:
+            grasp = rg.Grasp(three)
+            value = max(rg.choose_state(grasp, w, objective).value for w in LOADS_OF)
+        except rg.Infeasible:
+            continue
+        best = min(best, value)
+    assert found.bound < best < 1.5 * found.bound  # so few points come near,
+
+
+LOADS_OF = [rg.Wrench.from_vector(w) for w in np.asarray(LOADS.vertices)]
+
+
+def test_more_fingers_need_no_more() -> None:
+    four, three = chosen("peak", 4), chosen("peak")
+    assert four.bound <= three.value
+    assert rg.verify(four).ok
+
+
+def test_units_and_frames_change_names_only() -> None:
+    found = rg.choose_grasp(TURNED, 3, HEAVY, friction=0.6, objective="peak", tolerance=0.02)
+    c, s = np.cos(0.7), np.sin(0.7)
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ np.array([[1.0, 0, 0], [0, c, s], [0, -s, c]])
+    length, force = 1e-3, 1e4
+    moved = rg.Mesh(length * TURNED.vertices @ turn.T + 5.0, TURNED.faces[::-1])
+    loads = [
+        rg.Wrench(force * turn @ w[:3], force * length * turn @ w[3:]) for w in np.asarray(HEAVY.vertices)
+    ]
+    again = rg.choose_grasp(moved, 3, rg.LoadSet.hull(loads), friction=0.6, objective="peak", tolerance=0.02)
+    assert again.bound <= force * found.value
+    assert force * found.bound <= again.value
+    assert rg.verify(again).ok
+    assert rg.verify(found).ok
+
+
+def test_faces_keep_away_from_sharp_edges_only() -> None:
+    corners, normals = clear_faces(BOX, 0.002)
+    assert np.linalg.norm(normals, axis=1) == pytest.approx(1)
+    sides = corners[:, 1:] - corners[:, :1]
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2
+    assert area == pytest.approx(2 * (36 * 26 + 36 * 46 + 26 * 46) * 1e-6, rel=2e-3)
+    bracket = parts.bracket()  # whose holes have walls of flat strips, each beside the next
+    corners, _ = clear_faces(bracket, 0.004)  # no more than half of the web is left, on strips as well
+    assert not len(clear_faces(bracket, 0.1)[0])
+    assert len(corners)
+    whole, _ = clear_faces(bracket, 0.0)
+    assert np.array_equal(whole, bracket.surface()[0][bracket.faces])
+
+
+def spoiled(change: Callable[[dict[str, Any]], None]) -> rg.Verification:
+    found = chosen("peak")
+    proof = found.certificate
+    values = {
+        name: np.array(getattr(proof, name)) for name in ("boxes", "children", "number", "twists", "halves")
+    }
+    change(values)
+    return rg.verify(replace(found, certificate=replace(proof, **values)))
+
+
+def _swap(values: dict[str, Any]) -> None:
+    leaf = int(np.flatnonzero(values["children"][:, 1] == 0)[0])
+    values["twists"][leaf] *= -1
+
+
+def _forget(values: dict[str, Any]) -> None:
+    values["children"][0, 1] -= 1
+
+
+def _shrink(values: dict[str, Any]) -> None:
+    values["boxes"][1, -1] = values["halves"][int(values["boxes"][1, -1]), 0]
+
+
+@pytest.mark.parametrize("change", [_swap, _forget, _shrink])
+def test_spoiled_proofs_are_seen(change: Callable[[dict[str, Any]], None]) -> None:
+    assert not spoiled(change).ok
+    assert spoiled(lambda values: None).ok
+
+
+def test_a_better_bound_than_proven_is_seen_and_so_is_another_mesh() -> None:
+    found = chosen("peak")
+    proof = found.certificate
+    better = replace(found, bound=found.value, certificate=replace(proof, bound=1.01 * proof.bound))
+    assert not rg.verify(better).ok
+    assert not rg.verify(replace(found, shape=rg.Mesh.box(0.04, 0.03, 0.06))).ok
+    plain = json.loads(json.dumps(found.to_dict()))
+    assert rg.ChosenGrasp.from_dict(plain) == found
+    plain["certificate"]["twists"][0][0] += 1.0
+    with pytest.raises(rg.InvalidInput, match="digest"):
+        rg.ChosenGrasp.from_dict(plain)
+
+
+def test_where_none_holds_the_proof_says_so() -> None:
+    with pytest.raises(rg.Infeasible, match="no 2 fingers anywhere on this mesh hold") as caught:
+        rg.choose_grasp(BOX, 2, rg.Wrench([0, 0, -1], [0, 0, 1]), friction=0.0)
+    assert rg.verify(caught.value.certificate).ok
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"objective": "angle", "max_force": 3.0}, r"objective 'angle' has no bound on meshes"),
+        ({"load": rg.Wrench([0, -1])}, r"the shape is in space and load in the plane; give a load in space"),
+        ({"shape": rg.Mesh.sphere(1.0)}, r"a smooth mesh has no bound"),
+        (
+            {"tip_radius": 0.1, "max_force": 2.0},
+            r"max_force, tip_radius: on outlines only, and the shape is a mesh",
+        ),
+        ({"from_corners": 1.0}, r"from_corners leaves no place for a finger"),
+        (
+            {"load": rg.LoadSet.turned(rg.Wrench([0, 0, -1]))},
+            r"in space load is a Wrench or the LoadSet.hull",
+        ),
+    ],
+)
+def test_what_is_refused(given: dict[str, Any], words: str) -> None:
+    call: dict[str, Any] = {"shape": BOX, "fingers": 3, "load": rg.Wrench([0, 0, -1]), "friction": 0.5}
+    assert words in str(refusal(lambda: rg.choose_grasp(**(call | given))))
