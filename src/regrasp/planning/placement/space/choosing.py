@@ -18,7 +18,7 @@ from regrasp.planning.placement.laws import LEVELS, Law
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.patch_proof import PatchProof
 from regrasp.planning.placement.space.patches import patches_of
-from regrasp.planning.placement.space.surface_search import MOST_BOXES, SurfaceSearch
+from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state
 
 FROM_EDGES = 1e-3
@@ -157,7 +157,7 @@ def _frozen(values: np.ndarray) -> np.ndarray:
 def _none_holds(search: SurfaceSearch) -> Infeasible:
     from regrasp.closed_form.compiled.patch_gauge import NEVER
 
-    most = 0.01 * NEVER * search.unit
+    most = HELD * NEVER * search.unit * (1 - 1e-9)
     if search.best == inf and search.bound >= most:
         return Infeasible(
             f"no {search.fingers} fingers anywhere on this mesh hold the loads with friction "

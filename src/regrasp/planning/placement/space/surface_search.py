@@ -18,6 +18,8 @@ _TRIED = 4096
 _PRECISE, _TRY_PRECISE = 1e-3, 1e-6
 _SAFE = 1e-9  # of a bound, given up to rounding
 _STEP, _SHORTEST = 0.2, 1e-5  # of slides, of the size
+HELD = 1e-4
+"""Of ``NEVER``: a load is held by less, so by forces of at most a thousand times its size."""
 _GAINED = 0.01  # a placement better by so much is worth a slide
 
 
@@ -155,7 +157,7 @@ class SurfaceSearch:
     def _held(self, norm: float) -> float:
         from regrasp.closed_form.compiled.patch_gauge import NEVER
 
-        return float(norm) * self.unit if norm < 0.1 * NEVER else inf
+        return float(norm) * self.unit if norm < HELD * NEVER else inf
 
     @property
     def bound(self) -> float:
