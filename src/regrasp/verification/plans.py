@@ -93,7 +93,7 @@ def verify(
             return verify_outline_cut(cast(OutlineCut, plan))
         if hasattr(plan, "reached"):
             return verify_cut(cast(Cut, plan))
-        if hasattr(plan, "corners"):
+        if hasattr(plan, "corners") and not hasattr(plan, "halves"):
             return verify_regions(cast(Regions, plan))
         if hasattr(plan, "certificate"):
             return verify_chosen(cast(Chosen, plan))

@@ -27,14 +27,14 @@ HEAVY = rg.LoadSet.hull([rg.Wrench([0, 0, -2]), rg.Wrench([0, 1, -1], [0.2, 0, 0
 
 @cache
 def chosen(objective: str, fingers: int = 3) -> rg.ChosenGrasp:
-    return rg.choose_grasp(BOX, fingers, LOADS, friction=0.5, objective=objective, tolerance=0.05)
+    return rg.choose_grasp(BOX, fingers, LOADS, friction=0.5, objective=objective, tolerance=0.1)
 
 
 @pytest.mark.parametrize("objective", ["sum_normal", "peak_normal", "peak", "effort"])
 def test_no_triple_of_points_is_better_than_the_bound(objective: str) -> None:
     found = chosen(objective)
     assert found.bound <= found.value
-    assert found.gap <= 0.05
+    assert found.gap <= 0.1
     assert rg.verify(found).ok, rg.verify(found)
     best = np.inf
     contacts = BOX.contacts(12, friction=0.5)

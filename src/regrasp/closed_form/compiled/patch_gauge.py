@@ -15,7 +15,7 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
 
-NEVER = 1e7
+NEVER = 1e5
 """Norm, as a multiple of the wrench's, from which nothing is held: what columns cost that no finger makes."""
 _MOST = 150  # columns made
 _TILT = 1e-7  # of the wrench, which keeps it off faces of the bodies that columns span

@@ -18,7 +18,7 @@ _TRIED = 4096
 _PRECISE, _TRY_PRECISE = 1e-3, 1e-6
 _SAFE = 1e-9  # of a bound, given up to rounding
 _STEP, _SHORTEST = 0.2, 1e-5  # of slides, of the size
-HELD = 1e-4
+HELD = 1e-2
 """Of ``NEVER``: a load is held by less, so by forces of at most a thousand times its size."""
 _GAINED = 0.01  # a placement better by so much is worth a slide
 
