@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
+from regrasp.outline.svg.path import subpaths
 
 pytestmark = pytest.mark.contract
 
@@ -94,6 +95,28 @@ def test_svg_of_impossible_numbers(tmp_path: Path, number: str, body: str) -> No
 @pytest.mark.parametrize("data", ["Z", "M0 0Z", "", "z z z", "M1 1"])
 def test_paths_of_nothing_are_empty(tmp_path: Path, data: str) -> None:
     assert "the drawing is empty" in refusal(rg.Outline.from_file, svg(tmp_path, f'<path d="{data}"/>'))
+
+
+def test_straight_pieces_of_a_path_are_one_curve(tmp_path: Path) -> None:
+    """As a polygon of the same corners is, to the bit, under any transform; between curves, too."""
+    corners = 9 * np.random.default_rng(4).normal(size=(40, 2)).cumsum(axis=0)
+    corners = corners[np.argsort(np.arctan2(*(corners - corners.mean(axis=0)).T))]  # a star: no crossing
+    text = " ".join(f"{x!r},{y!r}" for x, y in corners.tolist())
+    place = 'transform="rotate(31) scale(0.7, 1.3)"'
+    path = rg.Outline.from_file(svg(tmp_path, f'<path {place} d="M{text.replace(" ", " L")}Z"/>'))
+    polygon = rg.Outline.from_file(svg(tmp_path, f'<polygon {place} points="{text}"/>'))
+    assert path.to_dict() == polygon.to_dict()
+    (part,) = subpaths("M0 0 H1 L2 0 V1 Q1 3 0 1 L0 .5 Z")
+    assert [len(curve.breaks) for curve in part.curves] == [4, 2, 3]
+    assert [curve.straight for curve in part.curves] == [True, False, True]
+    (open_part,) = subpaths("M0 0 L1 0 1 1")
+    assert not open_part.closed
+    assert open_part.curves[0].at(np.array([2.0])).tolist() == [[1, 1]]
+
+
+def test_more_curves_than_a_drawing_has_are_refused_as_they_are_read(tmp_path: Path) -> None:
+    path = svg(tmp_path, f'<path d="M0 0c1 1 2 0 3 0a1 1 0 0 1 2 0{"t2 0" * 19_999}"/>')
+    assert "more than 20000 curves" in refusal(rg.Outline.from_file, path)
 
 
 def saved(folder: Path, draw) -> Path:

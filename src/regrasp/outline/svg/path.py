@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.outline.flatten import Curve, arc, bezier, line
+from regrasp.outline.drawing import MOST_PIECES
+from regrasp.outline.flatten import Curve, arc, bezier, line, polyline
 from regrasp.outline.svg.transform import NUMBER, number_of
 
 _COMMAND = re.compile(r"[\s,]*([MmZzLlHhVvCcSsQqTtAa])")
@@ -16,6 +17,7 @@ _FLAG = re.compile(r"[\s,]*([01])")
 _COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 _FLAGS = (3, 4)  # of the seven numbers of an arc
 _MOST = 300_000
+_MOST_CURVES = MOST_PIECES // 2  # more are no drawing, whatever else there is (``Budget.spend_on``)
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ def subpaths(data: str) -> list[Subpath]:
     """The curves of path data. Raises ``ValueError`` where it is not what SVG says, naming the place."""
     found: list[Subpath] = []
     curves: list[Curve] = []
+    corners: list[Array] = []  # of straight pieces in a row
+    curved = 0
     start = at = np.zeros(2)
     handle: Array | None = None  # the last control point of a curve that S or T goes on from
     before = ""
@@ -39,19 +43,24 @@ def subpaths(data: str) -> list[Subpath]:
         kind = command.upper()
         base = np.zeros(2) if command.isupper() else at
         to = at
+        if kind in "CSQTA":
+            _join(curves, corners)
+            curved += 1
+            if curved > _MOST_CURVES:
+                raise ValueError(f"the path has more than {_MOST_CURVES} curves")
         if kind == "M":
-            _keep(found, curves, closed=False)
+            _keep(found, curves, corners, closed=False)
             curves = []
             start = at = base + values
             handle = None
         elif kind == "Z":
             if (at != start).any():
-                curves.append(line(at, start))
-            _keep(found, curves, closed=True)
+                corners += [start] if corners else [at, start]
+            _keep(found, curves, corners, closed=True)
             curves, at, handle = [], start, None
         elif kind in "LHV":
             to = base + _full(kind, values, at - base)
-            curves.append(line(at, to))
+            corners += [to] if corners else [at, to]
             handle = None
         elif kind in "CS":
             rest = base + np.reshape(values, (-1, 2))
@@ -73,7 +82,7 @@ def subpaths(data: str) -> list[Subpath]:
         if kind not in "MZ":
             at = to
         before = kind
-    _keep(found, curves, closed=False)
+    _keep(found, curves, corners, closed=False)
     return found
 
 
@@ -150,6 +159,14 @@ def _full(kind: str, values: Array, at: Array) -> Array:
     return np.array([values[0], at[1]] if kind == "H" else [at[0], values[0]])
 
 
-def _keep(found: list[Subpath], curves: list[Curve], closed: bool) -> None:
+def _join(curves: list[Curve], corners: list[Array]) -> None:
+    """The straight pieces as one curve."""
+    if corners:
+        curves.append(polyline(np.array(corners)))
+        corners.clear()
+
+
+def _keep(found: list[Subpath], curves: list[Curve], corners: list[Array], closed: bool) -> None:
+    _join(curves, corners)
     if curves:
         found.append(Subpath(curves, closed))
