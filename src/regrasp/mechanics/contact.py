@@ -20,6 +20,14 @@ from regrasp.mechanics.value import ArrayValue, numbers
 # within 3 2^-53 of 1) keeps its every bit.
 _UNIT = 2.0**-51
 
+MOST = 1e50
+"""Positions [m], frictions [-] and torsions [m] up to this, and not below its inverse, may be multiplied."""
+
+
+def fits(size: float) -> bool:
+    """Whether a size of 0 or more is 0 or so."""
+    return not size or 1 / MOST <= size <= MOST
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Contact(ArrayValue):
@@ -121,6 +129,12 @@ class Contact(ArrayValue):
     def plain(self) -> tuple[float, ...]:
         """(position, normal, friction) as plain floats, the way the closed forms take a contact."""
         return (*self.position.tolist(), *self.normal.tolist(), self.friction)
+
+    @cached_property
+    def _is_in_range(self) -> bool:
+        """Whether products of its position, friction and torsion are numbers (``Grasp.out_of_range``)."""
+        d = self.dimension
+        return all(map(fits, (*map(abs, self.plain[:d]), self.friction, self.torsion or 0.0)))
 
     @cached_property
     def limit_rows(self) -> Array | None:

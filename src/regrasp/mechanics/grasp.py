@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, finite, items, read_only
 from regrasp.mechanics.cones import Cones
-from regrasp.mechanics.contact import Contact, contacts_table
+from regrasp.mechanics.contact import MOST, Contact, contacts_table, fits
 from regrasp.mechanics.limits.limit_rows import LimitRows, stacked
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.mechanics.plain import entries, listed
@@ -18,11 +19,7 @@ from regrasp.mechanics.together import named, refuse_coincident, refuse_equal_na
 from regrasp.mechanics.value import ArrayValue, kept, one_line
 from regrasp.mechanics.wrench import torque
 
-_MOST = 1e50
-
-
-def _fits(size: float) -> bool:
-    return not size or 1 / _MOST <= size <= _MOST
+_IN_RANGE = attrgetter("_is_in_range")
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,17 +86,17 @@ class Grasp(ArrayValue):
 
         Values may be of any size, and proofs are exact; what is worked out from them may not.
         """
+        if all(map(_IN_RANGE, self.contacts)):  # worked out once for all grasps of a contact
+            return ""
         d = self.dimension
         reach = max([max(map(abs, c.plain[:d])) for c in self.contacts])
-        if _fits(reach) and all(_fits(c.friction) and _fits(c.torsion or 0.0) for c in self.contacts):
-            return ""
         sizes = [("positions must reach", reach)]
         for c in self.contacts:
             label = f"{shown(c.name)} must be"
             sizes += [(f"friction of {label}", c.friction), (f"torsion of {label}", c.torsion or 0.0)]
         for what, size in sizes:
-            if not _fits(size):
-                return f"{what} 0 or between {1 / _MOST:g} and {_MOST:g}, got {size:g}"
+            if not fits(size):
+                return f"{what} 0 or between {1 / MOST:g} and {MOST:g}, got {size:g}"
         return ""
 
     # -- lookup ---------------------------------------------------------------------------------------
