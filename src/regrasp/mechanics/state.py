@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import dist, hypot
+from math import dist, hypot, isfinite
 from operator import mul
 from typing import Any
 
@@ -144,10 +144,12 @@ class GraspState(ArrayValue):
         Args:
             reserve: fraction of every friction coefficient that is kept back [-].
         """
+        verdicts = self._verdicts
+        if type(reserve) is float and reserve in verdicts:  # checked before
+            return verdicts[reserve]
         reserve = reserve_fraction(reserve)
-        if reserve not in self._verdicts:
-            self._verdicts[reserve] = self._judged(reserve)
-        return self._verdicts[reserve]
+        verdicts[reserve] = self._judged(reserve)
+        return verdicts[reserve]
 
     @cached_property
     def _verdicts(self) -> dict[float, bool]:
@@ -236,6 +238,15 @@ class GraspState(ArrayValue):
         free = self.grasp.freedom
         note = "" if free is None else f"\n  no force of these contacts resists {free}"
         return f"GraspState under {self.load!r}, residual {self.residual:.2g}:{rows}{note}"
+
+
+def state_of(grasp: Grasp, load: Wrench, rows: list[list[float]]) -> GraspState:
+    """The state of forces worked out for this grasp and load; all that is checked is that they are finite."""
+    if not isfinite(sum(map(sum, rows))):
+        return GraspState(grasp, load, rows)
+    state = object.__new__(GraspState)
+    vars(state).update(grasp=grasp, load=load, forces=read_only(np.array(rows, dtype=float)))
+    return state
 
 
 def check_load(grasp: Grasp, load: Wrench) -> None:

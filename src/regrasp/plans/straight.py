@@ -25,7 +25,7 @@ class StraightPath(ArrayValue, Path):
             end: the state at the end, of the same contacts.
             scaling: the clock of the transition.
         """
-        if start.load != end.load:
+        if start.load is not end.load and start.load != end.load:
             raise InvalidInput("both ends of a straight path must have the same load")
 
     def forces_at(self, start: GraspState, end: GraspState, u: Array) -> Array:

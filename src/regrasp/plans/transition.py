@@ -60,7 +60,8 @@ class Transition(ArrayValue, Documented, Pictured):
     _drawn_by = "regrasp.plots.pages.overview:transition_png"
 
     def __post_init__(self) -> None:
-        if self.start.grasp != self.end.grasp:
+        one, other = self.start.grasp, self.end.grasp
+        if one is not other and one != other:
             raise InvalidInput("both ends of a transition must have the same grasp")
         for label, names in (("leaving", self.leaving), ("arriving", self.arriving)):
             if not isinstance(names, tuple) or len(set(names)) != len(names):

@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import number
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.state import GraspState, state_of
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import balanced_start, refuse_what_gives
 from regrasp.planning.states.choosing import choose_forces
@@ -47,9 +47,10 @@ class End(NamedTuple):
 
     def _asked(self, grasp: Grasp, moving: set[int]) -> Criteria:
         """The criteria: fingers that leave or arrive need not push and are force-controlled."""
-        criteria, least = self.criteria, self.criteria.least_normal
-        if not least and not criteria.demands:  # the usual case, in microseconds
+        criteria = self.criteria
+        if not criteria.min_normal and not criteria.demands:  # the usual case, in microseconds
             return criteria
+        least = criteria.least_normal
         at_work = [i for i in range(len(grasp)) if i not in self.idle]
         if least:
             criteria = replace(criteria, min_normal=tuple(0.0 if i in moving else least for i in at_work))
@@ -63,10 +64,11 @@ class End(NamedTuple):
             return found if isinstance(found, GraspState) else GraspState(grasp, self.load, found.forces)
         width = grasp.width
         # Where no soft finger is left, forces are narrower.
-        rows = [[*force, *[0.0] * (width - len(force))] for force in found.forces]
+        forces = found.forces if isinstance(found.forces, list) else found.forces.tolist()
+        rows = [[*force, *[0.0] * (width - len(force))] for force in forces]
         for place in sorted(self.idle):
             rows.insert(place, [0.0] * width)
-        return GraspState(grasp, self.load, rows)
+        return state_of(grasp, self.load, rows)
 
 
 class Change(NamedTuple):

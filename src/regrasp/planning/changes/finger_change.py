@@ -182,7 +182,7 @@ def plan_exchange(
 
 def _places(grasp: Grasp, contacts: str | int | Sequence[str | int]) -> tuple[int, ...]:
     """The places of the fingers that leave; one at least stays."""
-    if isinstance(contacts, str | int) or not isinstance(contacts, Sequence):
+    if isinstance(contacts, (str, int)) or not isinstance(contacts, Sequence):
         return _but_all(grasp, grasp.index(contacts))
     places = [grasp.index(contact) for contact in contacts]
     if not places or len(set(places)) < len(places):

@@ -111,7 +111,7 @@ def joined(
     grasp = start.grasp
     leaving = tuple([str(grasp.contacts[i].name) for i in change.leaving])
     arriving = tuple([str(grasp.contacts[i].name) for i in change.arriving])
-    if load is None and scaling is not None and not demands.bends:  # the usual case, in microseconds
+    if load is None and scaling is not None and (demands is _NONE or not demands.bends):  # the usual case, in microseconds
         return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving))
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = ~np.isin(np.arange(len(grasp)), (*change.leaving, *change.arriving))
@@ -247,6 +247,8 @@ def series_and_clock(
     load: Wrench | LoadSeries | LoadFunction | None, options: PlanOptions, demands: Demands
 ) -> tuple[LoadSeries | None, TimeScaling | None]:
     """The load in time, None if it is constant, and T(t); None where the rate limit sets the duration."""
+    if load is None and not options:
+        return None, scaling_of(None, None)
     duration, scaling = options.get("duration"), options.get("scaling")
     if isinstance(load, LoadSeries):
         if duration is None and scaling is None:

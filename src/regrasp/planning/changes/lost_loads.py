@@ -13,6 +13,7 @@ from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.rotated import load_between, turned_load
+from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.transition import Transition
 
 # Forces below this multiple of the load are balanced to far less than the load.
@@ -23,12 +24,14 @@ _HELD = 2.0**-11
 
 def refuse_lost_load(plan: Transition) -> Transition:
     """The plan, or ``InvalidInput`` where its forces round to more than a thousandth of its load."""
-    d, turn = plan.grasp.dimension, plan.turn
-    most = _NEVER * max(map(abs, plan.start.load.plain[:d]))
-    rows = plan.start.forces.tolist() + plan.end.forces.tolist()
+    start, end, is_straight = plan.start, plan.end, plan.path is STRAIGHT
+    most = _NEVER * max(map(abs, start.load.plain[: start.grasp.dimension]))
+    rows = start.forces.tolist() + end.forces.tolist()
+    turn = None if is_straight else plan.turn
     if turn is not None:  # between its ends forces may be larger
         rows += [turn.forces.ravel().tolist(), [] if turn.middles is None else turn.middles.ravel().tolist()]
-    if plan.course is None and not [x for row in rows for x in row if x > most or x < -most]:
+    known = is_straight or plan.course is None
+    if known and not [x for row in rows for x in row if x > most or x < -most]:
         return plan  # nearly all of them, in microseconds
     refuse_lost(plan.grasp, *_held(plan))
     return plan

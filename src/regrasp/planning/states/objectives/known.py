@@ -142,10 +142,10 @@ OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
 
 def recorded(objective: Objective) -> str:
     """The word for an objective in the record of a plan; one of a user's own is marked as such."""
-    if isinstance(objective, WithstoodFactor):
-        return objective.name
     known = OBJECTIVES.get(objective.name)
-    return objective.name if objective is known or objective == known else f"own:{objective.name}"
+    if objective is known or objective == known or isinstance(objective, WithstoodFactor):
+        return objective.name
+    return f"own:{objective.name}"
 
 
 def objective_of(given: "str | Objective") -> Objective:
