@@ -87,8 +87,12 @@ class GraspState(ArrayValue):
     @cached_property
     def imbalance(self) -> Array:
         """G f + w_ext, (3,) or (6,) [N, N m]; zero in equilibrium."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            return read_only(self.grasp.matrix @ self.forces.ravel() + self.load.vector)
+        grasp, forces, load = self.grasp, self.forces.ravel(), self.load
+        given = (*forces.tolist(), *load.plain)
+        if -LARGEST <= min(given) and max(given) <= LARGEST and not grasp.out_of_range:
+            return read_only(grasp.matrix.dot(forces) + load.vector)
+        with np.errstate(over="ignore", invalid="ignore"):  # which takes longer than the rest
+            return read_only(grasp.matrix.dot(forces) + load.vector)
 
     @property
     def residual(self) -> float:
@@ -167,7 +171,7 @@ class GraspState(ArrayValue):
         for contact, f, magnitude in zip(contacts, rows, magnitudes, strict=True):
             n = contact.plain[d : 2 * d]
             normal = sum(map(mul, f, n))
-            tangential = dist(f, [*(normal * along for along in n), *more])
+            tangential = dist(f, [*[normal * along for along in n], *more])
             edge = kept_friction(contact.friction, reserve) * normal + _ROUNDING * magnitude
             if normal < 0 or tangential > edge:
                 return False
