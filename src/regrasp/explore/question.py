@@ -58,10 +58,9 @@ class Question:
             raise InvalidInput(f"load must be three numbers, in space six, got {shown(load)}")
         dimension = 2 if len(load) == 3 else 3
         leaves, squeeze = given.get("leaves"), given.get("squeeze")
-        if given.get("objective", "angle") not in OBJECTIVES:
-            raise InvalidInput(
-                f"objective must be one of {', '.join(OBJECTIVES)}, got {shown(given['objective'])}"
-            )
+        word = given.get("objective", "angle")
+        if word not in OBJECTIVES:
+            raise InvalidInput(f"objective must be one of {', '.join(OBJECTIVES)}, got {shown(word)}")
         duration = _number(given.get("duration", 1.0), "duration")
         if not 1e-3 <= duration <= 1e6:
             raise InvalidInput(f"duration must lie between 0.001 and 1e6 s, got {duration:g}")
@@ -69,7 +68,7 @@ class Question:
             tuple(_contact(c, dimension) for c in contacts),
             tuple(_number(value, "load") for value in load),
             leaves=None if leaves is None else _name(leaves),
-            objective=given.get("objective", "angle"),
+            objective=word,
             squeeze=None if squeeze is None else _number(squeeze, "squeeze"),
             duration=duration,
         )

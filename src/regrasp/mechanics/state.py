@@ -89,7 +89,7 @@ class GraspState(ArrayValue):
         """G f + w_ext, (3,) or (6,) [N, N m]; zero in equilibrium."""
         grasp, forces, load = self.grasp, self.forces.ravel(), self.load
         given = (*forces.tolist(), *load.plain)
-        if -LARGEST <= min(given) and max(given) <= LARGEST and not grasp.out_of_range:
+        if min(given) >= -LARGEST and max(given) <= LARGEST and not grasp.out_of_range:
             return read_only(grasp.matrix.dot(forces) + load.vector)
         with np.errstate(over="ignore", invalid="ignore"):  # which takes longer than the rest
             return read_only(grasp.matrix.dot(forces) + load.vector)

@@ -155,7 +155,7 @@ def _frozen(values: np.ndarray) -> np.ndarray:
 
 
 def _none_holds(search: SurfaceSearch) -> Infeasible:
-    from regrasp.closed_form.compiled.patch_gauge import NEVER
+    from regrasp.closed_form.compiled.patches.patch_gauge import NEVER
 
     most = HELD * NEVER * search.unit * (1 - 1e-9)
     if search.best == inf and search.bound >= most:

@@ -65,7 +65,7 @@ class SurfaceSearch:
 
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
-        from regrasp.closed_form.compiled.patch_search import search, spare
+        from regrasp.closed_form.compiled.patches.patch_search import search, spare
         from regrasp.closed_form.compiled.placement_search import CLOSED, FULL
 
         memory, slid = spare(self.fingers), inf
@@ -102,8 +102,8 @@ class SurfaceSearch:
             self._tried[row] = self._found
 
     def _value(self, scaled: Array) -> float:
-        from regrasp.closed_form.compiled.patch_search import spare
-        from regrasp.closed_form.compiled.patch_slide import slide
+        from regrasp.closed_form.compiled.patches.patch_search import spare
+        from regrasp.closed_form.compiled.patches.patch_slide import slide
 
         law = (self._usable, *self._law[1:3], _TRY_PRECISE)
         return float(
@@ -114,8 +114,8 @@ class SurfaceSearch:
         )  # fmt: skip
 
     def _slide(self, step: float, shortest: float) -> None:
-        from regrasp.closed_form.compiled.patch_search import spare
-        from regrasp.closed_form.compiled.patch_slide import slide
+        from regrasp.closed_form.compiled.patches.patch_search import spare
+        from regrasp.closed_form.compiled.patches.patch_slide import slide
 
         if self._found[0] == inf or not self._radius[: len(self.patches.order)].any():
             return
@@ -155,7 +155,7 @@ class SurfaceSearch:
         return self._held(self._found[0])
 
     def _held(self, norm: float) -> float:
-        from regrasp.closed_form.compiled.patch_gauge import NEVER
+        from regrasp.closed_form.compiled.patches.patch_gauge import NEVER
 
         return float(norm) * self.unit if norm < HELD * NEVER else inf
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import patch_gauge
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.patch_gauge import bound_by, gauge, workspace
+from regrasp.closed_form.compiled.patches import patch_gauge
+from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, workspace
 from regrasp.closed_form.compiled.placement_search import CLOSED, EXCLUDED, FULL, NEAR, OPEN, PAUSED, SPLIT
 from regrasp.compilation import kept
 
