@@ -111,9 +111,8 @@ def joined(
     grasp = start.grasp
     leaving = tuple([str(grasp.contacts[i].name) for i in change.leaving])
     arriving = tuple([str(grasp.contacts[i].name) for i in change.arriving])
-    if (
-        load is None and scaling is not None and (demands is _NONE or not demands.bends)
-    ):  # the usual case, in microseconds
+    is_straight = demands is _NONE or not demands.bends
+    if load is None and scaling is not None and is_straight:  # the usual case, in microseconds
         return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving))
     rates, least = demands.rates(grasp), np.full(len(grasp), demands.min_normal or 0.0)
     stays = ~np.isin(np.arange(len(grasp)), (*change.leaving, *change.arriving))
