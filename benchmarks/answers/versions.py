@@ -3,7 +3,8 @@
     git worktree add ../before COMMIT
     python benchmarks/answers/versions.py ../before/src src --rounds 7
 
-Processor time of one call, the median of the rounds' ratios: a busy machine disturbs both alike.
+Processor time of one call, the median and quartiles of the rounds' ratios: a busy machine
+disturbs both alike.
 """
 
 import argparse
@@ -13,7 +14,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from statistics import median
+from statistics import median, quantiles
 from time import process_time
 
 LEAST = 0.15
@@ -112,11 +113,11 @@ def main() -> None:
     if len(options.sources) != 2:
         parser.error("give two folders: the version before, and the one now")
     rounds = [[measured(source) for source in options.sources] for _ in range(options.rounds)]
-    print("| row | before [us] | now [us] | now / before |\n|---|--:|--:|--:|")
+    print("| row | before [us] | now [us] | now / before | quartiles |\n|---|--:|--:|--:|--:|")
     for name in (name for name in rounds[0][0] if name in rounds[0][1]):
         before, now = (median(pair[side][name] for pair in rounds) for side in (0, 1))
-        ratio = median(pair[1][name] / pair[0][name] for pair in rounds)
-        print(f"| {name} | {1e6 * before:.1f} | {1e6 * now:.1f} | {ratio:.2f} |")
+        low, ratio, high = quantiles([pair[1][name] / pair[0][name] for pair in rounds], method="inclusive")
+        print(f"| {name} | {1e6 * before:.2f} | {1e6 * now:.2f} | {ratio:.4f} | {low:.4f} to {high:.4f} |")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from math import inf
+from math import inf, nan
 from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
@@ -14,7 +14,7 @@ from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS, Backend
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.quick import surely_sound
-from regrasp.programs.judging.verdict import judged
+from regrasp.programs.judging.verdict import PROVEN, judged
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, Status, failed
 
@@ -23,6 +23,7 @@ _log = logging.getLogger("regrasp.programs")
 
 # Statuses that say something of the program; the others say something of the back end.
 _CLAIMS = (Status.SOLVED, Status.INFEASIBLE, Status.UNBOUNDED)
+_DOUBTFUL = (Status.STOPPED, Status.UNSOUND)
 _WHOLE = 1e-7
 """Largest measure of a solution that was found without some of the rows."""
 _CLOSE, _SOUND = 5e-10, 1e-8
@@ -107,7 +108,15 @@ def _solved(
             return failed(given, backend, "no time is left to look for a point")
         return _solved(given.without_objective(), backend, False, limit, isolated, {})
 
-    solution = judged(_asked(program, backend, entry, limit, isolated, options), entry.tolerance, feasibility)
+    claim = _asked(program, backend, entry, limit, isolated, options)
+    solution = judged(claim, entry.tolerance, feasibility)
+    if solution.status in _DOUBTFUL and claim.status is not Status.SOLVED and not limit.is_over:
+        from regrasp.programs.judging.elastic import proven_anyway
+
+        def ask(given: Program) -> Solution:
+            return _asked(given, backend, entry, limit, isolated, options)
+
+        solution = proven_anyway(solution, ask, PROVEN) or solution
     if throw and solution.status not in _CLAIMS:
         raise SolverFailed(f"{program}: {solution}; {solution.status.advice}", program, solution)
     return solution
@@ -142,6 +151,17 @@ def asked(program: Program, backend: str, options: dict[str, Any]) -> Solution:
         raise
     except BaseException as error:  # Rust's panics are no exceptions
         return failed(program, backend, f"{type(error).__name__}: {error}")
+
+
+def least_room(program: Program, backend: str) -> float:
+    """How much more room the inequalities need to have a point, by their largest entries, at least -1.
+
+    Below 0 where there is room left; NaN where the back end does not say. Not audited: no proof.
+    """
+    from regrasp.programs.judging.elastic import elastic
+
+    answer = asked(elastic(program), "clarabel" if backend == "auto" else backend, {})
+    return float(answer.value[-1]) if answer.status is Status.SOLVED else nan
 
 
 def solved_quickly(program: Program) -> Solution | None:

@@ -14,9 +14,10 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.banded_path import least_change
 from regrasp.planning.changes.path_program import PathTask, path_program
 from regrasp.planning.states.criteria import Criteria
-from regrasp.planning.states.escape import infeasible
+from regrasp.planning.states.escape import AT_LIMIT, infeasible
 from regrasp.planning.states.solving import SLACK
 from regrasp.programs import Solution, Status, solve
+from regrasp.programs.backends import least_room
 
 # Where an answer breaks a rate or a least normal force by rounding, twice the breach is kept back next.
 _ATTEMPTS = 4
@@ -44,6 +45,21 @@ def planned_path(
     margin the one of least change is taken. Raises ``Infeasible``, naming the instant that cannot be held or
     the limit that stands in the way.
     """
+    try:
+        return _planned(task, objective, criteria, backend, facets)
+    except SolverFailed as failed:
+        if failed.program is None or not least_room(failed.program, backend) >= -AT_LIMIT:
+            raise
+        raise Infeasible(
+            f"no path was found that keeps all of this together, and it is not proven that there is none: at "
+            f"most {AT_LIMIT:g} of the limits is left, where rounding decides; loosen limits, allow more "
+            f"time, or give other ends"
+        ) from None
+
+
+def _planned(
+    task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None
+) -> PlannedPath:
     slack = SLACK
     if objective == "change" and backend == "clarabel":
         quick = _over_time(task, _kept(task, slack))

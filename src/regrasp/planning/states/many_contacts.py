@@ -14,7 +14,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.criteria import ChosenForces, Criteria
-from regrasp.planning.states.escape import infeasible, unproven, verdict
+from regrasp.planning.states.escape import AT_LIMIT, infeasible, unproven, verdict
 from regrasp.planning.states.faces import ball_faces, gauge
 from regrasp.planning.states.level_search import highest
 from regrasp.planning.states.narrowing import Narrowing
@@ -23,6 +23,7 @@ from regrasp.planning.states.pressing import LARGE
 from regrasp.planning.states.refusals.asking import is_asked_only
 from regrasp.planning.states.separation import edge_of
 from regrasp.planning.states.solving import LOOSE, Chooser, Found
+from regrasp.programs.backends import least_room
 
 _SAME = 1e-6  # of a margin [rad, N or -]
 _BESIDE = 1e4  # forces so many times a load are beside it in one program
@@ -44,7 +45,12 @@ def solved_forces(
     if grasp.limit_rows is not None and not any(load.plain) and not criteria.presses and not criteria.demands:
         return _unloaded(grasp, load, criteria, backend, facets)
     if criteria.presses or grasp.limit_rows is not None or criteria.demand(grasp) is not None:
-        return _pressed(grasp, load, criteria, backend, facets)
+        try:
+            return _pressed(grasp, load, criteria, backend, facets)
+        except SolverFailed as failed:
+            if failed.program is None or not least_room(failed.program, backend) >= -AT_LIMIT:
+                raise
+            raise _too_weak(grasp, load, criteria) from None
     objective = criteria.objective
     if isinstance(objective, ConvexObjective) and objective.rests and not any(load.plain):
         return ChosenForces([[0.0] * grasp.width] * len(grasp), tuple(criteria.limits(grasp)), backend, 0.0)
@@ -137,7 +143,10 @@ def _of_least_peak(
 
     Where the limits differ, others may keep them: it is not known, and the failure stands.
     """
-    least = chooser.best(PEAK, frictions, [inf] * len(limits))
+    try:
+        least = chooser.best(PEAK, frictions, [inf] * len(limits))
+    except SolverFailed:
+        raise failed from None
     if least is None:
         return None
     sizes = np.sqrt((least.forces**2).sum(axis=1))
