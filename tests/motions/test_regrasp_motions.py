@@ -67,12 +67,25 @@ def test_what_is_shut_in_for_good_is_said_at_once() -> None:
 
 def test_where_none_has_ways_the_first_reason_is_given() -> None:
     outline = star()
+    start, goal = ends(outline, 41)
+    options = OPTIONS | {"candidates": 6}
+    said = "before step 4 finger 3 finds no way .* at goal P2, .* the tip of finger 1 is too near; "
+    none = "2 sequences were tried, and none has ways; without such moves no sequence of holds leads"
+    with pytest.raises(rg.Infeasible, match=said + none) as caught:
+        rg.plan_regrasp(outline, start, goal, LOAD, **WITH, **options)
+    assert caught.value.certificate.near in caught.value.certificate.held
+    with pytest.raises(
+        rg.Infeasible, match="; 1 sequences were tried, and none has ways; give more attempts"
+    ):
+        rg.plan_regrasp(outline, start, goal, LOAD, **WITH, **options, attempts=1)
+
+
+def test_two_that_are_in_one_another_are_in_no_stance_together() -> None:
+    outline = star()
     start, goal = ends(outline, 40)
-    said = "during step 2 fingers 2 and 3 .* are in one another, .*; 2 sequences were tried, and"
-    with pytest.raises(rg.Infeasible, match=said):
-        rg.plan_regrasp(outline, start, goal, LOAD, **WITH, **OPTIONS)
-    with pytest.raises(rg.Infeasible, match="; 1 sequences were tried"):
+    with pytest.raises(rg.Infeasible, match=r"during step 2 fingers 2 and 3 .* are in one another"):
         rg.plan_regrasp(outline, start, goal, LOAD, **WITH, **OPTIONS, attempts=1)
+    assert rg.verify(rg.plan_regrasp(outline, start, goal, LOAD, **WITH, **OPTIONS).plan).ok
 
 
 def test_only_the_move_without_way_is_left_out() -> None:

@@ -18,11 +18,13 @@ WEIGHT = rg.Wrench([0, -3.0])
 
 
 def least_cost(
-    graph, start, goal, o, max_turn, allowed=None, threshold=0.0, move=1.0, turn=0.0, step=0.0, worth=None
-):
+    graph, start, goal, o, max_turn, allowed=None, threshold=0.0, move=1.0, turn=0.0, step=0.0, worth=None,
+    goes=None,
+):  # fmt: skip
     """The least cost of a way from a hold of the start to one of the goal; None where there is none.
 
-    worth: (P, O) price of each hold passed.
+    worth: (P, O) price of each hold passed. goes: whether a finger may go from a point to another while
+    others hold; one that goes presses before it goes on.
     """
     fingers, points, orientations = range(len(start)), range(len(graph.contacts)), range(len(graph.loads))
     alike = allowed is None
@@ -58,24 +60,26 @@ def least_cost(
         for k in near[0]
         if holds(start, f, k)
     ]
+    queue = [(*state, False) for state in queue]  # whether the free finger has not pressed since it moved
     best = {state[1:]: state[0] for state in queue}
     queue.sort()
     while queue:
-        cost, at, free, k = heappop(queue)
-        if cost > best[at, free, k]:
+        cost, at, free, k, aloft = heappop(queue)
+        if cost > best[at, free, k, aloft]:
             continue
         if not at:
             return cost
-        following = [(cost + turned(k, o, 0.0), (), free, o)] if at in goals and k in near[o] else []
-        for p in points:
-            if allowed[free, p] and p not in at:
+        following = [(cost + turned(k, o, 0.0), (), free, o, False)] if at in goals and k in near[o] else []
+        held = frozenset((*at[:free], *at[free + 1 :]))
+        for p in () if aloft else points:
+            if allowed[free, p] and p not in at and (goes is None or goes(at[free], p, held)):
                 there = (*at[:free], p, *at[free + 1 :])
-                following.append((cost + move, *named(there, free), k))
+                following.append((cost + move, *named(there, free), k, goes is not None))
         for next_free in fingers:
             for m in near[k]:
                 if (next_free, m) != (free, k) and holds(at, next_free, m):
                     paid = turned(k, m) + price(at, next_free, m)
-                    following.append((cost + paid, *named(at, next_free), m))
+                    following.append((cost + paid, *named(at, next_free), m, aloft and next_free == free))
         for state in following:
             if state[0] < best.get(state[1:], np.inf):
                 best[state[1:]] = state[0]

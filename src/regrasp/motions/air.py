@@ -174,6 +174,7 @@ class Air:
     def _shut_in(self, k: int, i: int, origin: str, target: Place, now: list[Stop]) -> Infeasible:
         """Which finger finds no way and where it is shut in."""
         held = tuple(s.contact.name for j, s in enumerate(now) if j != i and s.contact is not None)
+        near: str | None = None
         place, why = target[0], "the object and other tips shut {place} in, {where}"
         numbers = [j for j in range(len(now)) if j != i]
         for name in (target[0], origin):
@@ -182,8 +183,9 @@ class Air:
             for j, other in zip(numbers, self._others(i, now), strict=True):
                 if not self._spaces[i].keeps_apart(piece, other[None]):
                     place, why = name, f"at {{place}}, {{where}}, the tip of finger {j + 1} is too near"
+                    near = None if (holds := now[j].contact) is None else holds.name
         said = why.format(place=place, where=self.stand(i, place).where)
         return Infeasible(
             f"before step {k + 1} finger {i + 1} finds no way from {origin} to {target[0]}: {said}",
-            ShutIn(k, i, place, self._contacts[place].position, origin, target[0], held, False),
+            ShutIn(k, i, place, self._contacts[place].position, origin, target[0], held, False, near=near),
         )

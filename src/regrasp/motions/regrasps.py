@@ -1,15 +1,11 @@
 """The public verb of regrasps: the best sequence, or the best whose free fingers have ways."""
 
-from collections.abc import Sequence
-from contextlib import suppress
-from itertools import combinations
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, Unpack, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, number, whole
+from regrasp.mechanics.checks import ArrayLike, number, whole
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.motions.open_ends import End, best_between, is_open
@@ -20,6 +16,7 @@ if TYPE_CHECKING:
     from regrasp.mesh.mesh import Mesh
     from regrasp.motions.value import Motions
     from regrasp.outline.outline import Outline
+    from regrasp.planning.holds.barred import Barred
     from regrasp.planning.regrasps.options import RegraspOptions
 
 MOST_ATTEMPTS = 10_000
@@ -90,8 +87,8 @@ def plan_regrasp(
     ``choose_grasp`` finds under the load, in the orientation asked for.
 
     With ``motions`` the best sequence is taken if its free fingers have ways (``plan_motions``). Where a
-    finger of one finds none, those are next that lack the hold meanwhile, or those before it, or after it; a
-    better one that has all three, in another order, is not looked at.
+    finger finds none from one contact to another while others hold, the best of all sequences without this
+    move is next, among sampled orientations. Fingers with capsules of their own are taken as alike in that.
 
     What is proven: every state, every path between two, and that no regrasp on the sampled points has fewer
     moves or, with as few, a wider least margin; or costs less. Points between the samples are not looked at.
@@ -112,7 +109,7 @@ def plan_regrasp(
         speed: as for ``plan_motions``, 0.1 if not given [m/s].
         acceleration: as for ``plan_motions``, 1 if not given [m/s^2].
         capsules: as for ``plan_motions`` [m].
-        attempts: with ``motions``, how many sequences are tried, 50 if not given.
+        attempts: with ``motions``, how many sequences are tried at the most, 50 if not given.
         **options: of ``RegraspProblem``; ``friction`` [-] is required.
 
     Returns:
@@ -171,24 +168,22 @@ def plan_regrasp_motions(
 ) -> "Motions":
     """The best regrasp whose free fingers have ways, and these: ``plan_regrasp`` with ``motions``.
 
-    Where a finger of the best sequence finds no way, the best of those sequences is next that lack the hold
-    meanwhile, or those before it, or those after it; where it is shut in by the object alone, of those that
-    do not touch there. Raises ``Infeasible`` where there is no regrasp, or none of those tried has ways.
+    Where a finger of the best sequence finds no way, the best of those without this move is next, and so on.
+    Raises ``Infeasible`` where there is no regrasp, or none has ways.
     """
     from regrasp.motions.plan import plan_motions
-    from regrasp.planning.regrasps.verbs import plan_regrasp as planned
+    from regrasp.planning.holds.barred import Barred
+    from regrasp.planning.regrasps.planned import planned
+    from regrasp.planning.regrasps.verbs import problem_of
 
     radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
     most = whole(attempts, "attempts", least=1, most=MOST_ATTEMPTS)
     asked: Any = options | {"min_distance": max(options.get("min_distance", 0.0), 2 * radius + keep)}
-    best = planned(shape, start, goal, load, **asked)
-    waiting = [_Candidate(best, _Barred(options.get("keep"), _SAME * max(start.size, goal.size)))]
-    seen: list[RegraspPlan] = []
+    problem = problem_of(shape, start, goal, load, asked)
+    places = {str(contact.name): place for place, contact in enumerate(problem.contacts)}
+    plan, barred = problem.plans()[0], Barred()
     first: Infeasible | None = None
-    while waiting and len(seen) < most:
-        first_in_rank = min(range(len(waiting)), key=lambda k: waiting[k].rank)
-        plan, barred = waiting.pop(0 if options.get("weights") else first_in_rank)
-        seen.append(plan)
+    for tried in range(1, most + 1):
         try:
             return plan_motions(
                 plan,
@@ -200,20 +195,27 @@ def plan_regrasp_motions(
                 capsules=capsules,
             )
         except Infeasible as error:
-            if _for_good(error.certificate, start, goal, barred.near):
+            if _for_good(error.certificate, start, goal, _SAME * max(start.size, goal.size)):
                 raise
             first = first or error
-            for less in barred.without(error.certificate, plan):
-                with suppress(Infeasible):
-                    other = planned(shape, start, goal, load, **asked | {"keep": less})
-                    if other not in [*seen, *(candidate.plan for candidate in waiting)]:
-                        waiting.append(_Candidate(other, less))
-    assert first is not None
-    raise _none(first, len(seen))
+            more = barred | bars(error.certificate, places)
+        if more == barred:
+            raise _none(
+                first, "it is barred already, but was taken again; it is not proven that there is none"
+            )
+        barred = more
+        if tried == most:
+            raise _none(first, f"{tried} sequences were tried, and none has ways; give more attempts")
+        try:
+            plan = planned(problem, 0, barred)[0]
+        except Infeasible as none:
+            why = f"{tried} sequences were tried, and none has ways; without such moves {none}"
+            raise _none(first, why) from None
+    raise AssertionError("attempts are at least one")
 
 
-def _none(first: Infeasible, tried: int) -> Infeasible:
-    return Infeasible(f"{first}; {tried} sequences were tried, and none has ways", first.certificate)
+def _none(first: Infeasible, why: str) -> Infeasible:
+    return Infeasible(f"{first}; {why}", first.certificate)
 
 
 def _for_good(found: ShutIn, start: Grasp, goal: Grasp, near: float) -> bool:
@@ -229,53 +231,21 @@ def _for_good(found: ShutIn, start: Grasp, goal: Grasp, near: float) -> bool:
     )
 
 
-class _Candidate(NamedTuple):
-    """A sequence that may have ways, and what it leaves out."""
+def bars(found: ShutIn, places: dict[str, int]) -> "Barred":
+    """What a finger without a way proves, on contacts by their places.
 
-    plan: RegraspPlan
-    barred: "_Barred"
-
-    @property
-    def rank(self) -> tuple[int, float]:
-        """The first is the best: of fewest moves, then of the widest margin."""
-        return len(self.plan.moves), -self.plan.margin
-
-
-class _Barred:
-    """Which fingers may hold together: as the caller says, less holds that lead to a move without way.
-
-    A finger that finds no way from a to b while H holds came from a hold with a and all but one of H, and
-    goes on to one with b and all but one of H. Sequences that avoid this move lack H, or all of the former,
-    or all of the latter: three searches, the best of which is next.
+    One that is shut in by the object alone is at this contact in no stance, two that are in one another are
+    in none together. Where another holds too near, nobody comes or leaves while it does; else the finger does
+    not go between these two contacts, in neither direction, while the same others hold.
     """
+    from regrasp.planning.holds.barred import Barred
 
-    def __init__(self, keep: Any, near: float, holds: Sequence[Array] = ()) -> None:
-        self._keep, self.near, self._holds = keep, near, tuple(holds)
-
-    def without(self, found: ShutIn, plan: RegraspPlan) -> list["_Barred"]:
-        """What else to leave out, so that the finger need not go where it is shut in."""
-        contacts = {str(c.name): c.position for step in plan.steps for c in step.grasp}
-        held = [contacts[name] for name in found.held]
-        if found.alone:
-            ways = [[found.position[None]]]
-        elif found.origin != found.target:
-            rest = list(combinations(held, len(held) - 1))
-            ends = (contacts[found.origin], contacts[found.target])
-            ways = [[np.array(held)], *([np.array([end, *some]) for some in rest] for end in ends)]
-        else:  # two in one another, of whom one holds
-            ways = [[np.array(held)]]
-            if found.step < len(plan.steps):
-                step = plan.steps[found.step]
-                names = [n for n in step.grasp.names if n not in (*step.leaving, *step.arriving)]
-                ways[0].append(np.array([contacts[n] for n in names]))
-        return [_Barred(self._keep, self.near, (*self._holds, *way)) for way in ways]
-
-    def __call__(self, *given: Any) -> NDArray[np.bool_]:
-        points = np.stack([g for g in given if np.ndim(g) == 2], axis=1)  # (k, fingers, d), an angle left out
-        allowed = np.ones(len(points), dtype=bool)
-        if self._keep is not None:
-            allowed &= np.asarray(self._keep(*given), dtype=bool)
-        for hold in self._holds:
-            away = np.linalg.norm(points[:, :, None] - hold, axis=-1)
-            allowed &= ~(away.min(axis=1) <= self.near).all(axis=1)
-        return allowed
+    ends = frozenset((places[found.origin], places[found.target]))
+    held = frozenset(places[name] for name in found.held)
+    if found.alone:
+        return Barred(together=frozenset([frozenset([places[found.place]])]))
+    if found.other is not None:
+        return Barred(together=frozenset([held]))
+    if found.near is not None:
+        ends, held = frozenset([places[found.place]]), frozenset([places[found.near]])
+    return Barred(moves=frozenset([(ends, held)]))

@@ -16,6 +16,7 @@ class ShutIn(ArrayValue):
     origin, target: contacts between which it was to go. held: contacts of the fingers that hold meanwhile.
     other: (d,) the place of the finger that it is in, where two are in one another during a step [m].
     alone: whether the finger is shut in there by the object alone, whatever the others do.
+    near: the contact of one that holds too near for any finger to come to ``place`` or leave it; or None.
     """
 
     step: int
@@ -27,3 +28,4 @@ class ShutIn(ArrayValue):
     held: tuple[str, ...]
     alone: bool
     other: Array | None = None
+    near: str | None = None

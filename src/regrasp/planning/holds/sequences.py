@@ -86,8 +86,13 @@ def as_sequence(fingers: Stances, found: Cheapest) -> Sequence:
 def _shortest(fingers: Stances, start: Places, goal: Places, o: int, wide: Widest) -> Sequence:
     """The sequence of fewest steps with so many moves and no less margin."""
     few = fingers.only(wide.useful)
-    worth = np.where(few.margins >= wide.margin - ALIKE, _MARGIN * (pi / 2 - few.margins), inf)
-    costs = Costs(worth.astype(np.float64), 0.0, _TURNING, _STEP)
+    costs = preference(few.margins, wide.margin)
     found = cheapest(few, costs, start, goal, o, (wide.forward, wide.backward))
     assert found is not None
     return as_sequence(few, found)
+
+
+def preference(margins: NDArray[np.float32], margin: float) -> Costs:
+    """The costs of steps and turning among holds of no less than a margin [rad]."""
+    worth = np.where(margins >= margin - ALIKE, _MARGIN * (pi / 2 - margins), inf)
+    return Costs(worth.astype(np.float64), 0.0, _TURNING, _STEP)

@@ -31,7 +31,8 @@ class Stances(ABC):
     hold. margins: (rows, O) [rad], -1 where it does not hold, or was not looked at. count: of contacts.
     near: (O, k) from where the object may turn to an orientation within a stance, the nearest first; turning:
     (O, k) these turns [rad]. apart: (O, O) angles between all orientations [rad]; further: (O, O) how many
-    steps such a turn takes beyond one, inf where it is too large.
+    steps such a turn takes beyond one, inf where it is too large. allowed: (fingers, V) which finger may
+    touch which contact; None where all may touch all.
     """
 
     fingers: ClassVar[int]
@@ -43,6 +44,7 @@ class Stances(ABC):
     turning: Array
     apart: Array
     further: Array
+    allowed: NDArray[np.bool_] | None
 
     def look_at(self, holds: Any) -> None:  # noqa: B027 - where all margins are known already
         """Holds (n,) by their numbers whose margins are about to be read."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from regrasp.errors import Infeasible
+from regrasp.planning.holds.barred import Barred
 from regrasp.planning.holds.sequences import Hold, Sequence
 from regrasp.planning.holds.stances import REACH
 from regrasp.planning.holds.turning.search import TurningSequence
@@ -30,34 +31,36 @@ class _NoSequence(Infeasible):
         super().__init__("no sequence of holds leads from the start to the goal")
 
 
-def planned(problem: Asked, extra: int) -> Plans:
+def planned(problem: Asked, extra: int, barred: Barred | None = None) -> Plans:
     """The plan of the best sequence, and of those of up to ``extra`` more moves; or ``Infeasible``.
 
     Where no least normal force is asked for, and none is ruled out, that of a share of the load is, if it
-    takes no more moves.
+    takes no more moves. With ``barred`` moves sampled orientations are looked at, and nothing ``extra``.
     """
     try:
-        found = _planned(problem, extra)
+        found = _planned(problem, extra, barred)
     except _NoSequence:
+        if barred is not None:
+            raise
         raise why_not(problem) from None
     usual = problem.min_normal is None and not problem.one_finger
     if usual and any(hardly_pushes(plan.steps) for plan in found):
-        return _pushing(problem, extra, len(found[0].moves)) or found
+        return _pushing(problem, extra, barred, len(found[0].moves)) or found
     return found
 
 
-def _pushing(problem: Asked, extra: int, moves: int) -> Plans:
+def _pushing(problem: Asked, extra: int, barred: Barred | None, moves: int) -> Plans:
     """Plans in which all fingers push with a share of the load; none where that takes more moves."""
     share = LEAST_SHARE * float(np.linalg.norm(problem.load.force))
     try:
-        found = _planned(problem.asking(share), extra)
+        found = _planned(problem.asking(share), extra, barred)
     except Infeasible:
         return []
     return found if len(found[0].moves) <= moves or problem.weights is not None else []
 
 
-def _planned(problem: Asked, extra: int) -> Plans:
-    if problem.is_exact:
+def _planned(problem: Asked, extra: int, barred: Barred | None) -> Plans:
+    if problem.is_exact and barred is None:
         exact = turning_sequences(problem, extra, problem.least_margin)
         if not exact or not (problem.judges_holds or any(c.max_force for c in problem.contacts)):
             return _turning_plans(problem, exact)
@@ -72,7 +75,7 @@ def _planned(problem: Asked, extra: int) -> Plans:
                 return _turning_plans(problem, exact)
             except Infeasible:
                 pass  # forces grow while the object turns: shorter turns may leave them the room
-    return _sampled_plans(problem, extra)
+    return _sampled_plans(problem, extra, barred)
 
 
 def _turning_plans(problem: Asked, found: list[TurningSequence]) -> Plans:
@@ -84,12 +87,12 @@ def _turning_plans(problem: Asked, found: list[TurningSequence]) -> Plans:
         raise _NoSequence from None
 
 
-def _sampled_plans(problem: Asked, extra: int) -> Plans:
+def _sampled_plans(problem: Asked, extra: int, barred: Barred | None = None) -> Plans:
     turn, reach = problem.largest_turn, REACH
     known: dict[Hold, float] = {}
-    found = sampled_sequences(problem, extra, turn, reach, known)
+    found = sampled_sequences(problem, extra, turn, reach, known, barred)
     if not found:
-        there_is_one = problem.judges_holds and possible_on(problem, problem.graph)
+        there_is_one = barred is None and problem.judges_holds and possible_on(problem, problem.graph)
         raise _unjudged(problem) if there_is_one else _NoSequence()
     more = _MOST_REFUSED if problem.judges_holds else 0
     while True:
@@ -106,7 +109,7 @@ def _sampled_plans(problem: Asked, extra: int) -> Plans:
             else:
                 turn = turn / 2 if reach == turn else turn
                 reach = turn
-            found = sampled_sequences(problem, extra, turn, reach, known)
+            found = sampled_sequences(problem, extra, turn, reach, known, barred)
             if not found:
                 raise unheld_end(problem) or _no_room(problem, error) from None
 

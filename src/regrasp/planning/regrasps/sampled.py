@@ -8,6 +8,7 @@ import numpy as np
 from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.planning.holds.barred import Barred, BarredSearch
 from regrasp.planning.holds.cost_search import cheapest
 from regrasp.planning.holds.graphs import place_of
 from regrasp.planning.holds.pairs import HoldGraph
@@ -24,7 +25,12 @@ MOST_JUDGED = 1000
 
 
 def sampled_sequences(
-    problem: Asked, extra: int, turn: float, reach: float, known: dict[Hold, float] | None = None
+    problem: Asked,
+    extra: int,
+    turn: float,
+    reach: float,
+    known: dict[Hold, float] | None = None,
+    barred: Barred | None = None,
 ) -> list[Sequence]:
     """The best, with turns of at most ``reach`` [rad] from one hold to the next, in steps of ``turn``.
 
@@ -32,6 +38,7 @@ def sampled_sequences(
     are bounds, and those of the holds of the best sequences are found, until these have no bound left. Where
     linear limits or deviations are, the holds of the best sequences must keep them, too, and are ranked by
     their margins without. known: margins [rad] of holds, below 0 of such as are not to be used; it grows.
+    barred: what fingers may not do; without ``extra``.
     """
     graph = problem.graph
     stances = problem.setting.stances(graph, turn, reach, problem.allowed, problem.least_margin)
@@ -50,7 +57,7 @@ def sampled_sequences(
     for hold in known:
         note(hold)
     while True:
-        found = _best(problem, stances, extra)
+        found = _best(problem, stances, extra, barred)
         new = {hold for sequence in found for hold in sequence.holds} - known.keys() if pressed else set()
         if not new:
             return found
@@ -65,12 +72,15 @@ def sampled_sequences(
             note(hold)
 
 
-def _best(problem: Asked, stances: Stances, extra: int) -> list[Sequence]:
+def _best(problem: Asked, stances: Stances, extra: int, barred: Barred | None) -> list[Sequence]:
     start, goal, last = problem.places
+    search = None if barred is None else BarredSearch(stances, start, goal, last, barred)
     if problem.weights is None:
-        return preferred(stances, start, goal, last, extra)
+        return preferred(stances, start, goal, last, extra) if search is None else search.preferred()
     stances.look_at_all()
     costs = problem.weights.costs(problem.graph, stances.margins, problem.step_duration)
+    if search is not None:
+        return search.cheapest(costs)
     found = cheapest(stances, costs, start, goal, last)
     return [] if found is None else [as_sequence(stances, found)]
 

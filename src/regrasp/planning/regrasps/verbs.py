@@ -28,7 +28,7 @@ def plan_regrasp(
         load: a force through the centre of mass, seen from the object before it turns [N].
         **options: of ``RegraspProblem``; ``friction`` [-] is required.
     """
-    return _problem(outline, start, goal, load, options).plans()[0]
+    return problem_of(outline, start, goal, load, options).plans()[0]
 
 
 def plan_regrasps(
@@ -53,13 +53,24 @@ def plan_regrasps(
         extra: how many moves beyond the fewest.
         **options: as for ``plan_regrasp``.
     """
-    return _problem(outline, start, goal, load, options).plans(extra)
+    return problem_of(outline, start, goal, load, options).plans(extra)
 
 
-def _problem(
+def problem_of(
     shape: "Outline | Mesh", start: Grasp, goal: Grasp, load: Wrench, options: RegraspOptions
 ) -> RegraspProblem:
-    """The problem. Raises ``InvalidInput`` for an option that it does not have."""
+    """The problem.
+
+    Args:
+        shape: an ``Outline`` or a ``Mesh``.
+        start: as for ``plan_regrasp``.
+        goal: as for ``plan_regrasp``.
+        load: as for ``plan_regrasp`` [N].
+        options: of ``RegraspProblem``.
+
+    Raises:
+        InvalidInput: For an option that it does not have.
+    """
     known = [field.name for field in fields(RegraspProblem)][4:]
     unknown = [name for name in options if name not in known]
     if unknown or "friction" not in options:
