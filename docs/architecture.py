@@ -2,6 +2,7 @@
 
 import sys
 from collections import Counter
+from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from itertools import pairwise, permutations
@@ -138,8 +139,20 @@ class Rows:
                 [(lower, upper) for j, upper, lower in links if j == k - 1],
             ]
             near = [{} if not links else self.rows[j] for j in (min(k + 1, len(rows) - 1), k - 1)]
-            orders = permutations(rows[k])
-            self.rows[k] = min(map(self._spread, orders), key=lambda x, s=sides, n=near: _cost(x, s, n))
+            self.rows[k] = self._best_order(rows[k], self.rows[k], lambda x, s=sides, n=near: _cost(x, s, n))
+
+    def _best_order(
+        self, row: list[str], now: dict[str, float], cost: Callable[[dict[str, float]], float]
+    ) -> dict[str, float]:
+        """Of few items the best of all orders; of more, each in turn goes where it costs least."""
+        if len(row) <= 6:
+            return min(map(self._spread, permutations(row)), key=cost)
+        order = list(now)
+        for name in row:
+            rest = [other for other in order if other != name]
+            places = [[*rest[:i], name, *rest[i:]] for i in range(len(order))]
+            order = min(places, key=lambda items: cost(self._spread(tuple(items))))
+        return self._spread(tuple(order))
 
     def _wide(self, name: str) -> float:
         return self.widths.get(name, 0.04)

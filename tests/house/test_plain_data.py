@@ -148,6 +148,8 @@ def test_every_key_is_needed_or_has_a_default(name: str) -> None:
             "limits",
             "holes",
             "centre",
+            "turned",
+            "forbidden",
         ):
             assert type(value).from_dict(less) is not None
         else:

@@ -26,10 +26,10 @@ def least_cost(
     worth: (P, O) price of each hold passed. goes: whether a finger may go from a point to another while
     others hold; one that goes presses before it goes on.
     """
-    fingers, points, orientations = range(len(start)), range(len(graph.contacts)), range(len(graph.loads))
+    fingers, points, orientations = map(range, (len(start), len(graph.contacts), len(graph.margins)))
     alike = allowed is None
     allowed = np.ones((len(start), len(points)), dtype=bool) if alike else allowed
-    among = zip(*graph.pairs, strict=True) if isinstance(graph, HoldGraph) else graph.triples
+    among = zip(*graph.pairs, strict=True) if hasattr(graph, "pairs") else graph.triples
     numbers = {frozenset(int(v) for v in hold): p for p, hold in enumerate(among)}
     table = graph.margins.T.tolist()
     prices = None if worth is None else worth.tolist()
@@ -89,7 +89,7 @@ def least_cost(
 
 def turns(graph):
     """(O, O) how far the object turns between orientations, by the directions in which it sees the load."""
-    if isinstance(graph, HoldGraph):
+    if hasattr(graph, "angles"):
         return abs((graph.angles[:, None] - graph.angles + np.pi) % (2 * np.pi) - np.pi)
     ways = graph.loads[:, :3] / np.linalg.norm(graph.loads[:, :3], axis=1)[:, None]
     half = np.linalg.norm(ways[:, None] - ways, axis=-1), np.linalg.norm(ways[:, None] + ways, axis=-1)

@@ -63,7 +63,9 @@ class OutlineCut(ArrayValue):
         turned = self.force if self.turned is None else self.turned
         object.__setattr__(self, "turned", array(turned, "turned", (2,)))
         sides = numbers_in(self.forbidden, "forbidden must be numbers of sides")
-        object.__setattr__(self, "forbidden", array(sides, "forbidden", (None,)) if sides.size else sides)
+        sides = array(sides, "forbidden", (None,)) if sides.size else np.empty(0)
+        sides.setflags(write=False)
+        object.__setattr__(self, "forbidden", sides)
         if not np.isin(self.forbidden, np.arange(len(vertices))).all():
             raise InvalidInput(f"forbidden must be sides, whole numbers from 0 to {len(vertices) - 1}")
         for name, width in _WIDTHS.items():
