@@ -258,3 +258,25 @@ def test_an_answer_that_balance_moves_is_no_path(off, unit, good, monkeypatch) -
     else:
         with pytest.raises(SolverFailed, match="no equilibrium inside the cones"):
             planned(task(unit=unit), "effort")
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (1 - 2e-6, "the forces would have to change"),
+        (1 - 1e-12, "not proven"),
+        (1.0, "not proven"),
+        (1 + 1e-9, "not proven"),
+        (1 + 1e-5, None),
+    ],
+)
+def test_rates_at_the_least_that_any_path_needs_prove_nothing(factor, words):
+    """Within 1 s some force must change by |f^B - f^A|, at that rate throughout."""
+    straight = rg.plan_removal(STATE, "P3")
+    least = float(np.linalg.norm(straight.end.forces - straight.start.forces, axis=1).max())
+    given = {"duration": 1.0, "rate_limit": factor * least}
+    if words is None:
+        assert rg.verify(rg.plan_removal(STATE, "P3", **given)).ok
+    else:
+        with pytest.raises(rg.Infeasible, match=words):
+            rg.plan_removal(STATE, "P3", **given)

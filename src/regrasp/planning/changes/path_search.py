@@ -175,6 +175,11 @@ def _why_not(
                 f"the forces would have to change at {least.value[-1]:.4g} times the rate limits: allow "
                 f"faster changes, a longer duration or other ends"
             )
+        if least.status is Status.SOLVED and least.value[-1] > 1 - 1e-6:
+            return Infeasible(
+                "the rate limits are the least that any path needs, to a millionth, so that none is planned; "
+                "that none exists is not proven: allow rates a millionth higher"
+            )
     if proven and (task.least_normals > 0).any():
         freed = replace(task, least_normals=0 * task.least_normals)
         if solve(path_program(freed, "change", facets=facets), backend, throw=False).status is Status.SOLVED:
