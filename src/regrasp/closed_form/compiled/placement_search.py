@@ -32,7 +32,8 @@ CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 
 
 @njit(**VIEWS)
-def _push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
+def push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
+    """Adds a node to a heap of ``count``, the least bound on top."""
     at = count
     while at > 0 and bounds[heap[(at - 1) // 2]] > bounds[node]:
         heap[at] = heap[(at - 1) // 2]
@@ -41,7 +42,7 @@ def _push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
+def pop(heap, count, bounds):  # type: ignore[no-untyped-def]
     """The node of the least bound of ``count``; the heap is one shorter."""
     top, node, at = heap[0], heap[count - 1], 0
     while 2 * at + 1 < count - 1:
@@ -156,7 +157,7 @@ def _loop(digest: str) -> Any:
             if state[0] + k + 1 > len(bounds):
                 return FULL
             looked += 1
-            node = _pop(heap, state[1], bounds)
+            node = pop(heap, state[1], bounds)
             state[1] -= 1
             most = found[0] if fixed == np.inf else fixed * (1.0 + 1e-6)
             # a placement from where its forces press
@@ -176,7 +177,7 @@ def _loop(digest: str) -> Any:
                     for c in range(2 * k + 1):
                         found[c] = tried[row, c]
                     if fixed < np.inf and value <= fixed:
-                        _push(heap, state[1], bounds, node)
+                        push(heap, state[1], bounds, node)
                         state[1] += 1
                         return IMPROVED
                     level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
@@ -213,7 +214,7 @@ def _loop(digest: str) -> Any:
                 if bounds[child] >= level:
                     kinds[child] = EXCLUDED
                 else:
-                    _push(heap, state[1], bounds, child)
+                    push(heap, state[1], bounds, child)
                     state[1] += 1
         for n in range(state[1]):
             kinds[heap[n]] = EXCLUDED

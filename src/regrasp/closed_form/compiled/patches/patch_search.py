@@ -12,38 +12,24 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from regrasp.closed_form.compiled import placement_search
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.patches import patch_gauge
 from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, workspace
-from regrasp.closed_form.compiled.placement_search import CLOSED, EXCLUDED, FULL, NEAR, OPEN, PAUSED, SPLIT
+from regrasp.closed_form.compiled.placement_search import (
+    CLOSED,
+    EXCLUDED,
+    FULL,
+    NEAR,
+    OPEN,
+    PAUSED,
+    SPLIT,
+    pop,
+    push,
+)
 from regrasp.compilation import kept
 
 _CORNERS = 3  # rows of a triangle
-
-
-@njit(**VIEWS)
-def _push(heap, count, bounds, box):  # type: ignore[no-untyped-def]
-    at = count
-    while at > 0 and bounds[heap[(at - 1) // 2]] > bounds[box]:
-        heap[at] = heap[(at - 1) // 2]
-        at = (at - 1) // 2
-    heap[at] = box
-
-
-@njit(**VIEWS)
-def _pop(heap, count, bounds):  # type: ignore[no-untyped-def]
-    """The box of the least bound of ``count``; the heap is one shorter."""
-    top, box, at = heap[0], heap[count - 1], 0
-    while 2 * at + 1 < count - 1:
-        child = 2 * at + 1
-        if child + 1 < count - 1 and bounds[heap[child + 1]] < bounds[heap[child]]:
-            child += 1
-        if bounds[heap[child]] >= bounds[box]:
-            break
-        heap[at] = heap[child]
-        at = child
-    heap[at] = box
-    return top
 
 
 @njit(**VIEWS)
@@ -234,7 +220,7 @@ def _loop(digest: str) -> Any:
             if state[0] + k + 1 > len(bounds) or state[3] + 2 > len(spans) or state[4] + 6 > len(rows):
                 return FULL
             looked += 1
-            box = _pop(heap, state[1], bounds)
+            box = pop(heap, state[1], bounds)
             state[1] -= 1
             value = value_of(places[box], loads, trying, found[0], critical[box], least, spare)
             row = state[2] % len(tried)
@@ -292,7 +278,7 @@ def _loop(digest: str) -> Any:
                 if bounds[child] >= level:
                     kinds[child] = EXCLUDED
                 else:
-                    _push(heap, state[1], bounds, child)
+                    push(heap, state[1], bounds, child)
                     state[1] += 1
         for n in range(state[1]):
             kinds[heap[n]] = EXCLUDED
@@ -303,4 +289,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch this, too.
-search = _loop(digest((patch_gauge,)))
+search = _loop(digest((patch_gauge, placement_search)))
