@@ -4,9 +4,9 @@ Every change of the modules of an area is tried against the tests nearest to the
 ``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, a module that
 changed is tried anew, and ``--survivors`` tries those again, against tests that came since. Survivors and the
 reasons for them stand in ``survivors.txt``: a change that no input can tell from the original is no slip, and
-does not count. ``--drawn`` tries only those of ``drawn.txt``, which ``--draw=60`` wrote by chance, sixty an
-area (SEED). JOBS sets the number of processes, SLOW the longest test and BUDGET the longest time of a change
-[s].
+does not count. ``--drawn`` tries only those of ``drawn.txt``, which ``--draw=60 [AREA ...]`` wrote by chance,
+sixty an area (SEED); areas that are not named keep theirs. JOBS sets the number of processes, SLOW the
+longest test and BUDGET the longest time of a change [s].
 """
 
 import hashlib
@@ -32,6 +32,31 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "verification": (
         ["verification/*.py"],
         ["verification/**/test_[!c]*.py", "verification/**/test_co*.py", "**/test_verification.py"],
+        0.95,
+    ),
+    "proofs": (
+        ["verification/*/*.py"],
+        [
+            "verification/**/test_*.py",
+            *(
+                f"planning/**/test_{name}.py"
+                for name in (
+                    "choose_grasp",
+                    "constraints",
+                    "curves",
+                    "contact_regions",
+                    "wrench_ball_placement",
+                    "grasps_on_meshes",
+                    "regrasps_on_outline",
+                    "turns_and_forbidden_arcs",
+                    "tolerances",
+                    "regrasps_that_withstand",
+                )
+            ),
+            "files/test_ways_file.py",
+            "files/test_motion_files.py",
+            "motions/test_*.py",
+        ],
         0.95,
     ),
     "programs": (["programs/*.py", "programs/judging/*.py"], ["programs/test_*.py"], 0.95),
@@ -73,7 +98,7 @@ def main() -> int:
         print(f"areas: {', '.join(AREAS)}", file=sys.stderr)
         return 2
     for size in (int(word[7:]) for word in sys.argv[1:] if word.startswith("--draw=")):
-        _draw(size, int(os.environ.get("SEED", "1")))
+        _draw(size, int(os.environ.get("SEED", "1")), asked)
         return 0
     KEPT.mkdir(exist_ok=True)
     good = True
@@ -132,17 +157,23 @@ def _run(area: str, fresh: bool) -> int:
     return _summed_up(area, rows, reasons, least)
 
 
-def _draw(size: int, seed: int) -> None:
-    """Write which changes of each area are to be tried; nothing has been tried when they are drawn."""
+def _draw(size: int, seed: int, areas: list[str]) -> None:
+    """Write which changes of these areas are to be tried; nothing has been tried when they are drawn."""
     from changes import changes
     from engine import named
 
-    lines = [f"# {size} changes an area, by random.Random({seed}).sample; an area of fewer has all of them."]
-    for area, (sources, _, _) in AREAS.items():
-        modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
+    parts: dict[str, list[str]] = {}  # of all areas, by the line that begins them
+    for line in DRAWN.read_text(encoding="utf-8").splitlines() if DRAWN.exists() else []:
+        if line.startswith("# "):
+            parts[line[2:].split(":")[0]] = found = []
+        found.append(line)
+    for area in areas:
+        modules = sorted({path for pattern in AREAS[area][0] for path in SOURCE.glob(pattern)})
         keys = [key for path in modules for _, key in named(changes(path.read_text()), str(path))]
-        chosen = random.Random(seed).sample(keys, min(size, len(keys)))
-        lines += [f"# {area}: {len(chosen)} of {len(keys)}", *sorted(chosen)]
+        chosen = sorted(random.Random(seed).sample(keys, min(size, len(keys))))
+        head = f"# {area}: {len(chosen)} of {len(keys)}, by random.Random({seed}).sample"
+        parts[area] = [head, *chosen]
+    lines = [line for area in AREAS for line in parts.get(area, [])]
     DRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
