@@ -153,6 +153,7 @@ def _run(area: str, fresh: bool) -> int:
         {"key": key, "verdict": SURVIVED}
         for key, reason in reasons.items()
         if reason.startswith("=") and key not in found and drawn is not None and key in drawn
+        if str(SOURCE / key.split(" ")[0]) in prints
     ]
     return _summed_up(area, rows, reasons, least)
 

@@ -25,13 +25,22 @@ _DROPPED = ("abs", "sqrt", "root")  # f(x) becomes x
 
 @dataclass(frozen=True)
 class Change:
-    """One change: where it is, what stood there and what stands there now; ``tree`` is the whole module."""
+    """One change: where it is, what stood there and what stands there now."""
 
     function: str
     line: int
     before: str
     after: str
-    tree: ast.Module
+    source: str
+    path: "Path"
+    new: ast.AST | None
+
+    @property
+    def tree(self) -> ast.Module:
+        """The whole module, changed."""
+        tree = ast.parse(self.source)
+        _put(tree, self.path, self.new)
+        return ast.fix_missing_locations(tree)
 
     @property
     def key(self) -> str:
@@ -41,17 +50,16 @@ class Change:
 
 def changes(source: str) -> Iterator[Change]:
     """Every change of a module, in order."""
-    tree = ast.parse(source)
+    tree, other = ast.parse(source), ast.parse(source)
     for path, function in _places(tree):
-        node = _at(tree, path)
+        node, kept, at = _at(tree, path), _at(other, path), _statement(tree, path)
+        whole = _at(tree, at)
+        line = getattr(node, "lineno", getattr(whole, "lineno", 0))
         for new in _instead(node):
-            other = copy.deepcopy(tree)
             _put(other, path, new)
-            ast.fix_missing_locations(other)
-            whole = _at(tree, _statement(tree, path))
-            line = getattr(node, "lineno", getattr(whole, "lineno", 0))
-            before, after = _text(whole), _text(_at(other, _statement(tree, path)))
-            yield Change(function, line, *_around(before, after), other)
+            texts = _around(_text(whole), _text(_at(other, at)))
+            _set(other, path, kept)
+            yield Change(function, line, *texts, source, path, new)
 
 
 Path = tuple[tuple[str, int | None], ...]
@@ -165,13 +173,16 @@ def _at(tree: ast.AST, path: Path) -> ast.AST:
 
 
 def _put(tree: ast.AST, path: Path, new: ast.AST | None) -> None:
-    *way, (field, k) = path
-    parent = _at(tree, tuple(way))
-    new = copy.deepcopy(new)
-    old = getattr(parent, field) if k is None else getattr(parent, field)[k]
+    new, old = copy.deepcopy(new), _at(tree, path)
     for name in ("lineno", "col_offset", "end_lineno", "end_col_offset"):
         if hasattr(old, name) and new is not None:
             setattr(new, name, getattr(old, name))
+    _set(tree, path, new)
+
+
+def _set(tree: ast.AST, path: Path, new: ast.AST | None) -> None:
+    *way, (field, k) = path
+    parent = _at(tree, tuple(way))
     if k is None:
         setattr(parent, field, new)
     else:
