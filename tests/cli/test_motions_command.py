@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from wrong_calls import MOVING
+from wrong_calls.files import MOVING
 
 pytestmark = pytest.mark.end_to_end
 

@@ -12,6 +12,9 @@ import numpy as np
 
 import regrasp as rg
 
+EPS = 2.0**-40
+"""What checks allow for rounding, of the largest number."""
+
 
 @dataclass(frozen=True)
 class Scaling:
@@ -155,3 +158,10 @@ def spoilt(plan: Plan, where: str, forces) -> Plan:
     rows = plan.turn.middles.copy()
     rows[0] = forces
     return replace(plan, turn=SimpleNamespace(**{**vars(plan.turn), "middles": rows}))
+
+
+def said(plan) -> str:
+    """What ``verify`` finds wrong, in one line."""
+    verdict = rg.verify(plan)
+    assert verdict.ok == (not verdict.violations)
+    return "; ".join(verdict.violations)

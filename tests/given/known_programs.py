@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from regrasp.programs import Block, Cone, Program, Solution, Status
+from regrasp.programs import Block, Cone, Program, Rows, Solution, Status
 from regrasp.programs.cones import Cones
 
 KINDS = ("solved", "infeasible", "unbounded", "both")
@@ -113,3 +113,15 @@ def is_a_lie(case: Known, answer: Solution) -> bool:
 
 def _unit(rng: np.random.Generator, span: float, count: int) -> np.ndarray:
     return 2.0 ** np.round(rng.uniform(-span, span, count))
+
+
+def projection_on_simplex(point):
+    """min 1/2 |x - p|^2 with sum x = 1, x >= 0: sort and shift."""
+    n = len(point)
+    rows = Rows(n)
+    rows.equal(np.ones((1, n)), -1.0)
+    rows.at_least_zero(np.eye(n))
+    ordered = np.sort(point)[::-1]
+    shifts = (np.cumsum(ordered) - 1) / np.arange(1, n + 1)
+    shift = shifts[np.flatnonzero(ordered > shifts)[-1]]
+    return rows.program(-np.asarray(point), np.eye(n)), np.maximum(point - shift, 0)

@@ -13,7 +13,8 @@ import regrasp.files
 import regrasp.plots
 from paper import GRASP, LOAD
 from refusals import refusal
-from wrong_calls import Case, called_wrongly, cases, long_cases, rows
+from wrong_calls import rows
+from wrong_calls.row import Case, called_wrongly, cases, long_cases
 
 pytestmark = pytest.mark.contract
 

@@ -19,7 +19,8 @@ from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.plots import html
 from scenarios import edited
 from scenarios import regrasp as command
-from wrong_calls import Row, rows
+from wrong_calls import rows
+from wrong_calls.row import Row
 
 pytestmark = pytest.mark.contract
 

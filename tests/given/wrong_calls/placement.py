@@ -1,0 +1,47 @@
+"""Grasps that are chosen on a shape."""
+
+import regrasp as rg
+from values import SQUARE_OUTLINE, WEIGHT_IN_PLANE, placed
+from wrong_calls.row import Row
+
+
+def rows() -> dict[str, Row]:
+    return {
+        "choose_grasp": Row(
+            rg.choose_grasp,
+            {"shape": SQUARE_OUTLINE, "fingers": 2, "load": WEIGHT_IN_PLANE, "friction": 0.5},
+            {
+                "shape": "value",
+                "fingers": "count",
+                "from_corners": "not negative",
+                "load_offset": "not negative",
+                "length": "positive",
+                "min_distance": "positive",
+                "disturbance": "value",
+                "arcs": "table",
+                "tip_radius": "not negative",
+                "min_normal": "not negative",
+                "keep": "function",
+                "removable": "flag",
+                "most_boxes": "count",
+                "progress": "function",
+            },
+        ),
+        "placement_map": Row(
+            rg.placement_map,
+            {"shape": SQUARE_OUTLINE, "load": WEIGHT_IN_PLANE, "friction": 0.5, "count": 8},
+            {
+                "shape": "value",
+                "disturbance": "value",
+                "fixed": "some places",
+                "free": "count",
+                "length": "positive",
+            },
+        ),
+        "contact_regions": Row(
+            rg.contact_regions,
+            {"shape": SQUARE_OUTLINE, "grasp": placed().grasp, "load": WEIGHT_IN_PLANE},
+            {"shape": "value"},
+        ),
+        "ChosenGrasp.from_dict": Row(rg.ChosenGrasp.from_dict, {"data": placed().to_dict()}),
+    }

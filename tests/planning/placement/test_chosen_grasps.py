@@ -1,0 +1,124 @@
+"""What a chosen grasp says of itself: states, bounds and gaps, proofs of refusals, progress."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from placements import BRACKET, TILTED, star, value_of
+
+pytestmark = pytest.mark.oracle
+
+
+def test_every_orientation_is_held_by_what_is_chosen() -> None:
+    load = rg.LoadSet.turned(rg.Wrench([0, -2]))
+    chosen = rg.choose_grasp(BRACKET, 3, load, friction=0.5)
+    angles = np.linspace(0, 2 * np.pi, 50)
+    loads = np.stack([2 * np.cos(angles), 2 * np.sin(angles), 0 * angles], axis=1)
+    worst = value_of(chosen.grasp, loads, "sum_normal")
+    assert chosen.value * (1 - 2e-3) <= worst <= chosen.value
+    assert chosen.bound <= worst * 1.001  # the worst orientation is between two of these
+    assert len(chosen.states) >= 8
+    assert rg.verify(chosen).ok
+    assert any("has no state" in v for v in rg.verify(replace(chosen, states=chosen.states[1:])).violations)
+
+
+def test_the_states_hold_the_loads_of_a_hull_and_no_force_holds_no_load() -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4)
+    assert sorted(tuple(s.load.vector) for s in chosen.states) == sorted(map(tuple, TILTED.vertices))
+    sums = [(s.forces * s.grasp.normals).sum() for s in chosen.states]
+    assert max(sums) == pytest.approx(chosen.value, rel=1e-12)
+    idle = rg.choose_grasp(BRACKET, 2, rg.Wrench([0, 0]), friction=0.4)
+    assert (idle.value, idle.bound, idle.gap) == (0.0, 0.0, 0.0)
+
+
+def test_where_nothing_holds_it_says_so_with_a_proof() -> None:
+    """Two frictionless fingers make a pure torque only with opposite normals, which a triangle has not."""
+    triangle = rg.Outline([[0, 0], [4, 0], [1, 3]])
+    with pytest.raises(rg.Infeasible, match="no 2 fingers anywhere") as caught:
+        rg.choose_grasp(triangle, 2, rg.Wrench([0, 0], 1.0), friction=0.0)
+    proof = caught.value.certificate
+    assert rg.verify(proof).ok
+
+
+def test_a_search_cut_short_keeps_an_honest_gap() -> None:
+    chosen = rg.choose_grasp(
+        star(5, 8), 3, TILTED, friction=0.4, objective="effort", tolerance=1e-9, most_boxes=64
+    )
+    assert 1e-9 < chosen.gap < 1
+    assert rg.verify(chosen).ok
+    better = rg.choose_grasp(star(5, 8), 3, TILTED, friction=0.4, objective="effort")
+    assert chosen.bound <= better.value
+
+
+def test_on_a_knifes_edge_the_gap_says_so() -> None:
+    """Loads through the centre of mass may all be held only where a cone's edge passes through it, too."""
+    chosen = rg.choose_grasp(
+        star(4, 9), 2, TILTED, friction=0.5, objective="friction_use", max_force=3.0, most_boxes=2000
+    )
+    assert chosen.gap > 1e-3
+    assert rg.verify(chosen).ok
+    # where loads may be a little beside their lines, no such placement is left
+    robust = rg.choose_grasp(star(4, 9), 2, TILTED, friction=0.4, load_offset=0.01)
+    knife = rg.choose_grasp(star(4, 9), 2, TILTED, friction=0.4)
+    assert knife.bound <= robust.value
+    assert robust.gap <= 1e-3
+    assert len(robust.certificate.loads) == 8
+    for load in robust.certificate.loads:
+        assert value_of(robust.grasp, load[None], "sum_normal") <= robust.value * (1 + 1e-6)
+
+
+def test_progress_sees_both_bounds_close_in() -> None:
+    seen: list[tuple[float, float]] = []
+    rg.choose_grasp(star(8, 12), 3, TILTED, friction=0.3, progress=lambda low, high: seen.append((low, high)))
+    lows, highs = np.array(seen).T
+    assert (np.diff(lows) >= -1e-9 * abs(lows[1:])).all()
+    assert (np.diff(highs) <= 0).all()
+
+
+def test_a_level_that_no_placement_reaches_is_refused_with_a_proof() -> None:
+    with pytest.raises(rg.Infeasible, match=r"forces of at most 0\.2 N") as caught:
+        rg.choose_grasp(BRACKET, 3, TILTED, friction=0.5, objective="friction_use", max_force=0.2)
+    assert rg.verify(caught.value.certificate).ok
+
+
+DEGENERATE = {
+    "needle": rg.Outline([[0, 0], [10, 0], [10, 1e-3], [0, 1e-3]]),
+    "collinear points and tiny edges": rg.Outline(
+        [[0, 0], [1, 0], [2, 0], [2 + 1e-6, 0], [4, 0], [4, 3], [2, 3 + 1e-7], [0, 3]]
+    ),
+    "pocket and hole": rg.Outline(
+        [[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]],
+        holes=[[[0.4, 0.4], [0.4, 0.8], [0.8, 0.4]]],
+    ),
+    "chords of an ellipse": rg.Outline(rg.Outline.ellipse(2, 1).polygon(0.01)),
+}
+
+
+@pytest.mark.parametrize("name", DEGENERATE)
+@pytest.mark.parametrize("friction", [0.0, 1e-12, 0.3])
+def test_a_degenerate_outline_has_an_answer_or_a_refusal_with_a_proof(name: str, friction: float) -> None:
+    outline = DEGENERATE[name]
+    load = rg.LoadSet.hull([rg.Wrench([0.3, -1], 0.1), rg.Wrench([0, 0]), rg.Wrench([-0.2, -0.5])])
+    for objective in ("sum_normal", "peak"):
+        try:
+            chosen = rg.choose_grasp(
+                outline, 3, load, friction=friction, objective=objective, from_corners=0.0, most_boxes=1000
+            )
+        except rg.Infeasible as refused:
+            proven = refused.certificate
+        else:
+            proven = chosen
+            assert chosen.bound <= chosen.value
+        assert rg.verify(proven).ok
+
+
+def test_fingers_that_do_nothing_in_the_worst_load_are_on_the_outline_too() -> None:
+    """Four fingers on chords: each stands on a side that the proof is about, whatever loads it answers."""
+    chords = DEGENERATE["chords of an ellipse"]
+    rng = np.random.default_rng(0)
+    for _ in range(12):
+        loads = rg.LoadSet.hull(rg.Wrench(rng.normal(size=2), float(rng.normal())) for _ in range(2))
+        chosen = rg.choose_grasp(chords, 4, loads, friction=0.4, most_boxes=1000)
+        assert rg.verify(chosen).ok

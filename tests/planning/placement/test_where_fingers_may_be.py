@@ -1,0 +1,99 @@
+"""Distances, corners, arcs and round tips that keep fingers away, and what is refused."""
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from placements import BRACKET, DEVIATIONS, TILTED
+from refusals import refusal
+
+pytestmark = pytest.mark.oracle
+
+
+def test_fingers_keep_apart_and_away_from_corners() -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective="peak", min_distance=3.0)
+    a, b = chosen.grasp.positions
+    assert np.hypot(*(a - b)) >= 3.0 * (1 - 1e-9)
+    free = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective="peak")
+    assert free.bound <= chosen.value
+    away = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, from_corners=0.3)
+    corners = BRACKET.boundary.corners
+    assert np.abs(away.places[:, None] - corners).min() >= 0.3 - 1e-9
+    with pytest.raises(rg.InvalidInput, match="from_corners"):
+        rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, from_corners=3.0)
+
+
+def test_what_cannot_be_answered_is_refused() -> None:
+    for given, words in (
+        ({"objective": "force"}, "objective must be one of sum_normal"),
+        ({"shape": [[0, 0], [1, 0], [0, 1]]}, "shape must be an Outline"),
+        ({"load": rg.Wrench([0, 0, 1])}, "planar load"),
+        ({"tolerance": 2.0}, "tolerance"),
+        ({"fingers": 5}, "fingers"),
+    ):
+        asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | given
+        assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))
+
+
+def test_limits_and_disturbances_go_with_their_objectives() -> None:
+    for more, words in (
+        ({"objective": "angle"}, "max_force"),
+        ({"objective": "angle", "max_force": 3.0, "min_normal": 0.1}, "min_normal"),
+        ({"removable": True}, "three fingers"),
+        ({"keep": lambda p, q: True}, "keep"),
+        ({"keep": lambda p, q, angle: [True, True]}, "keep must return"),
+        ({"objective": "answered", "max_force": 3.0}, "disturbance"),
+        ({"objective": "peak", "disturbance": DEVIATIONS}, "disturbance"),
+        ({"objective": "answered", "max_force": 3.0, "disturbance": DEVIATIONS}, "one load"),
+        ({"objective": "friction_use", "max_force": 3.0, "friction": 0.0}, "friction"),
+        ({"objective": "angle", "max_force": 3.0, "load": rg.Wrench([0, 0])}, "other than zero"),
+    ):
+        asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | more
+        assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))
+
+
+def test_fingers_stay_within_arcs() -> None:
+    arcs = [(13.5, 2.0), (6.0, 7.0)]  # the first runs past the first vertex
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=arcs, load_offset=1e-3)
+    for s in chosen.places:
+        assert 0 <= s <= 2.0 or 6.0 <= s <= 7.0 or s >= 13.5
+    free = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, load_offset=1e-3)
+    assert free.bound <= chosen.value
+    assert rg.verify(chosen).ok
+    assert float((chosen.certificate.sides[:, 2] - chosen.certificate.sides[:, 1]).max()) <= 1.0
+    whole = rg.choose_grasp(
+        BRACKET, 2, TILTED, friction=0.6, arcs=[(1.0, 1.0 + BRACKET.length)], load_offset=1e-3
+    )
+    assert whole.value == pytest.approx(free.value, rel=1e-3)
+    for none in ([], [(0, 2.01 * BRACKET.length)], [(-1.01 * BRACKET.length, 0)]):
+        assert "arcs" in str(
+            refusal(lambda none=none: rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=none))
+        )
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.3, 0.45, 0.6])
+def test_round_tips_touch_nothing_else(radius: float) -> None:
+    """Against the distance of the tip's centre to the outline, by sampling; a slot one wide takes no 0.6."""
+    from regrasp.planning.placement.reachable import sides_of
+
+    slotted = rg.Outline([[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]])
+    sides = sides_of(slotted, 0.0, None, radius)
+    ring = slotted.points(np.linspace(0, slotted.length, 4001))
+    for s in np.linspace(0.01, slotted.length - 0.01, 331):
+        point, normal = slotted.points(s), slotted.normals(s)
+        reach = np.hypot(*(ring - (point - radius * normal)).T).min()
+        edge = int(np.searchsorted(sides.starts, s, side="right")) - 1
+        u = edge + (s - sides.starts[edge]) / sides.lengths[edge]
+        allowed = bool(((sides.ends[:, 0] <= u) & (u <= sides.ends[:, 1])).any())
+        if abs(reach - radius) > 0.01:
+            assert not allowed
+        elif allowed:
+            assert reach >= radius - 1e-3
+    inside = (sides.edges == 4).any()
+    assert inside == (radius < 0.5)
+
+
+def test_fingers_further_apart_than_the_outline_is_wide_are_refused_at_once() -> None:
+    square = rg.Outline([[0, 0], [3, 0], [3, 4], [0, 4]])
+    with pytest.raises(rg.InvalidInput, match=r"no two points of the shape are further apart than 5$"):
+        rg.choose_grasp(square, 2, rg.Wrench([0, -1]), friction=0.5, objective="peak", min_distance=5.001)
