@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import cubic_arcs, placement_boxes, wrench_gauge
+from regrasp.closed_form.compiled import cubic_arcs, eroded, placement_boxes, wrench_gauge
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.placement_boxes import (
     alike,
@@ -58,7 +58,7 @@ def pop(heap, count, bounds):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, twist, work, seen):  # type: ignore[no-untyped-def]
+def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, seen):  # type: ignore[no-untyped-def]
     """The bound of a box and the load behind it, from load ``first`` on; until one reaches ``level``.
 
     seen: (k, 8) of each finger: least and largest centre of pressure; the sides and u of the extreme forces;
@@ -66,14 +66,14 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
     """
     k = len(arcs)
     worst, critical = -1.0, first
-    _, x, forces, _, _, _, _, _, best = work
+    x, forces, best = work[1], work[2], work[8]
     for i in range(k):
         seen[i, 0], seen[i, 1] = np.inf, -np.inf
         seen[i, 2], seen[i, 4] = np.inf, -np.inf
         seen[i, 6] = -1.0
     for number in range(len(loads)):
         load = number if number > first else (number - 1 if number > 0 else first)
-        value = gauge(sides, arcs, ends, mu, size, norm, loads[load], level, precision, best, work)
+        value = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work)
         worse = value > worst
         if worse:
             worst, critical = value, load
@@ -108,10 +108,10 @@ def _judge(sides, arcs, ends, loads, mu, size, norm, precision, level, first, tw
 def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-untyped-def]
     """Raises the bound of a box to what its loads prove, and notes where its forces press."""
     arcs, ends, bounds, twists, critical, _, _, seen, twist = boxes
-    mu, _, size, norm, precision = law
+    mu, _, size, norm, precision, limit, margin = law
     found, load = _judge(
-        sides, arcs[node], ends[node], loads, mu, size, norm, precision, level, critical[node], twist[0],
-        work, seen[node],
+        sides, arcs[node], ends[node], loads, (mu, size, norm, limit, margin), precision, level,
+        critical[node], twist[0], work, seen[node],
     )  # fmt: skip
     if found >= bounds[node]:
         bounds[node], critical[node] = found, load
@@ -132,7 +132,7 @@ def _loop(digest: str) -> Any:
         """Goes on with a search; see the module. Returns why it ends.
 
         sides: (m, 9) or (m, 17) as of ``wrench_gauge.gauge``. loads: (L, 3) to be made. law: mu, what
-        placements tried may use of it, size, norm, precision.
+        placements tried may use of it, size, norm, precision, and of ``ERODED`` the limit and the distance.
         fixed: a level, or infinite to follow the least value times 1 - tolerance. least: distance of fingers.
         narrow: arcs shorter than this are not split.
         boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), twists (N, 3), loads' numbers (N,), kinds (N,),
@@ -144,7 +144,8 @@ def _loop(digest: str) -> Any:
         arcs, ends, bounds, twists, critical, kinds, children, seen, twist = boxes
         k = arcs.shape[1]
         work, places, nowhere, at_arcs, at_ends = spare
-        mu, usable, size, norm, precision = law
+        mu, usable, size, norm, precision, limit, margin = law
+        bounding, trying = (mu, size, norm, limit, margin), (usable, size, norm, limit, margin)
         looked = 0
         if state[0] == 1 and kinds[0] == OPEN:
             _assess(sides, loads, law, np.inf, boxes, heap[0], work)
@@ -165,8 +166,8 @@ def _loop(digest: str) -> Any:
             near = put(sides, places, least, at_arcs, at_ends)
             if not near:
                 value, _ = _judge(
-                    sides, at_arcs, at_ends, loads, usable, size, norm, precision, most,
-                    critical[node], twist[0], work, nowhere,
+                    sides, at_arcs, at_ends, loads, trying, precision, most, critical[node], twist[0], work,
+                    nowhere,
                 )  # fmt: skip
                 row = state[2] % len(tried)
                 state[2] += 1
@@ -206,7 +207,7 @@ def _loop(digest: str) -> Any:
                     kinds[child] = NEAR
                     continue
                 b = loads[critical[node]]
-                known = bound_by(sides, arcs[child], ends[child], mu, size, norm, b, twists[node], work)
+                known = bound_by(sides, arcs[child], ends[child], bounding, b, twists[node], work)
                 if known >= level:
                     bounds[child] = known
                 else:
@@ -225,4 +226,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-search = _loop(digest((cubic_arcs, placement_boxes, wrench_gauge)))
+search = _loop(digest((cubic_arcs, eroded, placement_boxes, wrench_gauge)))

@@ -25,9 +25,10 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
 from regrasp.closed_form.compiled.cubic_arcs import CONTROL, support_of_cubics
+from regrasp.closed_form.compiled.eroded import add_middle, support_of_eroded
 
-NORMAL, DISC = 0, 1
-"""size(f): n . f, or |f|."""
+NORMAL, DISC, ERODED = 0, 1, 2
+"""size(f): n . f, or |f|; |f| of forces that keep a distance from the edges of their cones (``eroded``)."""
 SUM, SQUARES, LARGEST = 0, 1, 2
 """p = 1, 2 or infinity."""
 FAR = 1e6
@@ -40,8 +41,12 @@ _PIVOT = 1e-13
 
 
 @njit(**VIEWS)
-def _support_of_arc(sides, first, last, lo, hi, mu, size, y, out):  # type: ignore[no-untyped-def]
+def _support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-untyped-def]
     """Writes sigma, the side, u, f_x, f_y, the torque and n . f of the best force on an arc; 0 for none."""
+    mu, size = law[0], law[1]
+    if size == ERODED:
+        support_of_eroded(sides, first, last, lo, hi, law, y, out)
+        return
     if sides.shape[1] > CONTROL:
         support_of_cubics(sides, first, last, lo, hi, mu, size, y, out)
         return
@@ -77,15 +82,15 @@ def _support_of_arc(sides, first, last, lo, hi, mu, size, y, out):  # type: igno
 
 
 @njit(**VIEWS)
-def _support_of_box(sides, arcs, ends, mu, size, norm, y, g, force, out):  # type: ignore[no-untyped-def]
+def _support_of_box(sides, arcs, ends, law, y, g, force, out):  # type: ignore[no-untyped-def]
     """H(y), and in ``g`` the point of W that reaches it; ``force`` (k, 3): normal force, side and u."""
-    total = 0.0
+    total, size, norm = 0.0, law[1], law[2]
     g[0] = g[1] = g[2] = 0.0
     for i in range(len(arcs)):
         force[i, 0] = 0.0
-        _support_of_arc(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], mu, size, y, out)
+        _support_of_arc(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], law, y, out)
         s = out[0]
-        if s <= 0.0 or (norm == SUM and s <= total):
+        if (s <= 0.0 and size != ERODED) or (norm == SUM and s <= total):
             continue
         weight = s if norm == SQUARES else 1.0
         if norm == SUM:
@@ -141,6 +146,7 @@ def workspace(k: int) -> tuple[Any, ...]:
     return (
         np.zeros((3, 3)), np.zeros(3), np.zeros((4, k, 3)),
         np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(7), np.zeros(3),
+        np.zeros(3), np.zeros(3),
     )  # fmt: skip
 
 
@@ -155,28 +161,47 @@ def _proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def bound_by(sides, arcs, ends, mu, size, norm, b, y, work):  # type: ignore[no-untyped-def]
+def _seen_from_middle(sides, arcs, ends, law, b, middle, target):  # type: ignore[no-untyped-def]
+    """Writes b as seen from a wrench in W where 0 is none, and that wrench; returns what 1 of it is worth."""
+    for c in range(3):
+        target[c], middle[c] = b[c], 0.0
+    if law[1] != ERODED:
+        return 1.0
+    for i in range(len(arcs)):
+        add_middle(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], law, middle)
+    for c in range(3):
+        target[c] -= middle[c]
+    return law[3]
+
+
+@njit(**VIEWS)
+def bound_by(sides, arcs, ends, law, b, y, work):  # type: ignore[no-untyped-def]
     """What the twist y proves: b . y / H(y), infinite beyond ``FAR`` |b|_1."""
-    _, _, forces, _, _, new, _, out, _ = work
+    _, _, forces, _, _, new, _, out, _, middle, target = work
+    per = _seen_from_middle(sides, arcs, ends, law, b, middle, target)
+    b, mu = target, law[0]
     most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
     done = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
     if not done > 0.0:
         return 0.0
-    h = _support_of_box(sides, arcs, ends, mu, size, norm, y, new, forces[3], out)
-    return _proven(b, y, done, h, mu, len(arcs), most)
+    h = _support_of_box(sides, arcs, ends, law, y, new, forces[3], out)
+    h -= middle[0] * y[0] + middle[1] * y[1] + middle[2] * y[2]
+    return per * _proven(b, y, done, h, mu, len(arcs), most)
 
 
 @njit(**VIEWS)
-def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work):  # type: ignore[no-untyped-def]
+def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ignore[no-untyped-def]
     """A lower bound of the gauge of b on a box, and in ``best`` its twist; ends early at ``enough``.
 
     sides: (m, 9) of straight sides: a point, its direction per u, unit normal, least and largest u, and the u
     of the point; (m, 17) of sides of cubics with their control points, too. arcs: (k, 2) first and last side
-    of each finger. ends: (k, 2) least and largest u.
+    of each finger. ends: (k, 2) least and largest u. law: mu, size, norm; limit and distance of ``ERODED``.
     What ``work`` holds at the end are forces that reach the bound, but for ``precision``: finger i has
     x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2.
     """
-    g, x, forces, y, d, new, spare, out, _ = work
+    g, x, forces, y, d, new, spare, out, _, middle, target = work
+    per = _seen_from_middle(sides, arcs, ends, law, b, middle, target)
+    b, mu = target, law[0]
     best[0] = best[1] = best[2] = 0.0
     most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
     for c in range(3):
@@ -194,12 +219,15 @@ def gauge(sides, arcs, ends, mu, size, norm, b, enough, precision, best, work): 
         if not _solve(g, b, y, x):
             break
         upper = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
-        h = _support_of_box(sides, arcs, ends, mu, size, norm, y, new, forces[3], out)
-        value = _proven(b, y, upper, h, mu, len(arcs), most)
+        h = _support_of_box(sides, arcs, ends, law, y, new, forces[3], out)
+        for c in range(3):
+            h -= middle[c] * y[c]
+            new[c] -= middle[c]
+        value = per * _proven(b, y, upper, h, mu, len(arcs), most)
         if value > lower:
             lower = value
             best[0], best[1], best[2] = y[0], y[1], y[2]
-        if lower >= enough or h <= 1.0 + _CLOSE or lower >= upper * (1.0 - precision):
+        if lower >= enough or h <= 1.0 + _CLOSE or lower >= per * upper * (1.0 - precision):
             break
         if not _solve(g, new, spare, d):  # new = sum d_j g_j; the row whose weight vanishes first leaves
             break

@@ -53,12 +53,20 @@ class GraspTask(Strict):
     kind: Literal["grasp"]
     fingers: int = Field(ge=2, le=4, description="how many")
     objective: Literal[
-        "sum_normal", "peak_normal", "peak", "effort", "friction_use", "angle", "answered", "wrench_ball"
+        "sum_normal",
+        "peak_normal",
+        "peak",
+        "effort",
+        "friction_use",
+        "angle",
+        "force",
+        "answered",
+        "wrench_ball",
     ] = Field("sum_normal", description="what the grasp is chosen for; for wrench_ball the load is zero")
     max_force: Positive | None = Field(
         None,
         description="limit on every force [N], for wrench_ball on its normal part; friction_use, angle, "
-        "answered and wrench_ball need it",
+        "force, answered and wrench_ball need it",
     )
     length: Positive | None = Field(None, description="[m], by which wrench_ball divides torques")
     min_normal: _NotNegative = Field(0.0, description="[N], with which every finger pushes at the least")

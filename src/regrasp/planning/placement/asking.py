@@ -9,7 +9,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.laws import LEVELS
 from regrasp.planning.placement.levels.ball import BallLevel
-from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel, Level
+from regrasp.planning.placement.levels.level import AnsweredLevel, ForceLevel, FrictionLevel, Level
 from regrasp.planning.placement.loads import check_planar
 
 
@@ -42,8 +42,10 @@ def level_of(
         if friction == 0:
             raise InvalidInput(f"objective {goal!r} needs friction above 0")
         loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
-        if loads is not None and not loads.any():
+        if loads is not None and not loads.any() and goal != "force":
             raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")
+        if goal == "force":
+            return ForceLevel(limit, friction)
         return FrictionLevel(limit, friction, angle=goal == "angle")
     if not isinstance(load, Wrench):
         raise InvalidInput(

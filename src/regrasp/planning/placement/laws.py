@@ -11,7 +11,8 @@ from regrasp.planning.states.objectives import OBJECTIVES, Objective, objective_
 class Law(NamedTuple):
     """The p-norm of the sizes of the forces, raised to a power.
 
-    size: ``normal``, n . f, or ``force``, |f|. norm: ``sum`` (p = 1), ``squares`` (2) or ``largest``.
+    size: ``normal``, n . f, ``force``, |f|, or ``margin``, |f| of forces that keep a distance from the
+    edges of their cones. norm: ``sum`` (p = 1), ``squares`` (2) or ``largest``.
     """
 
     size: str
@@ -20,7 +21,7 @@ class Law(NamedTuple):
 
     def codes(self) -> tuple[int, int]:
         """As the compiled search takes them."""
-        return ("normal", "force").index(self.size), ("sum", "squares", "largest").index(self.norm)
+        return ("normal", "force", "margin").index(self.size), ("sum", "squares", "largest").index(self.norm)
 
 
 LAWS: Mapping[str, Law] = MappingProxyType(
@@ -32,11 +33,12 @@ LAWS: Mapping[str, Law] = MappingProxyType(
         # levels at which forces below a limit must exist (``levels``)
         "friction_use": Law("force", "largest"),
         "angle": Law("force", "largest"),
+        "force": Law("margin", "largest"),
         "answered": Law("force", "largest"),
         "wrench_ball": Law("normal", "largest"),
     }
 )
-LEVELS = ("friction_use", "angle", "answered", "wrench_ball")
+LEVELS = ("friction_use", "angle", "force", "answered", "wrench_ball")
 
 
 def law_of(objective: str | Objective) -> tuple[str, Law]:

@@ -133,7 +133,7 @@ def placement_map(
         value = _value(search, level, law.power, sides.on(fingers), fingers)
         values[at] = value
         values[at[::-1]] = value
-    more = word in ("angle", "answered", "wrench_ball")
+    more = word in ("angle", "force", "answered", "wrench_ball")
     return PlacementMap(
         shape,
         word,

@@ -29,7 +29,7 @@ class PlacementProof(ArrayValue):
         fingers: how many.
         friction: coefficient [-].
         loads: (L, 3) about the centre of mass [N, N m].
-        size: of a force, ``normal`` or ``force``.
+        size: of a force, ``normal``, ``force``, or ``margin``: |f| of forces that keep a margin.
         norm: of the sizes, ``sum``, ``squares`` or ``largest``.
         min_distance: between fingers, 0 for none [m].
         bound: no placement holds all loads with a smaller norm [N].
@@ -40,6 +40,7 @@ class PlacementProof(ArrayValue):
         twists: (n, 3) velocity of the centre of mass, then angular velocity.
         control: (k, 4, 2) of a smooth boundary, the control points of its cubic edges, which begin at the
             ``vertices`` [m]; None of a polygon.
+        margin: distance of forces from the edges of their cones, of size ``margin`` [N].
     """
 
     vertices: Array
@@ -58,6 +59,7 @@ class PlacementProof(ArrayValue):
     number: np.ndarray
     twists: Array
     control: Array | None = None
+    margin: float = 0.0
 
     @property
     def digest(self) -> str:
@@ -71,7 +73,8 @@ class PlacementProof(ArrayValue):
 
     def _plain(self) -> dict[str, Any]:
         values = ((f.name, getattr(self, f.name)) for f in fields(self))
-        return {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in values if v is not None}
+        given = {n: v for n, v in values if v is not None and (n != "margin" or v)}
+        return {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in given.items()}
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data, which JSON can hold; ``from_dict`` gives back the equal proof."""
@@ -87,8 +90,8 @@ class PlacementProof(ArrayValue):
         Raises:
             InvalidInput: For other keys, shapes and types, and for numbers that the digest does not fit.
         """
-        names = [f.name for f in fields(cls) if f.name != "control"]
-        given = entries(data, "a proof", [*names, "digest"], ("control",))
+        names = [f.name for f in fields(cls) if f.name not in ("control", "margin")]
+        given = entries(data, "a proof", [*names, "digest"], ("control", "margin"))
         control = given.get("control")
         k = whole(given["fingers"], "fingers", least=1)
         children = _integers(given["children"], "children", (None, 2))
@@ -100,7 +103,7 @@ class PlacementProof(ArrayValue):
             k,
             number(given["friction"], "friction", least=0),
             array(given["loads"], "loads", (None, 3)),
-            choice(given["size"], "size", ("normal", "force")),
+            choice(given["size"], "size", ("normal", "force", "margin")),
             choice(given["norm"], "norm", ("sum", "squares", "largest")),
             number(given["min_distance"], "min_distance", least=0),
             number(given["bound"], "bound", least=0),
@@ -110,6 +113,7 @@ class PlacementProof(ArrayValue):
             _integers(given["number"], "number", (n,)),
             array(given["twists"], "twists", (n, 3)),
             None if control is None else array(control, "control", (None, 4, 2)),
+            number(given.get("margin", 0.0), "margin", least=0),
         )
         if given["digest"] != proof.digest:
             raise InvalidInput("the digest of a proof does not fit its numbers: one of them was changed")

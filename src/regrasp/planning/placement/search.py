@@ -45,6 +45,7 @@ class Search:
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
         self.closed = False
         self.narrow = narrow
+        self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
         self._only = False
         self._kept: list[tuple[float, np.ndarray, Array]] = []
 
@@ -77,7 +78,7 @@ class Search:
         """
         from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search, spare
 
-        law = (self.friction, kept_friction(self.friction, 2 * RESERVE), *self.law.codes(), _PRECISE)
+        law = self._law(self.friction, kept_friction(self.friction, 2 * RESERVE), self.law)
         self._only = only
         found = np.zeros_like(self._found) if only else self._found
         ended = search(
@@ -101,8 +102,7 @@ class Search:
         """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
         from regrasp.closed_form.compiled.placement_search import search, spare
 
-        friction = self.friction
-        law = (friction, friction, *self.law.codes(), _PRECISE)
+        law = self._law(self.friction, self.friction, self.law)
         for box in boxes:
             one = (*(values[box : box + 1] for values in self._boxes[:-1]), self._boxes[-1])
             one[2][0], one[5][0] = 0.0, 0
@@ -142,11 +142,16 @@ class Search:
         boxes[0][0] = places[:, None]
         boxes[1][0] = u[:, None]
         search(
-            self._table, self._wanted, (friction, friction, *(law or self.law).codes(), _PRECISE), inf, 0.0,
-            0.0, 0.0, boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * k, inf),
+            self._table, self._wanted, self._law(friction, friction, law or self.law), inf, 0.0, 0.0, 0.0,
+            boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * k, inf),
             np.zeros((1, 1 + 2 * k)), 0, spare(k),
         )  # fmt: skip
         return float(boxes[2][0]) * self.unit
+
+    def _law(self, mu: float, usable: float, law: Law) -> tuple[float, ...]:
+        """As the compiled search takes it."""
+        size, norm = law.codes()
+        return (mu, usable, size, norm, _PRECISE, self.limit / self.unit, self.margin / self.unit)
 
     def _grow(self, most: int) -> bool:
         have = len(self._heap)
@@ -233,7 +238,8 @@ class Search:
         smooth = edges.ndim == 3
         return PlacementProof(
             _frozen(edges[:, 0]) if smooth else edges, centre, fingers=self.fingers, friction=self.friction,
-            size=self.law.size, norm=self.law.norm, min_distance=self.apart, bound=bound,
+            size="force" if self.law.size == "margin" and not self.margin else self.law.size,
+            margin=self.margin, norm=self.law.norm, min_distance=self.apart, bound=bound,
             control=edges if smooth else None,
             **{name: _frozen(values) for name, values in given.items()},
         )  # fmt: skip

@@ -1,7 +1,7 @@
 """The verdict on a grasp chosen from a shape: its states, where it touches, and the proof of its bound."""
 
 from fractions import Fraction
-from math import atan, hypot, inf, isfinite
+from math import atan, hypot, inf, isfinite, sin
 from typing import Any, Protocol, cast
 
 import numpy as np
@@ -85,10 +85,11 @@ _MEANINGS = {
     # levels at which forces below the limit must exist
     "friction_use": ("force", "largest", 1),
     "angle": ("force", "largest", 1),
+    "force": ("margin", "largest", 1),
     "answered": ("force", "largest", 1),
     "wrench_ball": ("normal", "largest", 1),
 }
-_LEVELS = ("friction_use", "angle", "answered", "wrench_ball")
+_LEVELS = ("friction_use", "angle", "force", "answered", "wrench_ball")
 _ANY_LOAD = ("answered", "wrench_ball")  # their proofs have loads that no state holds
 _CLOSE = 1e-9  # of a value, the same in another order of the sums
 
@@ -101,7 +102,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     if chosen.objective not in _MEANINGS:
         return Verification((f"objective {chosen.objective!r} has no bound",), inf, 0.0, -inf)
     size, norm, _ = _MEANINGS[chosen.objective]
-    if (proof.size, proof.norm) != (size, norm):
+    if (proof.size, proof.norm) != (size, norm) and not _is_without_margin(chosen, proof):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
     for i, state in enumerate(chosen.states, 1):
         if state.grasp != chosen.grasp:
@@ -142,6 +143,11 @@ def verify_proof(proof: Proof) -> Verification:
     broken = check_surface_proof(cast(SurfaceProof, proof)) if in_space else check_proof(proof)
     part = "" if broken or in_space else _part(proof)
     return Verification(tuple(broken), 0.0, inf, inf, excluded=boxes, bound=proof.bound, asked=part)
+
+
+def _is_without_margin(chosen: Chosen, proof: Any) -> bool:
+    """Whether a proof is that no forces below the limit are inside the cones, margin or none."""
+    return chosen.objective == "force" and (proof.size, proof.norm) == ("force", "largest")
 
 
 def _part(proof: Proof) -> str:
@@ -198,6 +204,8 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
         broken.append(f"state {i}: a force of {found:.12g} is above the limit {chosen.max_force}")
     if chosen.objective == "angle" and state.margins.least_angle < value - _CLOSE:
         broken.append(f"state {i}: the angle margin is below the value {value:.12g}")
+    if chosen.objective == "force" and state.margins.least_force < value * (1 - _CLOSE):
+        broken.append(f"state {i}: the force margin is below the value {value:.12g}")
     if chosen.objective == "friction_use" and state.margins.largest_friction_use > value + _CLOSE:
         broken.append(f"state {i}: the use of friction is above the value {value:.12g}")
     return broken
@@ -207,7 +215,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     """That the bound is what the proof proves."""
     _, _, power = _MEANINGS[chosen.objective]
     value, bound = chosen.value, chosen.bound
-    largest = chosen.objective in ("angle", *_ANY_LOAD)
+    largest = chosen.objective in ("angle", "force", *_ANY_LOAD)
     if not (bound >= value if largest else bound <= value):
         return [f"bound {bound:.12g} is {'below' if largest else 'above'} the value {value:.12g}"]
     if not isfinite(value) or not isfinite(bound):
@@ -235,6 +243,8 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         proven = Fraction(bound) * Fraction(mu) <= Fraction(proof.friction) * (1 + RESOLUTION)
     elif chosen.objective == "angle":
         proven = bound >= (atan(mu) - atan(proof.friction)) * (1 - _CLOSE)
+    elif chosen.objective == "force":
+        proven = bound >= proof.margin and mu <= proof.friction
     elif chosen.objective == "answered":
         proven = _scaled(chosen, np.asarray(proof.loads)[1:], bound)
     else:  # no placement holds all loads of the proof, which are members of the ball
@@ -260,6 +270,8 @@ def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
         proven = chosen.bound <= 0
     elif chosen.objective == "angle":
         proven = chosen.bound >= atan(mu)
+    elif chosen.objective == "force":
+        proven = chosen.bound >= float(chosen.max_force or 0.0) * sin(atan(mu)) * (1 - _CLOSE)
     elif chosen.objective == "wrench_ball":
         proven = chosen.bound >= len(chosen.grasp) * float(chosen.max_force or 0.0) * hypot(1.0, mu)
     else:  # k forces make no larger wrench than k times the limit, at the largest lever

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.eroded import cone_edges, is_sector, most_eroded, roughly_eroded
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above, root_below
 
@@ -28,6 +29,7 @@ class CubicEdges:
     def __init__(self, proof: Proof) -> None:
         assert proof.control is not None
         self.force, self.mu = proof.size == "force", Fraction(proof.friction)
+        self.eroded, self.limit, self.margin = proof.size == "margin", proof.bound, proof.margin
         centre = [Fraction(c) for c in proof.centre_of_mass.tolist()]
         self.control: list[list[Point]] = [
             [(Fraction(x) - centre[0], Fraction(y) - centre[1]) for x, y in edge]
@@ -61,9 +63,19 @@ class CubicEdges:
         found = self._tangents(edge, lo, hi)
         first = next(d for d in found if all(_cross(d, e) >= 0 for e in found))
         last = next(d for d in found if all(_cross(d, e) <= 0 for e in found))
-        a, b = _edges(first, self.mu), _edges(last, self.mu)
+        a, b = cone_edges(first, self.mu), cone_edges(last, self.mu)
         most = Fraction(0)
-        for px, py in self.hull(edge, lo, hi):
+        points = self.hull(edge, lo, hi)
+        if self.eroded and is_sector(a[0], b[1]):
+            limits = Fraction(self.limit), Fraction(self.margin)
+            along = [(y[0] - y[2] * py, y[1] + y[2] * px) for px, py in points]
+            return max(most_eroded(a[0], b[1], *limits, v) for v in along)
+        if self.eroded:
+            return max(
+                Fraction(self.limit) * _on_sector(a[0], b[1], (y[0] - y[2] * py, y[1] + y[2] * px))
+                for px, py in points
+            )
+        for px, py in points:
             v = (y[0] - y[2] * py, y[1] + y[2] * px)
             if self.force:
                 most = max(most, _on_sector(a[0], b[1], v))
@@ -90,16 +102,18 @@ class CubicEdges:
         first, last = unit[angle.argmin(axis=0), rows], unit[angle.argmax(axis=0), rows]
         (a, c), (e, b) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
         control = np.moveaxis(self._control[edges], 1, 0)
-        most = 0.0
+        most = -float("inf") if self.eroded else 0.0
         for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
             p = _at(control, at)
             v = np.stack([y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]], axis=1)
-            if self.force:
+            if self.eroded:
+                value = roughly_eroded(a, b, self.limit, self.margin, v)
+            elif self.force:
                 value = _roughly_on_sector(a, b, v)
             else:
                 slant = np.sqrt(1 + self._friction**2)
                 value = slant * np.maximum(_roughly_on_arc(a, e, v), _roughly_on_arc(c, b, v))
-            most = max(most, float(value.max(initial=0.0)))
+            most = max(most, float(value.max()))
         return most
 
 
@@ -124,11 +138,6 @@ def _dot(a: Point, b: Point) -> Fraction:
 
 def _cross(a: Point, b: Point) -> Fraction:
     return a[0] * b[1] - a[1] * b[0]
-
-
-def _edges(d: Point, mu: Fraction) -> tuple[Point, Point]:
-    """The edges of the cone about the normal (-d_y, d_x), the clockwise one first."""
-    return (mu * d[0] - d[1], mu * d[1] + d[0]), (-mu * d[0] - d[1], -mu * d[1] + d[0])
 
 
 def _along(a: Point, v: Point) -> Fraction:

@@ -11,6 +11,8 @@ affine in p. With sigma(v) the most of v . f over f in K of size 1, a convex fun
 
 for the norm N and its dual N*: so N is at least (-w) . y / N*(largest sigma of each arc), and the largest
 sigma of an arc is at an end of one of its sides (``straight``); on curves there is a bound of it (``cubic``).
+Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
+box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
 
@@ -63,7 +65,11 @@ def _shapes(proof: Proof) -> list[str]:
         broken.append("proof: boxes, fingers, sides, loads and friction are needed")
     if not 0 <= proof.min_distance < inf:
         broken.append("proof: min_distance must be 0 or more")
-    if proof.size not in ("normal", "force") or proof.norm not in ("sum", "squares", "largest"):
+    if not 0 <= proof.margin < inf or (proof.size == "margin") != (proof.margin > 0):
+        broken.append("proof: margin must be 0 or more, and goes with a size of its name")
+    if proof.size == "margin" and not (proof.norm == "largest" and proof.friction > 0):
+        broken.append("proof: a margin is of a largest force, and friction")
+    if proof.size not in ("normal", "force", "margin") or proof.norm not in ("sum", "squares", "largest"):
         broken.append("proof: size or norm has no meaning")
     return broken
 
@@ -161,6 +167,9 @@ class _Checked:
         if bound <= 0 or self._is_clear(box, number):
             return []
         most = [self._most(arc, y) for arc in arcs]
+        if self.proof.size == "margin":  # forces below the limit do no more than these together
+            done = sum(most, start=Fraction(0))
+            return [] if work > done else [f"proof: the twist of box {box} does not exclude it"]
         if self.proof.norm == "sum":
             dual = max(most)
         elif self.proof.norm == "largest":
@@ -180,6 +189,8 @@ class _Checked:
             [],
             _ROUNDING * (abs(y[0]) + abs(y[1]) + abs(y[2]) * self.boundary.reach) * (1 + proof.friction),
         )
+        if proof.size == "margin":
+            room *= 4 * proof.bound
         if not min(room, _ROUNDING * np.abs(terms).sum()) > _SMALL:
             return False
         for (first, last), (lo, hi) in zip(proof.arcs[box].tolist(), proof.ends[box].tolist(), strict=True):
@@ -188,6 +199,8 @@ class _Checked:
             edges = proof.sides[first : last + 1, 0]
             found = self.boundary.roughly(edges.astype(int), least - edges, largest - edges, y)
             most.append(found + room)
+        if proof.size == "margin":
+            return bool(terms.sum() - _ROUNDING * np.abs(terms).sum() > sum(most))
         if proof.norm == "sum":
             dual = max(most)
         else:

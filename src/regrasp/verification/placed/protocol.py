@@ -37,7 +37,7 @@ class Proof(Protocol):
 
     @property
     def size(self) -> str:
-        """``normal`` or ``force``."""
+        """``normal``, ``force`` or ``margin``."""
 
     @property
     def norm(self) -> str:
@@ -74,3 +74,7 @@ class Proof(Protocol):
     @property
     def control(self) -> Array | None:
         """(k, 4, 2) control points of the edges where they are cubics [m]."""
+
+    @property
+    def margin(self) -> float:
+        """Distance of forces from the edges of their cones, where the size is ``margin`` [N]."""

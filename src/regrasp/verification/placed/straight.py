@@ -5,6 +5,7 @@ from fractions import Fraction
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.eroded import cone_edges, most_eroded, roughly_eroded
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above, root_below
 
@@ -18,6 +19,7 @@ class StraightEdges:
 
     def __init__(self, proof: Proof) -> None:
         self.force, self.mu = proof.size == "force", Fraction(proof.friction)
+        self.eroded, self.limit, self.margin = proof.size == "margin", proof.bound, proof.margin
         centre = [Fraction(c) for c in proof.centre_of_mass.tolist()]
         self.points = [
             [Fraction(x) - c for x, c in zip(p, centre, strict=True)] for p in proof.vertices.tolist()
@@ -57,6 +59,9 @@ class StraightEdges:
     def _sigma(self, edge: int, point: Point, y: list[Fraction]) -> Fraction:
         dx, dy = self.along[edge]
         vx, vy = y[0] - y[2] * point[1], y[1] + y[2] * point[0]
+        if self.eroded:
+            edges = cone_edges((dx, dy), self.mu)
+            return most_eroded(*edges, Fraction(self.limit), Fraction(self.margin), (vx, vy))
         ahead, aside = dx * vy - dy * vx, abs(dx * vx + dy * vy)  # times |edge|
         if self.force and aside <= self.mu * ahead:
             return root_above(vx * vx + vy * vy)
@@ -67,15 +72,23 @@ class StraightEdges:
 
     def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> float:
         """The largest sigma on stretches (m,), in doubles."""
-        most = 0.0
-        tx, ty = self._unit[edges].T
+        most = -float("inf") if self.eroded else 0.0
+        unit = self._unit[edges]
+        tx, ty = unit.T
+        slant, mu = np.sqrt(1 + self._friction**2), self._friction
+        inward = np.stack([-ty, tx], axis=1)
         for t in (lo, hi):
             p = self._start[edges] + t[:, None] * self._along[edges]
             vx, vy = y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]
+            if self.eroded:
+                a, b = (inward + mu * unit) / slant, (inward - mu * unit) / slant
+                value = roughly_eroded(a, b, self.limit, self.margin, np.stack([vx, vy], axis=1))
+                most = max(most, float(value.max()))
+                continue
             ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
             value = ahead + self._friction * aside
             if self.force:
-                value = value / np.sqrt(1 + self._friction**2)
+                value = value / slant
                 # inside the cone, and a little around it, the whole of v
                 value = np.where(aside <= self._friction * ahead, np.hypot(vx, vy), value)
             most = max(most, float(value.max(initial=0.0)))

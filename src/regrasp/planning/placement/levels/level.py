@@ -1,4 +1,4 @@
-"""Objectives that are a level at which forces below a limit exist: friction in use, loads answered.
+"""Objectives that are a level at which forces below a limit exist: friction in use, margins, loads answered.
 
 Boxes are excluded where forces at the level must exceed the limit. Whatever is excluded at a level is at
 every better one, since cones are narrower or loads farther out; so the search goes on, box by box, while
@@ -7,7 +7,7 @@ placements that are found raise the level.
 
 from abc import ABC, abstractmethod
 from contextlib import suppress
-from math import atan, inf, isnan, tan
+from math import atan, inf, isnan, sqrt, tan
 
 import numpy as np
 
@@ -112,6 +112,34 @@ class FrictionLevel(Level):
         states = [choose_state(grasp, Wrench.from_vector(w), objective, max_force=limit) for w in loads]
         values = [state.value for state in states if not isnan(state.value)]  # none where no force is
         return states, (min(values) if self.angle else max(values))
+
+
+class ForceLevel(Level):
+    """Forces that keep a distance from the edges of their cones: the level is the distance [N]."""
+
+    start = 0.0
+
+    def __init__(self, max_force: float, friction: float) -> None:
+        super().__init__(max_force)
+        self.most = max_force * friction / sqrt(1 + friction**2)
+
+    def put(self, search: Search, level: float) -> None:
+        """Move the edges of the cones inward."""
+        search.limit, search.margin = self.max_force, level
+
+    def beyond(self, level: float, tolerance: float) -> float:
+        """Larger by a fraction of it."""
+        return min(level + max(0.998 * tolerance * level, _STEP * self.most), self.most)
+
+    def top(self, search: Search) -> float:
+        """Forces along the normals, of the limit."""
+        return self.most
+
+    def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
+        """The states of the loads."""
+        limit = self.max_force
+        states = [choose_state(grasp, Wrench.from_vector(w), objective, max_force=limit) for w in loads]
+        return states, min(state.value for state in states)
 
 
 class AnsweredLevel(Level):
