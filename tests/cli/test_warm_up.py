@@ -85,7 +85,7 @@ def test_what_compiles_for_long_says_so_while_it_does_and_then_how_long(
 
 
 def test_the_search_for_places_says_what_it_is() -> None:
-    from regrasp.closed_form.compiled.placement_search import search
+    from regrasp.closed_form.compiled.places.placement_search import search
 
     assert compilation._words[search.py_func] == "the search for places"
 

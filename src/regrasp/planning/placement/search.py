@@ -76,7 +76,7 @@ class Search:
         infinite, to follow the least value times 1 - tolerance. only: to note placements tried
         (``tried_since``), and take none for found.
         """
-        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL, search, spare
+        from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL, search, spare
 
         law = self._law(self.friction, kept_friction(self.friction, 2 * RESERVE), self.law)
         self._only = only
@@ -100,7 +100,7 @@ class Search:
 
     def excludes(self, boxes: np.ndarray, fixed: float) -> bool:
         """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
-        from regrasp.closed_form.compiled.placement_search import search, spare
+        from regrasp.closed_form.compiled.places.placement_search import search, spare
 
         law = self._law(self.friction, self.friction, self.law)
         for box in boxes:
@@ -135,7 +135,7 @@ class Search:
     def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None) -> float:
         """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
         k = len(u)
-        from regrasp.closed_form.compiled.placement_search import search, spare
+        from regrasp.closed_form.compiled.places.placement_search import search, spare
 
         friction = kept_friction(self.friction, 2 * RESERVE)
         boxes = _memory(1 + k + 1, k)
@@ -185,7 +185,7 @@ class Search:
     @property
     def largest(self) -> float:
         """What a box proves that holds a load for no forces, at least [N]."""
-        from regrasp.closed_form.compiled.wrench_gauge import FAR
+        from regrasp.closed_form.compiled.places.wrench_gauge import FAR
 
         sizes = np.abs(self._wanted).sum(axis=1)
         return FAR * float(sizes[sizes > 0].min(initial=inf)) * self.unit * (1 - _SAFE)

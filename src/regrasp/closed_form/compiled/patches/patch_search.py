@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import placement_search
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.patches import patch_gauge
 from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, workspace
-from regrasp.closed_form.compiled.placement_search import (
+from regrasp.closed_form.compiled.places import placement_search
+from regrasp.closed_form.compiled.places.placement_search import (
     CLOSED,
     EXCLUDED,
     FULL,

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import placement_search
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.patches import patch_gauge, patch_search
 from regrasp.closed_form.compiled.patches.patch_search import value_of
+from regrasp.closed_form.compiled.places import placement_search
 from regrasp.compilation import kept
 
 

@@ -66,7 +66,7 @@ class SurfaceSearch:
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
         from regrasp.closed_form.compiled.patches.patch_search import search, spare
-        from regrasp.closed_form.compiled.placement_search import CLOSED, FULL
+        from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL
 
         memory, slid = spare(self.fingers), inf
         try:

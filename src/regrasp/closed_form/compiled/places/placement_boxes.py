@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
-from regrasp.closed_form.compiled.cubic_arcs import CONTROL, bend, farthest, polar
+from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, bend, farthest, polar
 
 
 @njit(**VIEWS)

@@ -24,8 +24,8 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
-from regrasp.closed_form.compiled.cubic_arcs import CONTROL, support_of_cubics
-from regrasp.closed_form.compiled.eroded import add_middle, support_of_eroded
+from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, support_of_cubics
+from regrasp.closed_form.compiled.places.eroded import add_middle, support_of_eroded
 
 NORMAL, DISC, ERODED = 0, 1, 2
 """size(f): n . f, or |f|; |f| of forces that keep a distance from the edges of their cones (``eroded``)."""

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from regrasp.closed_form.compiled import cubic_arcs, eroded, placement_boxes, wrench_gauge
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.placement_boxes import (
+from regrasp.closed_form.compiled.places import cubic_arcs, eroded, placement_boxes, wrench_gauge
+from regrasp.closed_form.compiled.places.placement_boxes import (
     alike,
     cut,
     put,
@@ -22,7 +22,7 @@ from regrasp.closed_form.compiled.placement_boxes import (
     too_near,
     write_child,
 )
-from regrasp.closed_form.compiled.wrench_gauge import bound_by, gauge, workspace
+from regrasp.closed_form.compiled.places.wrench_gauge import bound_by, gauge, workspace
 from regrasp.compilation import kept
 
 OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3

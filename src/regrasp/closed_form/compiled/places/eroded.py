@@ -13,7 +13,7 @@ from math import sqrt
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
-from regrasp.closed_form.compiled.cubic_arcs import CONTROL, fan, polar
+from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, fan, polar
 
 _ROUNDING = 1e-13
 
