@@ -69,10 +69,10 @@ def choose_grasp(
             forces for each load, has to hold; the value is that of the worst load [N, N m].
         friction: coefficient of all fingers [-].
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
-            ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor by
-            which a ``disturbance`` may be scaled and forces still exist; or ``wrench_ball``, Ferrari and
-            Canny's measure, the radius of the largest ball of loads that fingers of limited normal force
-            hold, for which ``load`` is zero.
+            ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor
+            of a ``disturbance`` for which forces exist; or ``wrench_ball``, Ferrari and Canny's measure,
+            the radius of the largest ball of loads that fingers of limited normal force hold, for which
+            ``load`` is zero.
         max_force: limit on every force, of ``wrench_ball`` on its normal part; the last five need it [N].
         min_normal: with which every finger pushes at the least, under every load [N].
         keep: which two fingers may hold together, as of ``plan_regrasp``: a function of points (k, 2) of the
