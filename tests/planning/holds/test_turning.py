@@ -256,3 +256,11 @@ def test_holds_at_their_widest_half_a_turn_from_the_goal() -> None:
     assert abs(np.diff([0.0, *found.angles])).max() <= REACH + 1e-9
     with pytest.raises(rg.Infeasible, match="the fingers of the goal cannot hold the load"):
         problem.plans()
+
+
+def test_rows_whose_holds_are_always_half_a_turn_apart_come_to_an_end() -> None:
+    """Contacts without friction hold rays: rows of any number of holds exist, none of them near enough."""
+    places = [[1, 2], [2, -2], [1, -2], [-2, 2], [-3, -2]]
+    normals = [[-1, 0], [1, -1], [0, -1], [0, -1], [0, 1]]
+    contacts = tuple(rg.Contact(p, n, 0.0) for p, n in zip(places, normals, strict=True))
+    assert exact(contacts, rg.Wrench([0.0, -1.0]), (4, 2, 3), (2, 1, 0), 23 * np.pi / 12) == []

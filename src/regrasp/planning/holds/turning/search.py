@@ -15,13 +15,14 @@ from regrasp.mechanics.checks import Array
 from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.turning.arcs import TOLERANCE, Arcs, Widest
-from regrasp.planning.holds.turning.layers import SLOTS, Layer, Layers, row_of
 from regrasp.planning.holds.turning.least_turning import Interval, Node, least_turning
 from regrasp.planning.holds.turning.margins import Candidates, Pairs
+from regrasp.planning.holds.turning.rows import Rows
 
 _ALIKE = 1e-6  # margins nearer than this [rad] are one
 _LESS = (2e-6, 1e-5, 1e-3)  # [rad]
-_AT_ONCE = 512  # pairs whose margins are found together
+_ASTRAY = 6  # numbers of moves one after the other of which no row is near enough from hold to hold
+_AT_ONCE = 64  # holds whose margins or arcs are found together
 
 
 @dataclass(frozen=True)
@@ -44,12 +45,12 @@ class ExactSearch:
         least: float,
     ) -> None:
         self.arcs, self.max_turn, self.least = Arcs(candidates), max_turn, least
-        count = len(apart)
-        self.allowed = np.ones((3, count), dtype=np.bool_) if allowed is None else allowed
+        self.allowed = allowed
         self.widest = np.where(apart, self.arcs.bounds(), -1.0)
         self.widest[self.widest < least] = -1.0
         self.known = self.widest < 0  # no bound any more
         self.angles = np.zeros(self.widest.shape)
+        self._rows: Rows | None = None
 
     def sequences(
         self, start: Places, goal: Places, goal_angle: float, extra: int = 0, most: int | None = None
@@ -59,56 +60,42 @@ class ExactSearch:
         start, goal: places of three contacts. goal_angle: of the object in the end [rad]. most: finger moves.
         """
         found: list[TurningSequence] = []
-        top, count = -1.0, len(set(goal) - set(start))
+        top, count, astray = -1.0, len(set(goal) - set(start)), 0
         limit: float = inf if most is None else most
+        self._rows = None
         while count <= limit:
             best = self._best(start, goal, count)
             if best is not None and best.margin > top + (_ALIKE if found else 0.0):
                 walked = self._walked(best, goal_angle)
+                astray = 0 if walked is not None else astray + 1
                 if walked is not None:
                     limit = min(limit, count + extra) if not found else limit
                     found.append(walked)
                     top = best.margin
-            if count >= limit or self._exhausted(start, goal, count, top):
+            floor = top + _ALIKE if found else top
+            if count >= limit or astray == _ASTRAY or not self._rows_of(start, goal).leads(floor):
                 break
             count += 1
         return found
 
-    def _exhausted(self, start: Places, goal: Places, count: int, top: float) -> bool:
-        """Whether more moves lead to no wider margin."""
-        layers, first, last = self._layers(start, goal)
-        reached, ways = first, 1
-        while True:
-            further = np.maximum(reached, layers.after(reached))
-            if (further == reached).all():
-                break
-            reached, ways = further, ways + 1
-        widest = float(np.minimum(reached, last).max())
-        return widest < 0 or (count >= max(ways, 1) + 1 and widest <= top + _ALIKE)
-
-    def _layers(self, start: Places, goal: Places) -> tuple[Layers, Layer, Layer]:
-        layers = Layers(self.widest, self.allowed)
-        return layers, layers.start(start), layers.goal(goal)
+    def _rows_of(self, start: Places, goal: Places) -> Rows:
+        """By the margins known so far."""
+        if self._rows is None:
+            self._rows = Rows(self.widest, self.allowed, start, goal)
+        return self._rows
 
     def _best(self, start: Places, goal: Places, moves: int) -> "_Best | None":
         """The widest margin of rows of ``moves`` holds, or of one without a move, without any bound left."""
         count = max(moves, 1)
         while True:
-            layers, first, last = self._layers(start, goal)
-            ways = [first]
-            for _ in range(count - 1):
-                ways.append(layers.after(ways[-1]))
-            total = np.minimum(ways[-1], last)
-            margin = float(total.max())
+            rows = self._rows_of(start, goal)
+            margin = rows.margin(count)
             if margin < 0:
                 return None
-            slot, u, v = (int(k) for k in np.unravel_index(int(total.argmax()), total.shape))
-            row = row_of(ways, slot, u, v)
-            unknown = {_pair(hold) for hold in row if not self.known[hold[1:]]}
-            if not unknown:
-                return _Best(margin, moves, layers, ways, last)
-            alike = np.argwhere((total >= margin) & ~self.known)[:_AT_ONCE].tolist()
-            self._find({*unknown, *(_pair((s, a, b)) for s, a, b in alike)})
+            if all(self.known[node[1:]] for node in rows.row(count)):
+                return _Best(margin, moves, count, rows)
+            alike = [node for node in rows.passed(count, margin, _AT_ONCE) if not self.known[node[1:]]]
+            self._find({_pair(node) for node in [*rows.row(count), *alike] if not self.known[node[1:]]})
 
     def _find(self, pairs: set[tuple[int, int]]) -> None:
         first, second = np.array(sorted((min(p), max(p)) for p in pairs)).T
@@ -116,6 +103,7 @@ class ExactSearch:
         margins = np.where(found.margins >= self.least, found.margins, -1.0)
         for a, b in ((first, second), (second, first)):
             self.widest[a, b], self.angles[a, b], self.known[a, b] = margins, found.angles, True
+        self._rows = None
 
     def _walked(self, best: "_Best", goal_angle: float) -> TurningSequence | None:
         """The sequence of fewest steps, then least turning, of those as wide as the best.
@@ -123,10 +111,9 @@ class ExactSearch:
         Holds at their widest may be half a turn apart, which is more than fingers turn between two: then of
         those a little less wide; None where these are as far apart.
         """
-        way = self._way(best, goal_angle, best.margin * (1 - TOLERANCE))
-        for less in _LESS:
-            if way is None:
-                way = self._way(best, goal_angle, max(best.margin - less, self.least))
+        levels = [best.margin * (1 - TOLERANCE), *(max(best.margin - less, self.least) for less in _LESS)]
+        ways = (self._way(best, goal_angle, level) for level in dict.fromkeys(levels))
+        way = next((way for way in ways if way is not None), None)
         if way is None:
             return None
         holds = tuple((*_pair(node), k) for k, (node, _) in enumerate(way))
@@ -137,12 +124,6 @@ class ExactSearch:
 
     def _way(self, best: "_Best", goal_angle: float, level: float) -> list[tuple[Node, float]] | None:
         """Holds of a margin of ``level`` or more with their angles [rad]."""
-        layers = best.layers
-        toward = [best.last]  # and backwards, so that no row leads astray
-        for _ in range(len(best.ways) - 1):
-            toward.append(layers.after(toward[-1]))
-        toward.reverse()
-        useful = [np.minimum(way, rest) >= level for way, rest in zip(best.ways, toward, strict=True)]
         arcs: dict[tuple[int, int], list[Interval]] = {}
 
         def ready(nodes: list[Node]) -> list[Node]:
@@ -159,33 +140,27 @@ class ExactSearch:
             return nodes
 
         def following(layer: int, node: Node) -> list[Node]:
-            slot, u, v = node
-            f, g = SLOTS[slot]
-            (e,) = {0, 1, 2} - {f, g}
-            nodes: list[Node] = []
-            for finger, at, away in ((f, u, v), (g, v, u)):
-                near = SLOTS.index((min(finger, e), max(finger, e)))
-                line = useful[layer + 1][near, at] if finger < e else useful[layer + 1][near, :, at]
-                for x in np.flatnonzero(line).tolist():
-                    if x != away:
-                        nodes.append((near, at, x) if finger < e else (near, x, at))
-            return ready(nodes)
+            return ready(best.rows.onward(node, best.count - layer - 1, level))
 
-        begin = ready([(int(s), int(u), int(v)) for s, u, v in np.argwhere(useful[0])])
+        ready(best.rows.passed(best.count, level, _AT_ONCE))
         return least_turning(
-            begin, following, len(best.ways), lambda node: arcs[_pair(node)], goal_angle, self.max_turn
+            ready(best.rows.first(best.count, level)),
+            following,
+            best.count,
+            lambda node: arcs[_pair(node)],
+            goal_angle,
+            self.max_turn,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class _Best:
-    """The widest margin of rows of holds, and the layers that reach it."""
+    """The widest margin of rows of holds, how many these are, and the rows."""
 
     margin: float
     moves: int
-    layers: Layers
-    ways: list[Layer]
-    last: Layer
+    count: int
+    rows: Rows
 
 
 def _pair(node: Node) -> tuple[int, int]:
