@@ -190,3 +190,19 @@ def test_help_is_worked_out_when_it_is_read() -> None:
     assert str(copy) == str(refused)
     assert str(refused).startswith(f"{at_once}; with ")
     assert copy.certificate == refused.certificate
+
+
+@pytest.mark.parametrize("chosen_by_hand", [False, True])
+def test_a_state_of_point_contacts_may_be_helped_by_torsion(chosen_by_hand: bool) -> None:
+    """Soft fingers have a torque more: the states that were given are asked again with none."""
+    ways = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
+    grasp = rg.Grasp(rg.Contact(way, -np.array(way), 0.6) for way in ways)
+    start = rg.choose_state(grasp, rg.Wrench((0, 0, -1), (0.05, 0, 0)))
+    if chosen_by_hand:
+        start = rg.GraspState(grasp, start.load, start.forces)
+    with pytest.raises(rg.Infeasible, match=r"; with a torsion of .* it would do") as refused:
+        rg.plan_removal(start, ["P3", "P4"])
+    amount = float(str(refused.value).partition("torsion of ")[2].split()[0])
+    soft = rg.Grasp(contact.changed(torsion=amount) for contact in grasp)
+    given = rg.GraspState(soft, start.load, np.pad(start.forces, ((0, 0), (0, 1))))
+    assert rg.plan_removal(given, ["P3", "P4"])

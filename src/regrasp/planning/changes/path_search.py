@@ -15,14 +15,17 @@ from regrasp.planning.changes.banded_path import least_change
 from regrasp.planning.changes.path_program import PathTask, path_program
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.escape import AT_LIMIT, infeasible
+from regrasp.planning.states.refusals.asking import is_asked_only
 from regrasp.planning.states.solving import SLACK
-from regrasp.programs import Solution, Status, solve
-from regrasp.programs.backends import least_room
+from regrasp.programs import Program, Solution, Status, solve
+from regrasp.programs.backends import least_room, solved_at_once
 
 # Where an answer breaks a rate or a least normal force by rounding, twice the breach is kept back next.
 _ATTEMPTS = 4
 # An answer that exact equilibrium moves by more than this fraction of the forces is no path.
 _MOVED = 1e-5
+# A widest margin below this is no margin.
+_BELOW = -1e-7
 
 
 BANDED = "time-banded"
@@ -48,7 +51,7 @@ def planned_path(
     try:
         return _planned(task, objective, criteria, backend, facets)
     except SolverFailed as failed:
-        if failed.program is None or not least_room(failed.program, backend) >= -AT_LIMIT:
+        if is_asked_only() or failed.program is None or not least_room(failed.program, backend) >= -AT_LIMIT:
             raise
         raise Infeasible(
             f"no path was found that keeps all of this together, and it is not proven that there is none: at "
@@ -137,6 +140,8 @@ def _less(task: PathTask, slack: float) -> Array | None:
 
 def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, facets: int | None) -> Solution:
     program = path_program(task, objective, facets=facets)
+    if is_asked_only():
+        return _at_once(program, objective, backend)
     try:
         answer = solve(program, backend)
     except SolverFailed:
@@ -144,13 +149,20 @@ def _solved(task: PathTask, objective: str, criteria: Criteria, backend: str, fa
         if reason is None:
             raise
         raise reason from None
-    below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < -1e-7
+    below = objective == "force" and answer.status is Status.SOLVED and answer.value[-1] < _BELOW
     if answer.status is Status.SOLVED and not below:
         return answer
     proven = answer.status is Status.INFEASIBLE or below
     raise _why_not(task, criteria, backend, facets, proven=proven) or SolverFailed(
         f"{backend}: {answer.status.advice}", program, answer
     )
+
+
+def _at_once(program: Program, objective: str, backend: str) -> Solution:
+    answer = solved_at_once(program, backend)
+    if answer is None or (objective == "force" and answer.value[-1] < _BELOW):
+        raise Infeasible("no path was found at once")
+    return answer
 
 
 def _why_not(

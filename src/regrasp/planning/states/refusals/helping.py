@@ -2,7 +2,6 @@
 
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -77,10 +76,10 @@ class Call:
             as_asked: for its own objective; else for effort, which needs no search.
         """
         arguments = self._arguments if as_asked else self._plain
-        for way, amount in changes:
-            arguments = {name: way.applied(name, value, amount) for name, value in arguments.items()}
         try:
-            with warnings.catch_warnings(), nullcontext() if as_asked else asking_only():
+            for way, amount in changes:
+                arguments = {name: way.applied(name, value, amount) for name, value in arguments.items()}
+            with warnings.catch_warnings(), asking_only():
                 warnings.simplefilter("ignore")
                 self._verb(**arguments)
         except RegraspError:

@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.limits.force_limits import ForceLimits
 from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.state import GraspState
 from regrasp.planning.states.criteria import ChosenForces, ChosenState, Criteria
 from regrasp.planning.states.refusals.least_values import MOST_FRICTION
 
@@ -55,9 +57,13 @@ class Way:
         if isinstance(value, Grasp):
             return Grasp(self._touching(contact, amount) for contact in value)
         if isinstance(value, ChosenState):
-            chosen = ChosenForces(value.forces, value.force_limits, value.method, value.gap)
             grasp, criteria = (self.applied("", v, amount) for v in (value.grasp, value.criteria))
+            forces = _as_wide(value.forces, grasp)
+            chosen = ChosenForces(forces, value.force_limits, value.method, value.gap)
             return ChosenState(grasp, value.load, criteria, chosen)
+        if isinstance(value, GraspState):
+            grasp = self.applied("", value.grasp, amount)
+            return GraspState(grasp, value.load, _as_wide(value.forces, grasp))
         if isinstance(getattr(value, "grasp", None), Grasp):
             return replace(value, grasp=self.applied("", value.grasp, amount))
         if isinstance(value, list | tuple):
@@ -66,6 +72,11 @@ class Way:
 
     def _touching(self, contact: Contact, amount: float) -> Contact:
         return contact if self.contact is None else self.contact(contact, amount)
+
+
+def _as_wide(forces: Array, grasp: Grasp) -> Array:
+    """The forces, with no torques about the normals where fingers have become soft."""
+    return np.pad(forces, ((0, 0), (0, grasp.width - forces.shape[1])))
 
 
 def ways_for(
