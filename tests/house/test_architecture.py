@@ -20,9 +20,10 @@ FLOORS: dict[str, Set[str]] = {
     "errors": set(),
     "display": {"errors"},
     "compilation": set(),
+    "later": set(),
     "disk": {"errors", "mechanics", "disk"},  # output written whole or not at all
     "closed_form": {"closed_form", "compilation"},
-    "programs": {"errors", "compilation", "programs"},
+    "programs": {"errors", "compilation", "later", "programs"},
     "mechanics": {"errors", "display", "mechanics"},
     "plans": {"errors", "display", "mechanics", "closed_form", "plans"},  # values: nothing here plans
     "planning": {
@@ -60,6 +61,7 @@ FLOORS: dict[str, Set[str]] = {
     "files": {
         "disk",
         "errors",
+        "later",
         "mechanics",
         "outline",
         "mesh",
@@ -86,6 +88,7 @@ FLOORS: dict[str, Set[str]] = {
     "plots": {
         "disk",
         "errors",
+        "later",
         "mechanics",
         "outline",
         "mesh",

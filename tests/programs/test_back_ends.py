@@ -7,7 +7,7 @@ import pytest
 
 from known_programs import projection_on_simplex
 from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
-from regrasp.programs import Rows, Status, available_backends, solve
+from regrasp.programs import Rows, Status, available_backends, facts, solve
 from regrasp.programs import backends as table
 
 pytestmark = pytest.mark.oracle
@@ -242,7 +242,7 @@ def test_unknown_and_missing_back_ends(monkeypatch):
         solve(program, "simplex")
     with pytest.raises(SolverUnavailable, match=r"cvxpy has no solver 'NOPE' here; it has .*CLARABEL"):
         solve(program, "cvxpy:NOPE")
-    monkeypatch.setattr(table, "_has", lambda package: False)
+    monkeypatch.setattr(facts, "_has", lambda package: False)
     assert available_backends() == ()
     with pytest.raises(SolverUnavailable, match=r"needs the package daqp: pip install 'regrasp\[solvers\]'"):
         solve(program, "daqp")

@@ -7,7 +7,7 @@ from scipy import sparse
 from known_programs import known
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
-from regrasp.programs.backends import is_available
+from regrasp.programs.facts import is_available
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.convexity import why_not_convex

@@ -117,31 +117,22 @@ def _work(
     mcap: bool = False,
 ) -> dict[str, Any]:
     """Plan, verify, and only then write. ``copy`` is a scenario to write beside the plan, under ``name``."""
+    from regrasp import files, verification
     from regrasp.disk.staging import whole_folder
-    from regrasp.files import (
-        plan_scenario,
-        plan_scenario_motions,
-        write_mcap,
-        write_motions,
-        write_plan,
-        write_setpoints,
-        write_ways,
-    )
     from regrasp.files.plans.setpoints import check_rate, checked, setpoint_blocks
     from regrasp.files.source import legible, naming
     from regrasp.mechanics.value import one_line
-    from regrasp.verification import verify, verify_motions
 
     rate, count = scenario.task.rate, 0
     given = [contact.name for contact in getattr(scenario, "contacts", ())]
     with legible(given), naming(name), progress_bar() as progress:
         task = progress.add_task("planning", total=None)
         check_rate(rate, _shortest(scenario))
-        ways = plan_scenario_motions(scenario) if motions else None
-        planned = plan_scenario(scenario) if ways is None else ways.plan
+        ways = files.plan_scenario_motions(scenario) if motions else None
+        planned = files.plan_scenario(scenario) if ways is None else ways.plan
         progress.update(task, description="verifying")
-        verdict = verified(verify(planned), name)
-        moved = None if ways is None else verified(verify_motions(ways, _shape(scenario)), name)
+        verdict = verified(verification.verify(planned), name)
+        moved = None if ways is None else verified(verification.verify_motions(ways, _shape(scenario)), name)
         progress.update(task, total=planned.duration * rate)
         for rows in setpoint_blocks(planned, rate):
             verified(checked(planned, rows), name)
@@ -157,13 +148,13 @@ def _work(
         say(f"{ways}\n{moved}")
 
     with whole_folder(output) as folder:
-        write_plan(planned, folder / "plan.json")
-        write_setpoints(planned, folder / "setpoints.csv", rate)
+        files.write_plan(planned, folder / "plan.json")
+        files.write_setpoints(planned, folder / "setpoints.csv", rate)
         if ways is not None:
-            write_motions(ways, folder / "motions.csv", rate)
-            write_ways(ways, cast("Outline | Mesh", shape), folder / "motions.json")
+            files.write_motions(ways, folder / "motions.csv", rate)
+            files.write_ways(ways, cast("Outline | Mesh", shape), folder / "motions.json")
         if mcap:
-            write_mcap(planned if ways is None else ways, folder / "plan.mcap")
+            files.write_mcap(planned if ways is None else ways, folder / "plan.mcap")
         if html:
             _page(planned if ways is None else ways, shape, scenario.title, str(verdict), folder)
         if copy is not None:

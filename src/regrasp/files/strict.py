@@ -12,7 +12,8 @@ from regrasp.errors import InvalidFile, shown
 class Strict(BaseModel):
     """Every key is known, every number a finite number and nothing is converted from another type."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+    # Of some fifty models a file needs a few: each is built when it is first asked.
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 Model = TypeVar("Model", bound=Strict)

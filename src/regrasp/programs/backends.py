@@ -3,16 +3,14 @@
 import logging
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
 from math import inf, nan
 from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
 from regrasp.programs.blocks import Array
 from regrasp.programs.calls.deadline import Deadline
-from regrasp.programs.facts import BACKENDS, Backend
+from regrasp.programs.facts import BACKENDS, Backend, available_backends, is_installed
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import PROVEN, judged
@@ -30,26 +28,6 @@ _WHOLE = 1e-7
 _CLOSE, _SOUND = 5e-10, 1e-8
 """Largest measures of an answer by a kept solver: that of its constraints, and the others."""
 _AUTO = ("clarabel", "daqp", "osqp", "cvxpy")
-
-
-def is_available(name: str) -> bool:
-    """Whether a back end is installed here, one of cvxpy's solvers if cvxpy is."""
-    backend = BACKENDS.get(name.partition(":")[0])
-    return backend is not None and _is_installed(backend)
-
-
-def available_backends() -> tuple[str, ...]:
-    """Names of the back ends installed here; ``cvxpy:<SOLVER>`` names one of cvxpy's solvers besides."""
-    return tuple(name for name, backend in BACKENDS.items() if _is_installed(backend))
-
-
-@cache
-def _has(package: str) -> bool:
-    return find_spec(package) is not None
-
-
-def _is_installed(backend: Backend) -> bool:
-    return _has(backend.needs)
 
 
 def solve(
@@ -226,7 +204,7 @@ def _entry(backend: str) -> Backend:
             f"no back end {shown(backend)}; known: auto, {', '.join(BACKENDS)}, cvxpy:<SOLVER>"
         )
     entry = BACKENDS[name]
-    if not _is_installed(entry):
+    if not is_installed(entry):
         raise SolverUnavailable(
             f"back end {shown(name)} needs the package {entry.needs}: pip install 'regrasp[solvers]'"
         )

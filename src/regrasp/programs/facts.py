@@ -1,5 +1,7 @@
 """What is known of each back end: the package, how it is called, what it takes and how well it answers."""
 
+from functools import cache
+from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 
@@ -55,3 +57,24 @@ BACKENDS = {
     ),
     "cvxpy": Backend("cvxpy", "regrasp.programs.cvxpy_backend", True, 1e-6),
 }  # fmt: skip
+
+
+def is_available(name: str) -> bool:
+    """Whether a back end is installed here, one of cvxpy's solvers if cvxpy is."""
+    backend = BACKENDS.get(name.partition(":")[0])
+    return backend is not None and is_installed(backend)
+
+
+def available_backends() -> tuple[str, ...]:
+    """Names of the back ends installed here; ``cvxpy:<SOLVER>`` names one of cvxpy's solvers besides."""
+    return tuple(name for name, backend in BACKENDS.items() if is_installed(backend))
+
+
+def is_installed(backend: Backend) -> bool:
+    """Whether the package of a back end is here."""
+    return _has(backend.needs)
+
+
+@cache
+def _has(package: str) -> bool:
+    return find_spec(package) is not None

@@ -81,7 +81,7 @@ def choose_forces(
         if found is not None:
             return found
     from regrasp.planning.states.many_contacts import solved_forces
-    from regrasp.programs.backends import available_backends, is_available
+    from regrasp.programs.facts import available_backends, is_available
 
     if method != "auto" and not is_available(method):
         known = ", ".join(("auto", "closed-form", *available_backends()))

@@ -19,6 +19,7 @@ from matplotlib.ticker import FuncFormatter
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import ArrayLike, instance
 from regrasp.mechanics.grasp import Grasp
+from regrasp.plots.look.layout import OnePass
 
 # Okabe and Ito, "Color Universal Design", 2008; yellow, too pale for a line, is left out.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -72,16 +73,16 @@ def refuse_space(dimension: int) -> None:
         )
 
 
-def new_figure(width: float = WIDTH, height: float = 2.4) -> Figure:
-    """An empty figure of a size [in], drawn by Agg."""
-    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+def new_figure(width: float = WIDTH, height: float = 2.4, *, bar: bool = False) -> Figure:
+    """An empty figure of a size [in], drawn by Agg; with room for a colour bar, if it gets one."""
+    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained" if bar else OnePass())
     FigureCanvasAgg(figure)
     return figure
 
 
-def axes_or_new(ax: Axes | None, height: float = 2.4) -> Axes:
-    """The axes given, or new ones in a figure of their own."""
-    return tidy(new_figure(height=height).add_subplot()) if ax is None else ax
+def axes_or_new(ax: Axes | None, height: float = 2.4, *, bar: bool = False) -> Axes:
+    """The axes given, or new ones in a figure of their own, with room for a colour bar if it gets one."""
+    return tidy(new_figure(height=height, bar=bar).add_subplot()) if ax is None else ax
 
 
 def tidy(ax: Axes) -> Axes:

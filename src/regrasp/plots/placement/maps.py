@@ -31,7 +31,7 @@ def plot_placement_map(placements: PlacementMap, ax: Axes | None = None, *, unit
     if placements.values.ndim != 2:
         raise InvalidInput("expected the map of two fingers; plot_placement_outline draws that of one")
     length, values = placements.shape.length, as_drawn(placements.objective, placements.values)
-    ax = axes_or_new(ax, height=3.3)
+    ax = axes_or_new(ax, height=3.3, bar=True)
     edges = _edges(placements.places, length)
     none = np.where(np.isnan(values), 0.0, np.nan)
     ax.pcolormesh(edges, edges, none, cmap=ListedColormap([NO_HOLD]), zorder=1, gid="no hold")

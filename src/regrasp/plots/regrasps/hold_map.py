@@ -64,7 +64,7 @@ def plot_hold_map(
     instance(outline, "outline", Outline)
     places = np.array([_place(outline, contact) for contact in graph.contacts])
     edges, values = _cells(places, outline.length, widest_of_pairs(graph, o))
-    ax = axes_or_new(ax, height=3.3)
+    ax = axes_or_new(ax, height=3.3, bar=True)
     _draw_margins(ax, edges, values)
     if plan is not None:
         _draw_path(ax, np.array(_path(plan, outline)).reshape(-1, 2))
@@ -96,7 +96,7 @@ def _draw_margins(ax: Axes, edges: Array, values: Array) -> None:
 def _in_space(graph: TripleGraph, o: int | None, ax: Axes | None, plan: RegraspPlan | None) -> Axes:
     """Contacts by their numbers; a plan's hold is the three cells of its pairs below the diagonal."""
     count, ways = len(graph.contacts), len(graph.loads)
-    ax = axes_or_new(ax, height=3.3)
+    ax = axes_or_new(ax, height=3.3, bar=True)
     _draw_margins(ax, 0.5 + np.arange(count + 1.0), widest_of_pairs(graph, o))
     numbers = {contact.name: k for k, contact in enumerate(graph.contacts, 1)}
     seen: dict[tuple[float, float], list[str]] = {}
