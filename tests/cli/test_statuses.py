@@ -1,29 +1,17 @@
-"""How a run ends: exit statuses, JSON for programs, signals, pipes and full disks."""
+"""How a run ends: exit statuses, JSON for programs, options that are wrong."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from places import ROOT
-from processes import hear_interrupts
 from regrasp.cli import statuses
 from regrasp.cli.speech import plain
 from scenarios import PAPER, edited, regrasp
 
 pytestmark = pytest.mark.end_to_end
-
-posix = pytest.mark.skipif(os.name != "posix", reason="sends signals as POSIX systems do")
-
-
-def command(*arguments: object) -> list[str]:
-    return [sys.executable, "-m", "regrasp", *map(str, arguments)]
 
 
 @pytest.fixture
@@ -39,9 +27,6 @@ def as_json(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int
     facts = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
     assert facts["exit"] == status
     return status, facts, err
-
-
-# -- JSON -----------------------------------------------------------------------------------------------
 
 
 def test_plan_and_verify_in_json(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -136,15 +121,6 @@ def test_what_is_not_finite_is_null() -> None:
     }
 
 
-# -- options where a person puts them -------------------------------------------------------------------
-
-
-def exporting(monkeypatch: pytest.MonkeyPatch, families: dict[str, str]) -> None:
-    """Let ``bench export`` say which families it was given."""
-    monkeypatch.setattr("regrasp.bench.exchange.export", lambda given, folder: ", ".join(given))
-    monkeypatch.setattr("regrasp.bench.families.catalogue.FAMILIES", families)
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -198,122 +174,6 @@ def test_option_that_a_subcommand_does_not_take_is_an_error(
     assert not (here / "x").exists()
 
 
-# -- signals, pipes, disks ------------------------------------------------------------------------------
-
-
-def left(folder: Path) -> list[str]:
-    return [path.name for path in folder.rglob(".regrasp-*")]
-
-
-def started(folder: Path, *arguments: object) -> subprocess.Popen[str]:
-    """A run of many set-points, when it has begun to write."""
-    (folder / "long.toml").write_text(edited(("rate = 1000.0", "rate = 1e6")))
-    process = subprocess.Popen(
-        command("plan", "long.toml", "-o", "out", "--no-figures", *arguments),
-        cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    deadline = time.monotonic() + 120
-    while not left(folder):
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
-    return process
-
-
-@posix
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
-def test_asked_to_end_it_leaves_nothing(name: str, tmp_path: Path) -> None:
-    number = getattr(signal, name)
-    with started(tmp_path) as process:
-        process.send_signal(number)
-        _, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (128 + number, "\nEnded.\n")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["long.toml"]
-
-
-@posix
-@pytest.mark.parametrize("delay", [0.03, 0.06, 0.1, 0.15, 0.25, 0.4, 0.7])
-def test_an_interrupt_at_any_moment_is_one_line(delay: float, tmp_path: Path) -> None:
-    """While modules are imported, too; before our first line Python says what it likes."""
-    with subprocess.Popen(
-        command("demo", "--json", "-o", "out"), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, preexec_fn=hear_interrupts,
-    ) as process:  # fmt: skip
-        time.sleep(delay)
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    if "regrasp" not in err and process.returncode in (1, -signal.SIGINT):
-        return  # Python itself had not come to us
-    assert (process.returncode, err.strip()) in [(130, "Interrupted."), (0, "")]
-    assert json.loads(out)["exit"] == process.returncode
-    assert not left(tmp_path)
-
-
-@posix
-@pytest.mark.parametrize("there", [False, True])
-def test_what_a_killed_run_left_is_cleared_by_the_next(
-    there: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    if there:
-        (tmp_path / "out").mkdir()
-        (tmp_path / "out" / "notes.txt").write_text("mine")
-    with started(tmp_path) as process:
-        process.kill()
-        process.communicate(timeout=60)
-    assert left(tmp_path)
-    (tmp_path / "paper.toml").write_text(PAPER)
-    arguments = ("plan", tmp_path / "paper.toml", "-o", tmp_path / "out", "--no-figures")
-    assert regrasp(capsys, *arguments)[0] == 0
-    assert not left(tmp_path)
-    assert {"plan.json", "setpoints.csv"} <= {path.name for path in (tmp_path / "out").iterdir()}
-
-
-@posix
-def test_a_run_that_writes_is_not_cleared_by_another(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Two runs into one folder: each writes its own whole, the later one stays."""
-    with started(tmp_path) as process:
-        (tmp_path / "paper.toml").write_text(PAPER)
-        other = ("plan", tmp_path / "paper.toml", "-o", tmp_path / "out", "--no-figures")
-        assert regrasp(capsys, *other)[0] == 0
-        assert (tmp_path / "out" / "setpoints.csv").read_text().count("\n") == 1002
-        _, err = process.communicate(timeout=300)
-        assert (process.returncode, err) == (0, "")
-    assert (tmp_path / "out" / "setpoints.csv").read_text().count("\n") == 1_000_002
-    assert not left(tmp_path)
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-@pytest.mark.parametrize(
-    "arguments", [("schema",), ("--help",), ("verify", "out"), ("verify", "out", "--json")]
-)
-def test_full_output_is_one_line(arguments: tuple[str, ...], here: Path) -> None:
-    done = subprocess.run(
-        command("plan", "paper.toml", "-o", "out", "--no-figures"), capture_output=True, check=True
-    )
-    with Path("/dev/full").open("w") as full:
-        done = subprocess.run(
-            command(*arguments), stdout=full, stderr=subprocess.PIPE, text=True, check=False
-        )
-    assert (done.returncode, done.stderr) == (
-        2,
-        "Error: output cannot be written: No space left on device\n",
-    )
-
-
-@posix
-def test_reader_that_went_away_is_no_error(here: Path) -> None:
-    reader, writer = os.pipe()
-    os.close(reader)
-    done = subprocess.run(command("schema"), stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
-    os.close(writer)
-    assert (done.returncode, done.stderr) == (statuses.PIPE_CLOSED, "")
-
-
-# -- what the page says ---------------------------------------------------------------------------------
-
-
 def test_page_lists_every_status() -> None:
     page = (ROOT / "docs" / "command-line.md").read_text()
     numbers = {value for name, value in vars(statuses).items() if name.isupper() and isinstance(value, int)}
@@ -333,9 +193,6 @@ def test_page_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
             for option in parameter.opts:
                 if option.startswith("--"):
                     assert option in page, f"{name} {option}"
-
-
-# -- before any work ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import regrasp as rg
-from places import ROOT
+from places import EXAMPLES, SCENARIOS
 from regrasp.files import (
     parse_scenario,
     plan_scenario,
@@ -23,17 +23,9 @@ from regrasp.files import (
     write_plan,
 )
 from regrasp.plans.record import Choice, Record
-from scenarios import PAPER, edited
+from scenarios import PAPER, edited, planned
 
 pytestmark = pytest.mark.contract
-
-EXAMPLES = ROOT / "examples"
-SCENARIOS = sorted(path for path in EXAMPLES.glob("*.toml") if path.stem != "study")
-
-
-def planned(*changes: tuple[str, str]) -> rg.Transition:
-    return plan_scenario(parse_scenario(edited(*changes)))
-
 
 PLAN = planned()
 

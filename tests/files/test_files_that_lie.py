@@ -4,7 +4,6 @@ import json
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ import pytest
 import regrasp as rg
 from regrasp.files import read_plan, write_plan, write_setpoints
 from regrasp.files.plans.setpoints import checked, read_setpoints
+from spoiling import put
 
 pytestmark = pytest.mark.contract
 
@@ -34,15 +34,6 @@ WHOLE = rg.plan_regrasp(
     ELLIPSE, fingers(0.02, 0.35, 0.7), fingers(0.2, 0.5, 0.85), rg.Wrench([0, -3.0]), friction=0.5,
     orientations=1, candidates=60,
 )  # fmt: skip
-
-
-def put(value: Any, *keys: str | int) -> Callable[[Any], None]:
-    def change(data: Any) -> None:
-        for key in keys[:-1]:
-            data = data[key]
-        data[keys[-1]] = value
-
-    return change
 
 
 @pytest.mark.parametrize(

@@ -15,29 +15,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import regrasp as rg
-from places import ROOT
 from regrasp.disk.staging import whole_file, whole_folder
 from regrasp.files import (
-    parse_scenario,
-    plan_scenario,
     read_plan,
     write_plan,
     write_setpoints,
 )
-from scenarios import edited
+from scenarios import planned
+from spoiling import put
 
 pytestmark = pytest.mark.contract
-
-
-EXAMPLES = ROOT / "examples"
-
-
-SCENARIOS = sorted(path for path in EXAMPLES.glob("*.toml") if path.stem != "study")
-
-
-def planned(*changes: tuple[str, str]) -> rg.Transition:
-    return plan_scenario(parse_scenario(edited(*changes)))
-
 
 PLAN = planned()
 
@@ -61,15 +48,6 @@ def test_plan_that_is_not_finite_is_not_written(tmp_path: Path) -> None:
         write_plan(plan, path)
     assert str(raised.value) == f"{path}: record.balancing: expected a finite number, got nan"
     assert list(tmp_path.iterdir()) == []
-
-
-def put(value: Any, *keys: str | int) -> Callable[[dict[str, Any]], None]:
-    def change(data: Any) -> None:
-        for key in keys[:-1]:
-            data = data[key]
-        data[keys[-1]] = value
-
-    return change
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ import trimesh
 
 import regrasp as rg
 from places import ROOT
+from refusals import refused
 from regrasp.mesh import parts
 from solids import bumpy, is_inside
 
@@ -168,13 +169,6 @@ def test_real_tools_are_read_or_say_why_not() -> None:
 # -- what is refused --------------------------------------------------------------------------------------
 
 
-def refusal(call, *args) -> str:
-    with pytest.raises(rg.InvalidInput) as caught:
-        call(*args)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
-
-
 V, F = BOX.vertices, BOX.faces
 SHEET = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
 # Seven corners of a strip with a half turn, each edge of two faces: the projective plane has one side.
@@ -216,12 +210,12 @@ ONE_SIDED = [
     ],
 )  # fmt: skip
 def test_meshes_refused(vertices, faces, says: str) -> None:
-    assert refusal(rg.Mesh, vertices, faces).startswith(says)
+    assert refused(rg.Mesh, vertices, faces).startswith(says)
 
 
 def test_a_thin_sheet_is_a_body_and_a_flat_one_is_not() -> None:
     assert rg.Mesh.box(1, 1, 1e-6).volume == pytest.approx(1e-6)
-    assert "the mesh encloses no volume" in refusal(rg.Mesh, SHEET.repeat(1, 0), [[0, 1, 2], [2, 1, 0]])
+    assert "the mesh encloses no volume" in refused(rg.Mesh, SHEET.repeat(1, 0), [[0, 1, 2], [2, 1, 0]])
 
 
 @pytest.mark.parametrize(
@@ -248,12 +242,12 @@ def test_a_thin_sheet_is_a_body_and_a_flat_one_is_not() -> None:
 )  # fmt: skip
 def test_files_refused(tmp_path: Path, name: str, content: str, says: str) -> None:
     path = text(tmp_path, content, name)
-    assert refusal(rg.Mesh.from_file, path).startswith(f"{path}: {says}")
+    assert refused(rg.Mesh.from_file, path).startswith(f"{path}: {says}")
 
 
 def test_no_file_and_no_scale(tmp_path: Path) -> None:
     for path in (tmp_path / "none.stl", tmp_path):
-        assert refusal(rg.Mesh.from_file, path) == f"{path}: expected a file with a mesh, found none"
+        assert refused(rg.Mesh.from_file, path) == f"{path}: expected a file with a mesh, found none"
     with pytest.raises(rg.InvalidInput, match=r"^scale must be greater than 0, got 0$"):
         rg.Mesh.from_file(tmp_path / "none.stl", scale=0)
 

@@ -7,15 +7,13 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from refusals import refused
 from regrasp.mesh import parts
 from solids import angle
 
 pytestmark = pytest.mark.oracle
 
-
 BOX = rg.Mesh.box(2, 3, 4)
-
-
 CONE = rg.Mesh.revolved([(0, 0), (1, 0), (0, 2)])
 
 
@@ -64,19 +62,12 @@ def test_a_steeper_crease_smooths_what_a_lower_one_parts() -> None:
 # -- contacts refused -------------------------------------------------------------------------------------
 
 
-def refusal(call, *args, **kwargs) -> str:
-    with pytest.raises(rg.InvalidInput) as caught:
-        call(*args, **kwargs)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
-
-
 def test_edges_and_corners_are_refused() -> None:
-    assert refusal(BOX.contact_at, [1, 1.5, 0.3], friction=0.3) == (
+    assert refused(BOX.contact_at, [1, 1.5, 0.3], friction=0.3) == (
         "point (1, 1.5, 0.3) is at an edge or corner, where 2 faces meet at up to 90 degrees "
         "and no normal is defined; move it into a face"
     )
-    assert "where 6 faces meet at up to 90 degrees" in refusal(BOX.contact_at, [1, 1.5, 2], friction=0.3)
+    assert "where 6 faces meet at up to 90 degrees" in refused(BOX.contact_at, [1, 1.5, 2], friction=0.3)
     assert BOX.contact_at([1, 1.5 - 1e-6, 0], friction=0.3).normal.tolist() == [-1, 0, 0]
 
 
@@ -89,7 +80,7 @@ def test_an_edge_within_a_flat_face_is_none() -> None:
 def test_an_edge_of_a_faceted_curve_is_refused_with_advice() -> None:
     soft = rg.Mesh.cylinder(1, 2)
     faceted = rg.Mesh(soft.vertices, soft.faces)
-    assert refusal(faceted.contact_at, [1, 0, 0.1], friction=0.3) == (
+    assert refused(faceted.contact_at, [1, 0, 0.1], friction=0.3) == (
         "point (1, 0, 0.1) is at an edge or corner, where 2 faces meet at up to 5.62 degrees "
         "and no normal is defined; move it into a face; for a curved surface give the mesh smooth=True"
     )
@@ -100,7 +91,7 @@ def test_an_edge_of_a_faceted_curve_is_refused_with_advice() -> None:
 
 def test_the_tip_of_a_cone_is_refused() -> None:
     for mesh in (CONE, rg.Mesh(CONE.vertices, CONE.faces)):
-        assert "(0, 0, 2) is at an edge or corner, where 64 faces meet" in refusal(
+        assert "(0, 0, 2) is at an edge or corner, where 64 faces meet" in refused(
             mesh.contact_at, [0, 0, 2], friction=0.3
         )
     tip = np.linalg.norm(CONE.sample(100, clearance=0.3) - [0, 0, 2], axis=1)
@@ -108,7 +99,7 @@ def test_the_tip_of_a_cone_is_refused() -> None:
 
 
 def test_a_point_far_away_is_refused() -> None:
-    assert refusal(BOX.contact_at, [1000, 0, 0], friction=0.3) == (
+    assert refused(BOX.contact_at, [1000, 0, 0], friction=0.3) == (
         "point (1000, 0, 0) is 999 away from the surface of an object of size (2, 3, 4); "
         "is it in the mesh's coordinates and unit? nearest() answers for any"
     )
@@ -145,7 +136,7 @@ def test_a_point_far_away_is_refused() -> None:
     ],
 )
 def test_arguments_refused(call, says: str) -> None:
-    assert refusal(call) == says
+    assert refused(call) == says
 
 
 # -- samples ----------------------------------------------------------------------------------------------
@@ -178,10 +169,10 @@ def test_samples_are_even_and_keep_clear(count: int) -> None:
 def test_a_clearance_is_kept_or_refused() -> None:
     for clearance in (0, 0.2, 0.9):
         assert to_edges(BOX.sample(50, clearance=clearance), BOX.size / 2).min() >= clearance
-    assert refusal(BOX.sample, 50, clearance=1.6).startswith(
+    assert refused(BOX.sample, 50, clearance=1.6).startswith(
         "the surface has no room for 50 points 1.6 or more from its sharp edges: 0 of "
     )
-    assert "the farthest about 1.5" in refusal(BOX.sample, 50, clearance=1.6)
+    assert "the farthest about 1.5" in refused(BOX.sample, 50, clearance=1.6)
 
 
 def test_both_sides_and_the_rim_of_a_thin_plate_are_sampled() -> None:

@@ -5,16 +5,13 @@ import pytest
 from matplotlib.figure import Figure
 
 import regrasp as rg
+from drawn import by_gid
 from paper import GRASP
 from regrasp import plots
 
 pytestmark = pytest.mark.contract
 
 PAIR = GRASP.subset(["P1", "P2"])
-
-
-def by_gid(ax, gid):
-    return [artist for artist in ax.get_children() if artist.get_gid() == gid]
 
 
 @pytest.mark.parametrize("objective", ["angle", "force"])

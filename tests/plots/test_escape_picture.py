@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 
 import regrasp as rg
+from drawn import by_gid, ends
 from regrasp import plots
 from regrasp.plots.look.style import PALETTE
 
@@ -51,16 +52,8 @@ def lifted(v=(1.0, 0.2, 0.0)):
     return rg.EscapeTwist(table, rg.Wrench([1, -1]), v, (0.2, 0.2), (inf, inf))
 
 
-def by_gid(ax, gid):
-    return [artist for artist in ax.get_children() if artist.get_gid() == gid]
-
-
 def texts(ax):
     return {text.get_text() for text in ax.texts}
-
-
-def ends(arrow):
-    return np.array(arrow._posA_posB)
 
 
 # -- words -------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.patches import Wedge
 
 import regrasp as rg
+from drawn import by_gid
 from paper import STATE
 from regrasp import plots
 from regrasp.outline import parts
@@ -38,10 +39,6 @@ def planned(goal_orientation=1.5, scale=1.0):
         candidates=40,
         goal_orientation=goal_orientation,
     )
-
-
-def by_gid(ax, gid):
-    return [artist for artist in ax.get_children() if artist.get_gid() == gid]
 
 
 @pytest.mark.parametrize("goal_orientation", [0.0, 1.5, -2.0])

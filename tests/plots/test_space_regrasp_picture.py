@@ -11,6 +11,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform
 from PIL import Image
 
 import regrasp as rg
+from drawn import by_gid
 from regrasp import plots
 from regrasp.mechanics.orientation.rotations import rotation_matrix
 from regrasp.mesh import Mesh
@@ -41,10 +42,6 @@ def plan():
         BOX, START, GOAL, WEIGHT, friction=0.6, goal_rotation=LAST,
         candidates=12, orientations=36, min_distance=0.01,
     )  # fmt: skip
-
-
-def by_gid(ax, gid):
-    return [artist for artist in ax.get_children() if artist.get_gid() == gid]
 
 
 def starting_with(ax, words):

@@ -9,7 +9,7 @@ import pytest
 
 import regrasp as rg
 from foreign import EPS, Plan, said, turn
-from foreign_regrasps import FRICTION, changed, contact, held, margin_of, regrasp, whole
+from foreign.regrasps import FRICTION, changed, contact, held, margin_of, regrasp, whole
 
 pytestmark = pytest.mark.contract
 

@@ -8,7 +8,7 @@ import pytest
 
 import regrasp as rg
 from foreign import EPS, course, said
-from foreign_regrasps import changed, matrix, regrasp
+from foreign.regrasps import changed, matrix, regrasp
 
 pytestmark = pytest.mark.contract
 

@@ -9,7 +9,7 @@ import pytest
 
 import regrasp as rg
 from foreign import EPS, Plan, Record, course, cross, places, said
-from foreign_crosses import CROSSES, FINGERS, UPPER, WHOLE
+from foreign.crosses import CROSSES, FINGERS, UPPER, WHOLE
 
 pytestmark = pytest.mark.contract
 

@@ -8,7 +8,7 @@ import pytest
 
 import regrasp as rg
 from foreign import EPS, Plan, Record, Scaling, course, cross, said, turn
-from foreign_crosses import FINGERS, LOWER, UPPER, WHOLE
+from foreign.crosses import FINGERS, LOWER, UPPER, WHOLE
 
 pytestmark = pytest.mark.contract
 

@@ -8,7 +8,7 @@ import pytest
 
 import regrasp as rg
 from foreign import EPS, Plan, cross, said, solid_cross, turn
-from foreign_crosses import CROSSES, WHOLE, squeezed
+from foreign.crosses import CROSSES, WHOLE, squeezed
 
 pytestmark = pytest.mark.contract
 
