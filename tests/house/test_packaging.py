@@ -1,9 +1,14 @@
 """What is said of the package in several places is the same, and the source archive stays small."""
 
 import io
+import json
+import os
 import re
+import subprocess
+import sys
 import tarfile
 import tomllib
+from typing import Any
 
 import pytest
 
@@ -80,3 +85,29 @@ def test_the_source_archive_is_below_a_megabyte_and_has_what_readme_leads_to() -
     links = set(re.findall(r"\]\(([\w./-]+\.md)", readme))
     assert len(links) > 10
     assert links <= names
+
+
+def metadata(address: str) -> dict[str, Any]:
+    """What a build says of the package, with an address of the repository or none."""
+    command = (sys.executable, "-m", "hatchling", "metadata")
+    environment = {**os.environ, "REGRASP_URL": address}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise ValueError(done.stderr.splitlines()[-1])
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def test_a_build_leads_to_the_repository_that_it_is_told() -> None:
+    said, given = metadata(""), (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "urls" not in said
+    assert str(said["readme"]["text"]) == given
+    address = "https://example.org/hands/regrasp"
+    said = metadata(address + "/")
+    assert {url.startswith(address) for url in said["urls"].values()} == {True}
+    assert said["urls"].keys() == {"Homepage", "Documentation", "Changelog", "Issues"}
+    targets, were = (re.findall(r"\]\(([^)]*)\)", text) for text in (said["readme"]["text"], given))
+    assert [t.replace("/raw/", "/blob/").removeprefix(f"{address}/blob/main/") for t in targets] == were
+    assert {t.rpartition(".")[2] for t in targets if "/raw/" in t} == {"png"}
+    with pytest.raises(ValueError, match="REGRASP_URL must be the https address of a repository, got 'here'"):
+        metadata("here")

@@ -1,0 +1,40 @@
+"""Addresses in the metadata of a build: those of the repository that ``REGRASP_URL`` names, if any.
+
+    REGRASP_URL=https://example.org/grasping/regrasp python -m build
+
+The project's links lead there, and so do those of README, which are relative in the repository.
+"""
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+from hatchling.metadata.plugin.interface import MetadataHookInterface
+
+LINK = re.compile(r"(!?)(\[[^]]*\]\()(?!https?:|#)([^)]+)\)")
+
+
+class Addresses(MetadataHookInterface):
+    """Fills ``urls`` and ``readme``."""
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        """Set both; without an address the links of README stay as they are, and there are no others."""
+        text = (Path(self.root) / "README.md").read_text(encoding="utf-8")
+        address = os.environ.get("REGRASP_URL", "").strip().rstrip("/")
+        if address:
+            if not re.match(r"https?://[^/\s]+/\S", address):
+                raise ValueError(f"REGRASP_URL must be the https address of a repository, got {address!r}")
+            text = absolute(text, address)
+            metadata["urls"] = {
+                "Homepage": address,
+                "Documentation": f"{address}/blob/main/docs/index.md",
+                "Changelog": f"{address}/blob/main/CHANGELOG.md",
+                "Issues": f"{address}/issues",
+            }
+        metadata["readme"] = {"content-type": "text/markdown", "text": text}
+
+
+def absolute(text: str, address: str) -> str:
+    """Markdown whose relative links lead to a repository, pictures to their raw files."""
+    return LINK.sub(lambda m: f"{m[1]}{m[2]}{address}/{'raw' if m[1] else 'blob'}/main/{m[3]})", text)
