@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from refusals import refusal
+from regrasp.planning.placement.reachable import sides_of
 from regrasp.verification.placed.cubic import CubicEdges
 
 pytestmark = pytest.mark.oracle
@@ -183,6 +183,28 @@ def test_units_and_turns_change_nothing() -> None:
         assert base.bound <= found.value * (1 + 1e-9)
 
 
-def test_round_tips_are_for_polygons() -> None:
-    said = refusal(lambda: rg.choose_grasp(ELLIPSE, 2, TILTED, friction=0.4, tip_radius=0.1))
-    assert said.startswith("tip_radius is for polygons; give Outline(shape.polygon(tolerance))")
+@pytest.mark.parametrize("radius", [0.6, 2.0])
+def test_round_tips_touch_nothing_else(radius: float) -> None:
+    """Against distances of the tip's centre to points of the curve, which closes in on itself in a mouth."""
+    t = np.linspace(0.6, 2 * np.pi - 0.6, 14)
+    ring = [
+        *(1.0 * np.stack([np.cos(t), np.sin(t)], axis=1)),
+        *(0.55 * np.stack([np.cos(t), np.sin(t)], axis=1))[::-1],
+    ]
+    mouth = rg.Outline.smooth(ring)
+    sides = sides_of(mouth, 0.0, None, radius)
+    points = mouth.points(np.linspace(0, mouth.length, 6001))
+    seen = set()
+    for s in np.linspace(0.01, mouth.length, 300, endpoint=False):
+        reach = np.hypot(*(points - (mouth.points(s) - radius * mouth.normals(s))).T).min()
+        u = sides.u_at(float(s))
+        allowed = bool(((sides.ends[:, 0] <= u) & (u <= sides.ends[:, 1])).any())
+        if abs(reach / radius - 1) > 1e-3 or allowed:
+            assert allowed == (reach >= radius * (1 - 1e-3))
+        seen.add(allowed)
+    assert seen == {True, False}
+    found = rg.choose_grasp(mouth, 2, TILTED, friction=0.6, tip_radius=radius, tolerance=0.05)
+    for contact in found.grasp:
+        centre = contact.position - radius * contact.normal
+        assert np.hypot(*(points - centre).T).min() >= radius * (1 - 1e-3)
+    assert rg.verify(found).ok

@@ -81,6 +81,7 @@ class GraspTask(Strict):
         description="[m], the only stretches for fingers, counter-clockwise from one arc length to another",
     )
     tip_radius: _NotNegative = Field(0.0, description="[m], of round fingertips")
+    in_holes: bool = Field(False, description="whether fingers may be in holes, too, of a polygon")
     load_offset: _NotNegative = Field(0.0, description="[m], by which loads may act beside their lines")
     most_boxes: int | None = Field(
         None,
@@ -117,6 +118,7 @@ def chosen_by(scenario: GraspScenario) -> ChosenGrasp:
         disturbance=None if disturbance is None else disturbance.around(scenario.load.wrench),
         arcs=task.arcs,
         tip_radius=task.tip_radius,
+        in_holes=task.in_holes,
         load_offset=task.load_offset,
         tolerance=task.tolerance,
         min_distance=task.min_distance,

@@ -47,6 +47,7 @@ def choose_grasp(
     removable: bool = False,
     arcs: Sequence[Sequence[float]] | None = None,
     tip_radius: float = 0.0,
+    in_holes: bool = False,
     load_offset: float = 0.0,
     tolerance: float = 1e-3,
     min_distance: float | None = None,
@@ -61,9 +62,9 @@ def choose_grasp(
     returns the best so far, with its gap.
 
     Args:
-        shape: a polygon or a smooth outline, where contacts are on its outer boundary, or a mesh of flat
-            faces. On a mesh the objectives are the first four, and of the options ``tolerance``,
-            ``min_distance``, ``from_corners``, ``most_boxes`` and ``progress``.
+        shape: a polygon or a smooth outline, where contacts are on its outer boundary unless ``in_holes``, or
+            a mesh of flat faces. On a mesh the objectives are the first four, and of the options
+            ``tolerance``, ``min_distance``, ``from_corners``, ``most_boxes`` and ``progress``.
         fingers: how many, 2 to 4; all alike.
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
             forces for each load, has to hold; the value is that of the worst load [N, N m].
@@ -87,7 +88,9 @@ def choose_grasp(
             to the second [m], at most one length before the first vertex or past it; the whole outline if
             not given.
         tip_radius: of round fingertips, which do not reach into corners and slots where they would meet
-            another part of the outline [m].
+            another part of the outline [m]; on a curve as seen at 2,000 points of it.
+        in_holes: whether fingers may be in the holes of a polygon, too, whose arc lengths go on after the
+            outline's, clockwise around one after the other.
         load_offset: each load may act this far beside its line, to either side [m]. Without it the best
             placement may be one where loads balance on a knife's edge: the search tells no places apart that
             are closer than a fraction of ``tolerance``, and leaves a gap there.
@@ -135,7 +138,7 @@ def choose_grasp(
             "keep": keep,
             "removable": removable,
         }
-        named |= {"arcs": arcs, "tip_radius": tip_radius, "load_offset": load_offset}
+        named |= {"arcs": arcs, "tip_radius": tip_radius, "in_holes": in_holes, "load_offset": load_offset}
         named |= {"disturbance": disturbance, "length": length}
         unused = {
             name: value is not None and value is not False and value != 0 for name, value in named.items()
@@ -150,9 +153,15 @@ def choose_grasp(
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
     level = level_of(goal, mu, load, max_force, disturbance, length_of(goal, length, shape))
+    if not isinstance(in_holes, bool) or (in_holes and arcs is not None):
+        raise InvalidInput(
+            f"in_holes must be True or False, and True goes with no arcs; got {shown(in_holes)}"
+        )
     stretches = None if arcs is None else _pairs(arcs, shape.length)
     radius = number(tip_radius, "tip_radius", least=0)
-    sides = sides_of(shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius)
+    sides = sides_of(
+        shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius, in_holes
+    )
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
     if isinstance(level, BallLevel):
         inner = outer = level.loads(level.max_force)

@@ -82,6 +82,20 @@ class CurvedSides(Sides):
     def _knots(self) -> Array:
         return self._boundary.cubics()[0]
 
+    def frames(self, u: Array) -> tuple[Array, Array, Array]:
+        """(m, 2) points at places, (m, 2) inward normals, (m,) curvatures, above 0 where convex [1/m]."""
+        edge = np.minimum(u.astype(int), len(self.control) - 1)
+        control, t = self.control[edge], u - edge
+        first = 3 * _velocity(control, t)
+        second = 6 * (np.diff(control, n=2, axis=1) * np.stack([1 - t, t], axis=1)[..., None]).sum(axis=1)
+        speed = np.hypot(*first.T)
+        turning = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        return (
+            _at(control, t),
+            np.stack([-first[:, 1], first[:, 0]], axis=1) / speed[:, None],
+            turning / speed**3,
+        )
+
     def points(self, places: np.ndarray, u: Array) -> Array:
         """(k, 2) of places on sides [m]."""
         edges = self.edges[places]

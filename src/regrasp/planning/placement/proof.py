@@ -41,6 +41,8 @@ class PlacementProof(ArrayValue):
         control: (k, 4, 2) of a smooth boundary, the control points of its cubic edges, which begin at the
             ``vertices`` [m]; None of a polygon.
         margin: distance of forces from the edges of their cones, of size ``margin`` [N].
+        rings: (r,) the first of the vertices of each ring, of the outline and of its holes; None of an
+            outline alone.
     """
 
     vertices: Array
@@ -60,6 +62,7 @@ class PlacementProof(ArrayValue):
     twists: Array
     control: Array | None = None
     margin: float = 0.0
+    rings: np.ndarray | None = None
 
     @property
     def digest(self) -> str:
@@ -90,8 +93,8 @@ class PlacementProof(ArrayValue):
         Raises:
             InvalidInput: For other keys, shapes and types, and for numbers that the digest does not fit.
         """
-        names = [f.name for f in fields(cls) if f.name not in ("control", "margin")]
-        given = entries(data, "a proof", [*names, "digest"], ("control", "margin"))
+        names = [f.name for f in fields(cls) if f.name not in ("control", "margin", "rings")]
+        given = entries(data, "a proof", [*names, "digest"], ("control", "margin", "rings"))
         control = given.get("control")
         k = whole(given["fingers"], "fingers", least=1)
         children = _integers(given["children"], "children", (None, 2))
@@ -114,6 +117,7 @@ class PlacementProof(ArrayValue):
             array(given["twists"], "twists", (n, 3)),
             None if control is None else array(control, "control", (None, 4, 2)),
             number(given.get("margin", 0.0), "margin", least=0),
+            None if given.get("rings") is None else _integers(given["rings"], "rings", (None,)),
         )
         if given["digest"] != proof.digest:
             raise InvalidInput("the digest of a proof does not fit its numbers: one of them was changed")

@@ -5,44 +5,51 @@ from dataclasses import replace
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array
+from regrasp.outline.boundary import Boundary
 from regrasp.outline.outline import Outline
-from regrasp.planning.placement.curved_sides import curved_sides
-from regrasp.planning.placement.sides import Sides
+from regrasp.outline.polygon import PolygonBoundary
+from regrasp.planning.placement.curved_sides import CurvedSides, curved_sides
+from regrasp.planning.placement.sides import RingSides, Sides
+from regrasp.planning.placement.tips import Spans, out_of_reach, within_reach
 
-_TOUCHING = 1e-9  # of the radius of a tip: so much overlap is rounding
-Spans = list[tuple[float, float]]
+_ROUNDING = 1e-9  # of the length
 Arcs = list[tuple[float, float]] | None
 """Arc lengths from which to which, counter-clockwise [m]; None for the whole outline."""
 
 
-def sides_of(outline: Outline, from_corners: float, arcs: Arcs = None, tip_radius: float = 0.0) -> Sides:
+def sides_of(
+    outline: Outline, from_corners: float, arcs: Arcs = None, tip_radius: float = 0.0, in_holes: bool = False
+) -> Sides:
     """The sides of an outline on which fingers may be.
 
     Left out are stretches nearer to a corner than ``from_corners`` [m], those outside ``arcs``, and those
-    that a round tip cannot touch without meeting another part of the boundary.
+    that a round tip cannot touch without meeting another part of the boundary. With ``in_holes`` the sides of
+    holes come after those of the outline, clockwise around each, and so do their arc lengths.
     """
     control = outline.cubics()
-    if tip_radius and control is not None:
-        raise InvalidInput(
-            "tip_radius is for polygons; give Outline(shape.polygon(tolerance)) of a smooth outline"
-        )
-    whole = _whole(outline) if control is None else curved_sides(outline, control)
-    ends, starts, lengths = whole.ends.copy(), np.append(whole.starts, outline.length), whole.lengths
-    corners = outline.boundary.corners
-    if from_corners and corners.size:
-        # what is left of an edge between the last corner not after its start and the next not before its end
-        before = np.append(corners[-1] - outline.length, corners)
-        before = before[np.searchsorted(corners, starts[:-1], "right")]
-        after = np.append(corners, corners[0] + outline.length)[np.searchsorted(corners, starts[1:], "left")]
-        ends[:, 0] += np.clip((before + from_corners - starts[:-1]) / lengths, 0.0, None)
-        ends[:, 1] -= np.clip((starts[1:] - after + from_corners) / lengths, 0.0, None)
+    if in_holes and outline.holes:
+        whole: Sides = _with_holes(outline)
+        rings = [outline.boundary, *(PolygonBoundary(v) for v in _hole_rings(outline))]
+    else:
+        whole = _whole(outline) if control is None else curved_sides(outline, control)
+        rings = [outline.boundary]
+    ends, first = whole.ends.copy(), 0
+    for ring in rings if from_corners and control is None else []:
+        last = first + (len(ring.vertices) if isinstance(ring, PolygonBoundary) else len(ends))
+        starts = whole.starts[first:last] - whole.starts[first]
+        ends[first:last] += _trims(ring, starts, whole.lengths[first:last], from_corners)
+        first = last
+    reached = within_reach(whole, tip_radius) if tip_radius and isinstance(whole, CurvedSides) else None
     edges, kept = [], []
     for edge, (lo, hi) in zip(whole.edges.tolist(), ends.tolist(), strict=True):
         allowed = [(lo, hi)] if lo < hi else []
         if arcs is not None:
             allowed = _within(allowed, [whole.on_edge(arc, edge, outline.length) for arc in arcs])
-        if tip_radius:
-            for taken in _out_of_reach(whole, edge, tip_radius):
+        if reached is not None:
+            allowed = _within(allowed, [reached])
+        elif tip_radius:
+            for taken in out_of_reach(whole, edge, tip_radius):
                 allowed = _without(allowed, taken)
         edges += [edge] * len(allowed)
         kept += allowed
@@ -58,6 +65,42 @@ def _whole(outline: Outline) -> Sides:
     vertices = outline.polygon()
     edges = np.arange(len(vertices))
     return Sides(vertices, edges, np.stack([edges, edges + 1.0], axis=1))
+
+
+def _trims(ring: Boundary, starts: Array, lengths: Array, least: float) -> Array:
+    """(m, 2) by how much the ends of edges move to be ``least`` from corners, as fractions of the edges.
+
+    What is left of an edge is between the last corner not after its start and the next not before its end.
+    """
+    corners, slack = ring.corners, _ROUNDING * ring.length
+    if not corners.size:
+        return np.zeros((len(starts), 2))
+    stops = np.append(starts[1:], ring.length)
+    before = np.append(corners[-1] - ring.length, corners)
+    before = before[np.searchsorted(corners, starts + slack, "right")]
+    after = np.append(corners, corners[0] + ring.length)[np.searchsorted(corners, stops - slack, "left")]
+    back, ahead = (before + least - starts) / lengths, (stops - after + least) / lengths
+    return np.stack([np.clip(back, 0.0, None), -np.clip(ahead, 0.0, None)], axis=1)
+
+
+def _hole_rings(outline: Outline) -> list[np.ndarray]:
+    return [hole.vertices[::-1] for hole in outline.holes if isinstance(hole, PolygonBoundary)]
+
+
+def _with_holes(outline: Outline) -> RingSides:
+    """The sides of a polygon and of its holes."""
+    holes = _hole_rings(outline)
+    if outline.cubics() is not None or len(holes) < len(outline.holes):
+        raise InvalidInput(
+            "in_holes is for polygons with holes that are polygons; give Outline(shape.polygon(tolerance), "
+            "holes=...) of smooth ones"
+        )
+    rings = [outline.polygon(), *(hole - outline.centre_of_mass for hole in holes)]
+    edges = np.arange(sum(map(len, rings)))
+    return RingSides(
+        np.concatenate(rings), edges, np.stack([edges, edges + 1.0], axis=1),
+        np.cumsum([0, *map(len, rings[:-1])]),
+    )  # fmt: skip
 
 
 def _within(allowed: Spans, arcs: list[Spans]) -> Spans:
@@ -76,45 +119,3 @@ def _within(allowed: Spans, arcs: list[Spans]) -> Spans:
 def _without(allowed: Spans, taken: tuple[float, float]) -> Spans:
     parts = [part for a, b in allowed for part in ((a, min(b, taken[0])), (max(a, taken[1]), b))]
     return [(a, b) for a, b in parts if a < b]
-
-
-def _out_of_reach(sides: Sides, edge: int, radius: float) -> Spans:
-    """Where a disc that touches an edge from outside overlaps another: within ``radius`` of a segment.
-
-    The distance to a segment is convex along the line of centres, so each takes one stretch: the hull of
-    those in which the line is within the discs around its ends and within the strip beside it.
-    """
-    length = sides.lengths[edge]
-    t = sides.vectors[edge] / length
-    c = sides.vertices[edge] + radius * np.array([t[1], -t[0]])
-    near = radius * (1 - _TOUCHING)
-    taken = []
-    for other in range(len(sides.vertices)):
-        if other == edge:
-            continue
-        a, d = sides.vertices[other], sides.vectors[other] / sides.lengths[other]
-        found = []
-        for end in (a, a + sides.vectors[other]):
-            along, across = t @ (end - c), (end - c) @ np.array([-t[1], t[0]])
-            if abs(across) < near:
-                half = float(np.sqrt(near**2 - across**2))
-                found.append((along - half, along + half))
-        m = np.array([-d[1], d[0]])
-        strip = [
-            _between(m @ (c - a), m @ t, -near, near),
-            _between(d @ (c - a), d @ t, 0.0, sides.lengths[other]),
-        ]
-        lo, hi = max(s[0] for s in strip), min(s[1] for s in strip)
-        if lo < hi:
-            found.append((lo, hi))
-        if found:
-            taken.append((edge + min(f[0] for f in found) / length, edge + max(f[1] for f in found) / length))
-    return taken
-
-
-def _between(at: float, slope: float, least: float, most: float) -> tuple[float, float]:
-    """The s with least < at + s slope < most."""
-    if slope == 0.0:
-        return (-np.inf, np.inf) if least < at < most else (np.inf, -np.inf)
-    a, b = (least - at) / slope, (most - at) / slope
-    return (a, b) if a < b else (b, a)

@@ -20,7 +20,7 @@ from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import AnsweredLevel, Level, Shown
 from regrasp.planning.placement.proof import PlacementProof
 from regrasp.planning.placement.search import Search
-from regrasp.planning.placement.sides import Sides
+from regrasp.planning.placement.sides import RingSides, Sides
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
@@ -142,6 +142,8 @@ def proof_of(search: Search, asked: Asked, bound: float) -> PlacementProof:
     """The proof of a search, on the outline asked for."""
     boundary = asked.shape.boundary
     edges = boundary.vertices if isinstance(boundary, PolygonBoundary) else boundary.cubics()[1]  # type: ignore[attr-defined]
+    if isinstance(search.sides, RingSides):
+        edges = np.concatenate([edges, *(h.vertices[::-1] for h in asked.shape.holes)])  # type: ignore[attr-defined]
     return search.proof(bound, read_only(edges), asked.shape.centre_of_mass)
 
 

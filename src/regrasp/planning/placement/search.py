@@ -9,7 +9,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.laws import Law
 from regrasp.planning.placement.proof import PlacementProof
-from regrasp.planning.placement.sides import Sides
+from regrasp.planning.placement.sides import RingSides, Sides
 
 MOST_BOXES = 200_000
 """Boxes of a search unless told otherwise: about 500 bytes each for three fingers."""
@@ -241,6 +241,7 @@ class Search:
             size="force" if self.law.size == "margin" and not self.margin else self.law.size,
             margin=self.margin, norm=self.law.norm, min_distance=self.apart, bound=bound,
             control=edges if smooth else None,
+            rings=_frozen(self.sides.rings) if isinstance(self.sides, RingSides) else None,
             **{name: _frozen(values) for name, values in given.items()},
         )  # fmt: skip
 

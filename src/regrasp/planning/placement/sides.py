@@ -96,3 +96,20 @@ class Sides(ArrayValue):
         tangent = self.vectors[edge] / self.lengths[edge]
         point = self.vertices[edge] + (u - edge) * self.vectors[edge]
         return Contact(point, [-tangent[1] + 0.0, tangent[0]], friction, name=name)
+
+
+@dataclass(frozen=True, eq=False)
+class RingSides(Sides):
+    """Stretches of the edges of a polygon and of its holes, the material on the left of each.
+
+    Args:
+        rings: (r,) the first vertex of each ring, the outline's first.
+    """
+
+    rings: np.ndarray
+
+    @cached_property
+    def vectors(self) -> Array:
+        """(k, 2) of the edges [m]."""
+        parts = np.split(self.vertices, self.rings[1:])
+        return np.concatenate([np.roll(part, -1, axis=0) - part for part in parts])

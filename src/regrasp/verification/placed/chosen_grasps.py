@@ -24,6 +24,9 @@ class Shape(Protocol):
     def polygon(self) -> Array:
         """(k, 2) vertices relative to the centre of mass [m]."""
 
+    def hole_polygons(self) -> tuple[Array, ...]:
+        """(k, 2) vertices of each hole, counter-clockwise [m]."""
+
     def cubics(self) -> Array | None:
         """(k, 4, 2) control points of a smooth boundary's pieces, None of a polygon [m]."""
 
@@ -303,6 +306,11 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
     if (control is None) != (proof.control is None):
         return ["the proof is about another kind of outline"]
     edges, given = (proof.vertices, chosen.shape.polygon()) if control is None else (proof.control, control)
+    if proof.rings is not None:
+        rings = [given, *(hole[::-1] for hole in chosen.shape.hole_polygons())]
+        if np.asarray(proof.rings).tolist() != np.cumsum([0, *map(len, rings[:-1])]).tolist():
+            return ["the proof is about another outline"]
+        given = np.concatenate(rings)
     if not np.array_equal(np.asarray(edges) - proof.centre_of_mass, given):
         return ["the proof is about another outline"]
     if len(chosen.grasp) != proof.fingers:

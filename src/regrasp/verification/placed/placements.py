@@ -57,6 +57,11 @@ def _shapes(proof: Proof) -> list[str]:
     ]  # fmt: skip
     if proof.control is not None:
         wanted.append(("control", proof.control, (len(proof.vertices), 4, 2)))
+    if proof.rings is not None:
+        first = np.asarray(proof.rings)
+        apart = np.diff(np.append(first, len(proof.vertices))) >= 3
+        if proof.control is not None or not (first[:1] == 0).all() or not apart.all():
+            return ["proof: rings must begin at vertices, three or more apart, the first at 0"]
     broken = [f"proof: {name} must have shape {shape}" for name, a, shape in wanted if np.shape(a) != shape]
     finite = all(np.isfinite(a).all() for _, a, _ in wanted) and np.isfinite(proof.bound)
     if not finite:

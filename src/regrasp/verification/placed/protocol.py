@@ -3,6 +3,8 @@
 from fractions import Fraction
 from typing import Any, Protocol
 
+import numpy as np
+
 from regrasp.mechanics.checks import Array
 
 Point = tuple[Fraction, Fraction]
@@ -76,5 +78,15 @@ class Proof(Protocol):
         """(k, 4, 2) control points of the edges where they are cubics [m]."""
 
     @property
+    def rings(self) -> Any:
+        """(r,) the first vertex of each ring of a polygon with holes, else None."""
+
+    @property
     def margin(self) -> float:
         """Distance of forces from the edges of their cones, where the size is ``margin`` [N]."""
+
+
+def after_each(count: int, rings: Any) -> np.ndarray:
+    """(k,) which vertex comes after each of so many on its ring."""
+    parts = np.split(np.arange(count), [] if rings is None else np.asarray(rings)[1:])
+    return np.concatenate([np.roll(part, -1) for part in parts])

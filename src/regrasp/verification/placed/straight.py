@@ -6,7 +6,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.eroded import cone_edges, most_eroded, roughly_eroded
-from regrasp.verification.placed.protocol import Point, Proof
+from regrasp.verification.placed.protocol import Point, Proof, after_each
 from regrasp.verification.placed.roots import root_above, root_below
 
 
@@ -24,16 +24,17 @@ class StraightEdges:
         self.points = [
             [Fraction(x) - c for x, c in zip(p, centre, strict=True)] for p in proof.vertices.tolist()
         ]
-        self.along = [
-            [b - a for a, b in zip(p, q, strict=True)]
-            for p, q in zip(self.points, self.points[1:] + self.points[:1], strict=True)
+        ends = after_each(len(self.points), proof.rings)
+        self.along: list[list[Fraction]] = [
+            [b - a for a, b in zip(p, self.points[q], strict=True)]
+            for p, q in zip(self.points, ends.tolist(), strict=True)
         ]
         self.per = [1 / root_below(x * x + y * y) for x, y in self.along]
         self.slant = 1 / root_below(1 + self.mu**2)
         # for what rounding cannot decide
         self._start = np.asarray(proof.vertices - proof.centre_of_mass)
         # of the vertices: less the centre of mass they are rounded, which short sides would not stand
-        self._along = np.roll(proof.vertices, -1, axis=0) - proof.vertices
+        self._along = np.asarray(proof.vertices)[ends] - proof.vertices
         self._unit = self._along / np.hypot(*self._along.T)[:, None]
         self._friction = proof.friction
         self.reach = float(np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass))

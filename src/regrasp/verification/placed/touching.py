@@ -5,7 +5,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.verification.exact import RESOLUTION
-from regrasp.verification.placed.protocol import Proof
+from regrasp.verification.placed.protocol import Proof, after_each
 
 _POINTS = 33  # of a curved side, from which Newton's method starts
 _STEPS = 8
@@ -19,7 +19,7 @@ class Touching:
         self._lo, self._hi = least - self._edges, most - self._edges
         vertices = np.asarray(proof.vertices)
         if proof.control is None:
-            ends = np.roll(vertices, -1, axis=0)
+            ends = vertices[after_each(len(vertices), proof.rings)]
             thirds = [vertices + (ends - vertices) * k / 3 for k in range(4)]
             self._control = np.stack(thirds, axis=1)
         else:
