@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog
 
 import regrasp as rg
-from regrasp.closed_form.load_arcs import ARC, LINE, NOTHING, load_arcs, turning_sides, widest_narrowing
+from regrasp.closed_form.load_arcs import ARC, LINE, NOTHING, load_arcs, turning_sides, widest_narrowings
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 from regrasp.planning.holds.sequences import MAX_TURN, sequences
@@ -58,8 +58,8 @@ def test_arcs_are_what_linear_programs_hold(draw):
         arrays = [np.array([x], dtype=float) for contact in pair for x in contact]
         (kind,), (begin,), (length,) = load_arcs(*arrays)
         kinds.add(int(kind))
-        sides = [turning_sides(*arrays[k : k + 3]) for k in (0, 3)]
-        widest = widest_narrowing(*sides[0], np.arctan(arrays[2]), *sides[1], np.arctan(arrays[5]))
+        both = [np.concatenate([arrays[k], arrays[k + 3]]) for k in range(3)]
+        widest = widest_narrowings(*turning_sides(*both), np.arctan(both[2]))[0, 1]
         assert widest >= 0 or kind == NOTHING
         if kind == NOTHING:  # or cones without width that only press against each other
             assert widest < 0 or min(pair[0][2], pair[1][2]) == 0

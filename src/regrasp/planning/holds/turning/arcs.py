@@ -3,7 +3,7 @@
 Without limits on forces that is one arc in closed form, or two opposite angles (``load_arcs``), and arcs of
 wider margins lie inside those of narrower ones. ``peak_ratio``, force limits and that both fingers push take
 parts away, mostly near the ends. What is left is found on ``_GRID`` angles of the closed arc and at the
-widest margin, and its ends by halving: an arc between two of those angles can be missed.
+widest margin, and its ends between two of them: an arc between two of those angles can be missed.
 """
 
 from math import pi
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.closed_form.load_arcs import ARC, LINE, load_arcs, turning_sides, widest_load, widest_narrowing
+from regrasp.closed_form.load_arcs import ARC, LINE, load_arcs, turning_sides, widest_load, widest_narrowings
 from regrasp.mechanics.checks import Array
 from regrasp.planning.holds.turning.margins import Candidates, Pairs
 
@@ -20,9 +20,9 @@ TOLERANCE = 1e-6
 
 _GRID = 25
 _SLACK = 1e-12  # [rad] of margins, for rounding
-_HALVINGS = 46
+_SECTIONS, _ROUNDS = 16, 12  # of what is left between two angles, and how often: to 16**-12 of it
+_ZOOMS = 6  # each to 2 of 49 parts
 _PULLED = 1e-9  # [rad]
-_GOLDEN = 0.5 * (5**0.5 - 1)
 
 
 class Widest(NamedTuple):
@@ -42,11 +42,11 @@ class Arcs:
         """(V, V) no pair holds with a wider margin at any angle [rad]; -1 for none."""
         c = self.candidates
         side, alone = turning_sides(c.points, c.normals, c.mu)
-        alpha = np.arctan(c.mu)
-        widest = widest_narrowing(side[:, None], alone[:, None], alpha[:, None], side, alone, alpha)
+        widest = widest_narrowings(side, alone, np.arctan(c.mu))
         if c.one_finger:  # the cone of an idle finger does not count
+            alone = np.where(alone >= 0, alone, -1.0)
             widest = np.maximum(widest, np.maximum(alone[:, None], alone))
-        return np.where(widest >= 0, widest, -1.0)
+        return widest
 
     def widest(self, pairs: Pairs, bounds: Array) -> Widest:
         """The widest margins of pairs, that are at most ``bounds`` (m,) [rad]."""
@@ -94,10 +94,13 @@ class Arcs:
         inside = np.where(up, outer[where], inner[where])
         outside = np.where(up, inner[where], outer[where])
         some = (pairs[0][where[0]], pairs[1][where[0]])
-        for _ in range(_HALVINGS if inside.size else 0):
-            middle = (inside + outside) / 2
-            holds = self.candidates.margins(some, middle) >= level - _SLACK
-            inside, outside = np.where(holds, middle, inside), np.where(holds, outside, middle)
+        share, rows = np.linspace(0, 1, _SECTIONS + 1), np.arange(inside.size)
+        for _ in range(_ROUNDS if inside.size else 0):
+            between = inside[:, None] + (outside - inside)[:, None] * share
+            holds = self._margins(some, between) >= level - _SLACK
+            holds[:, 0], holds[:, -1] = True, False
+            last = holds.argmin(axis=1)  # the first that does not
+            inside, outside = between[rows, last - 1], between[rows, last]
         ends = np.full(rises.shape, np.nan)
         inner = inside + np.where(up, _PULLED, -_PULLED)  # off an end that is open, and would round out
         room = (
@@ -156,16 +159,18 @@ class Arcs:
         place = order.ravel()
         real = peak[row, place]
         row, place = row[real], place[real]
+        reached, at = margins[row, place], angles[row, place]
         step = length[row] / (len(share) - 1)
         low, high = angles[row, place] - step, angles[row, place] + step
-        some = (pairs[0][row], pairs[1][row])
-        for _ in range(36 if row.size else 0):
-            a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-            left = self.candidates.margins(some, a) >= self.candidates.margins(some, b)
-            low, high = np.where(left, low, a), np.where(left, b, high)
-        middle = (low + high) / 2
-        reached = self.candidates.margins(some, middle) if row.size else np.empty(0)
-        for k, value, angle in zip(row.tolist(), reached.tolist(), middle.tolist(), strict=True):
+        some, each = (pairs[0][row], pairs[1][row]), np.arange(row.size)
+        for _ in range(_ZOOMS if row.size else 0):
+            between = low[:, None] + (high - low)[:, None] * share
+            margins = self._margins(some, between)
+            best = margins.argmax(axis=1)
+            reached, at = margins[each, best], between[each, best]
+            low = between[each, np.maximum(best - 1, 0)]
+            high = between[each, np.minimum(best + 1, len(share) - 1)]
+        for k, value, angle in zip(row.tolist(), reached.tolist(), at.tolist(), strict=True):
             if value > found.margins[k]:
                 found.margins[k], found.angles[k] = value, angle
         return found
