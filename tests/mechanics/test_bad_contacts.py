@@ -22,7 +22,12 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
     "Contact: words": (
         lambda: rg.Contact("here", [1, 0], 0.3),
         rg.InvalidInput,
-        "contact: position must be numbers of shape (any,), got 'here'",
+        "contact: position must be 2 or 3 numbers, got 'here'",
+    ),
+    "Wrench: one number": (
+        lambda: rg.Wrench(-2),
+        rg.InvalidInput,
+        "force must be 2 or 3 numbers, got -2",
     ),
     "Contact: one coordinate": (
         lambda: rg.Contact([1], [1, 0], 0.3),

@@ -66,9 +66,11 @@ def bench(
     from regrasp.bench.families.catalogue import FAMILIES
     from regrasp.bench.running.jobs import Limits, chosen_problems
     from regrasp.bench.running.solvers import chosen_solvers
+    from regrasp.bench.running.store import stored_rows
     from regrasp.disk.staging import check_folder
 
     check_folder(output)
+    before = len(stored_rows(output))
     if quick:
         most = min(most or _QUICK_UNKNOWNS, _QUICK_UNKNOWNS)
     if time_limit is None:
@@ -107,6 +109,8 @@ def bench(
     right = sum(row.correct is True for row in rows)
     unjudged = sum(row.correct is None for row in rows)
     lost = sum(row.is_lost for row in rows)
+    if before:
+        say(f"{before} solves were there already; another folder makes them anew.")
     say(
         f"{len(rows)} solves in {output}: {right} right, {len(rows) - right - unjudged} wrong or without an "
         f"answer ({lost} of them timed out or crashed), {unjudged} not judged"
@@ -117,6 +121,7 @@ def bench(
         "exit": 0,
         "folder": output,
         "solves": len(rows),
+        "before": before,
         "right": right,
         "wrong": len(rows) - right - unjudged,
         "lost": lost,

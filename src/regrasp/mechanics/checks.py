@@ -92,7 +92,13 @@ def read_only(values: Array) -> Array:
 
 def point(value: ArrayLike, what: str) -> Array:
     """A finite vector of two or three numbers."""
-    result = array(value, what, (None,))
+    try:
+        result = array(value, what, (None,))
+    except InvalidInput:
+        given = _floats(value)
+        if given is not None and given.ndim == 1:
+            raise
+        raise InvalidInput(f"{what} must be 2 or 3 numbers, got {shown(value)}") from None
     if result.size not in (2, 3):
         raise InvalidInput(f"{what} must be 2 or 3 numbers, got {result.size}: {shown(value)}")
     return result

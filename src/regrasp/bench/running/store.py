@@ -29,6 +29,11 @@ def read_rows(folder: Path) -> list[Row]:
     return list(_parsed(path.read_bytes(), path))
 
 
+def stored_rows(folder: Path) -> list[Row]:
+    """The rows of a folder as ``read_rows`` has them; none where no run has begun."""
+    return read_rows(folder) if (folder / ROWS).exists() else []
+
+
 def read_run(folder: Path) -> dict[str, Any]:
     """Machine, versions and limits of a folder's run. Raises ``InvalidInput`` if there are none."""
     path = folder / RUN
