@@ -63,8 +63,8 @@ def test_plan_that_is_not_finite_is_not_written(tmp_path: Path) -> None:
         (put("fast", "speed"), "speed: unknown key; known here: format, version, kind, contact, load, "
                                "contacts, start, end, scaling, course, record, arrival, leaving, arriving, "
                                "turn"),
-        (put("removing", "kind"), "kind: expected 'removal', 'addition', 'rotation', 'exchange' or 'hold', "
-                                  "got 'removing'"),
+        (put("removing", "kind"), "kind: expected 'removal', 'addition', 'exchange', 'rotation', 'hold', "
+                                  "'regrasp' or 'grasp', got 'removing'"),
         (put("rotation", "kind"), "a rotation names the wrong fingers: 'P3' and None"),
         (put("P2", "arrival"), "a removal names the wrong fingers: 'P3' and 'P2'"),
         (put("P9", "contact"), "no contact 'P9' in this grasp; it has P1, P2, P3"),

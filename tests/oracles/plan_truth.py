@@ -10,7 +10,9 @@ from itertools import pairwise
 from math import atan, atan2, cos, hypot, inf, sin, sqrt
 
 EPS = Fraction(1, 2**40)
-OBJECTIVES = {"angle", "force", "effort", "peak", "peak_normal", "friction_use"}
+OBJECTIVES = {
+    "angle", "force", "effort", "peak", "peak_normal", "friction_use", "sum_normal", "wrench",
+}  # fmt: skip
 PATHS = {None, "change", "effort", "force", "peak"}
 
 
@@ -66,26 +68,53 @@ def cross(r, f) -> list[Fraction]:
 
 def _state(judge: Judge, contacts: list[dict], forces, load) -> None:
     d = len(contacts[0]["position"])
-    load = exact(load)
+    load, width = exact(load), d + any(c.get("torsion") is not None for c in contacts)
     judge.needs(len(load) == 3 * (d - 1) and len(forces) == len(contacts))
     total, arm2, scale2 = list(load), Fraction(0), dot(load[:d], load[:d])
     for contact, row in zip(contacts, forces, strict=True):
-        r, n, f = exact(contact["position"]), exact(contact["normal"]), exact(row)
-        judge.needs(len(r) == len(n) == len(f) == d)
-        mu = max(exact([contact["friction"]])[0], EPS)
+        r, n, numbers = exact(contact["position"]), exact(contact["normal"]), exact(row)
+        judge.needs(len(r) == len(n) == d and len(numbers) == width)
+        f, m = numbers[:d], sum(numbers[d:])
         judge.needs(contact["friction"] >= 0 and dot(n, n) > 0)
-        push = dot(f, n)
+        push, used2 = dot(f, n), dot(f, f) + _spun(contact, m) ** 2
+        mu = max(exact([contact["friction"]])[0], EPS)
         judge.needs(push >= 0)
-        judge.at_most(dot(f, f) * dot(n, n), (1 + mu * mu) * push**2)
+        judge.at_most(used2 * dot(n, n), (1 + mu * mu) * push**2)
+        judge.needs(m == 0 or contact.get("torsion") is not None)
         if contact["max_force"] is not None:
             judge.needs(contact["max_force"] > 0)
-            judge.at_most(dot(f, f), Fraction(contact["max_force"]) ** 2, 0)
+            judge.at_most(used2, Fraction(contact["max_force"]) ** 2, 0)
+        for work, most in _rows(contact, f):
+            judge.at_most(max(work, Fraction(0)), most, Fraction(1, 10**13))
         for k, value in enumerate([*f, *cross(r, f)]):
             total[k] += value
+        if m:
+            total[d:] = [a + m * b for a, b in zip(total[d:], n, strict=True)]
         arm2, scale2 = max(arm2, dot(r, r)), max(scale2, dot(f, f))
     scale2 = max(scale2, dot(load[d:], load[d:]) / (arm2 or 1))
     off2 = max(dot(total[:d], total[:d]), dot(total[d:], total[d:]) / (arm2 or 1))
     judge.at_most(off2, EPS**2 * scale2, Fraction(1, 100))
+    asked2 = max(dot(load[:d], load[:d]), dot(load[d:], load[d:]) / (arm2 or 1))
+    if asked2:
+        judge.at_most(off2, asked2 / 2**20, Fraction(1, 100))
+
+
+def _spun(contact: dict, m: Fraction) -> Fraction:
+    """The tangential force that uses as much friction as a soft finger's torque."""
+    if contact.get("torsion") is None:
+        return Fraction(0)
+    mu, torsion = exact([contact["friction"], contact["torsion"]])
+    return max(mu, EPS) * m / torsion
+
+
+def _rows(contact: dict, f) -> list[tuple[Fraction, Fraction]]:
+    """(a . f, b) of the linear limits of a planar contact, in the frame of its normal."""
+    limits, (nx, ny, *_) = contact.get("limits"), exact(contact["normal"])
+    if limits is None:
+        return []
+    frame = dot(f, [nx, ny]), dot(f, [-ny, nx])
+    given = zip(limits["rows"], exact(limits["bounds"]), strict=True)
+    return [(dot(exact(row), frame), most) for row, most in given]
 
 
 def _transition(judge: Judge, plan: dict) -> None:
@@ -94,11 +123,7 @@ def _transition(judge: Judge, plan: dict) -> None:
     judge.needs(all(isinstance(n, str) and n.strip() for n in names) and len(set(names)) == len(names))
     places = [tuple(c["position"]) for c in contacts]
     judge.needs(len(set(places)) == len(places))
-    leaves, comes = plan["contact"], plan.get("arrival")
-    idle = {"removal": ((), (leaves,)), "addition": ((leaves,), ()), "rotation": ((), ())}
-    idle = (idle | {"exchange": ((comes,), (leaves,))})[plan["kind"]]
-    judge.needs((comes is not None) == (plan["kind"] == "exchange"))
-    judge.needs((leaves is not None) == (plan["kind"] != "rotation"))
+    idle = _moving(judge, plan)
     for end, gone in zip(("start", "end"), idle, strict=True):
         judge.needs(all(not any(plan[end][names.index(name)]) for name in gone))
     control = exact(scaling["control"])
@@ -118,6 +143,21 @@ def _transition(judge: Judge, plan: dict) -> None:
         for state in states:
             _state(judge, contacts, state, plan["load"])
     _record(judge, plan, record, states, idle)
+
+
+def _moving(judge: Judge, plan: dict) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The fingers that carry nothing at the start and at the end, of the kind that the plan says."""
+    kind, one, other = plan["kind"], plan["contact"], plan.get("arrival")
+    if kind == "addition":
+        one, other = other, one
+    leaving, arriving = ((() if name is None else (name,)) for name in (one, other))
+    if plan.get("leaving") is not None or plan.get("arriving") is not None:
+        leaving, arriving = (tuple(plan.get(key) or ()) for key in ("leaving", "arriving"))
+    wanted = {"removal": (1, 0), "addition": (0, 1), "exchange": (1, 1), "rotation": (0, 0), "hold": (0, 0)}
+    judge.needs((bool(leaving), bool(arriving)) == wanted[kind])
+    judge.needs(not set(leaving) & set(arriving))
+    judge.needs(all(len(set(names)) == len(names) for names in (leaving, arriving)))
+    return arriving, leaving
 
 
 def _course(judge: Judge, plan: dict, course: dict) -> list:
@@ -176,6 +216,8 @@ def _turn(judge: Judge, plan: dict, turn: dict) -> list:
                     (sin(step * (1 - s / 999)) / sin(step), sin(step * s / 999) / sin(step))
                     for s in range(1000)
                 ]
+                if len(f) > d:
+                    f, g = ([*row[:d], float(_spun(contact, exact(row[d:])[0]))] for row in (f, g))
                 most = max(hypot(*(a * x + b * y for x, y in zip(f, g, strict=True))) for a, b in shares)
                 judge.at_most(most, contact["max_force"], Fraction(1, 10**6))
     return forces
@@ -266,7 +308,8 @@ def _regrasp(judge: Judge, plan: dict) -> None:
 
 
 def _where(contact: dict) -> list:
-    return [contact[key] for key in ("name", "position", "normal", "friction", "max_force")]
+    may = [contact.get(key) for key in ("torsion", "limits")]
+    return [*(contact[key] for key in ("name", "position", "normal", "friction", "max_force")), *may]
 
 
 def _rotations(judge: Judge, before, after, turn) -> None:

@@ -31,6 +31,7 @@ from regrasp.plans.transition import Transition
 from regrasp.plans.turning import TurningPath
 
 FORMAT = "regrasp plan"
+KINDS = ("removal", "addition", "exchange", "rotation", "hold", "regrasp", "grasp")
 VERSION = 1
 
 
@@ -93,6 +94,9 @@ def plan_of(data: Any, name: str | Path = "plan") -> Transition | RegraspPlan | 
             f"{name}: version: expected {VERSION}, got {shown(data.get('version'))}; "
             f"a plan of a newer regrasp needs that regrasp to be read"
         )
+    if "kind" in data and data["kind"] not in KINDS:
+        known = ", ".join(map(repr, KINDS[:-1]))
+        raise InvalidInput(f"{name}: kind: expected {known} or {KINDS[-1]!r}, got {shown(data['kind'])}")
     if data.get("kind") == "regrasp":
         whole = validated(StoredRegrasp, data, name)
         with naming(name):

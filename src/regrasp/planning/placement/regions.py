@@ -39,8 +39,10 @@ class ContactRegions(ArrayValue):
         grasp: the contacts in the middle of it all.
         places: (k,) their arc lengths [m].
         arcs: (k, 2) arc lengths at which regions begin and end: all may be anywhere in theirs at once [m].
-        half_width: every finger may be so far off, to either side or to the end of its side, all at once [m].
-        alone: (k, 2) how far one finger may be off, back and ahead, while the others are at their places [m].
+        half_width: every finger may be so far off, to either side or to the end of its side less two
+            millionths of the way, all at once [m].
+        alone: (k, 2) how far one finger may be off, back and ahead, while the others are at their places: not
+            proven by ``corners``, nor judged by ``regrasp.verify`` [m].
         max_force: no force need be larger [N].
         corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12).
     """
@@ -152,7 +154,7 @@ def _widest(
     starts = sides.starts[sides.edges[places]] - sides.edges[places] * lengths
     return ContactRegions(
         shape, grasp, read_only(starts + u * lengths), read_only(starts[:, None] + box * lengths[:, None]),
-        half * (1 - _LESS), read_only(alone * (1 - _LESS)), limit * (1 + _LESS), tuple(corners),
+        half * (1 - _LESS) ** 2, read_only(alone * (1 - _LESS)), limit * (1 + _LESS), tuple(corners),
     )  # fmt: skip
 
 

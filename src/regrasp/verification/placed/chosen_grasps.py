@@ -10,10 +10,12 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
+from regrasp.verification.placed.arc_lengths import points_at
+from regrasp.verification.placed.areas import share_of
 from regrasp.verification.placed.balls import makes_ball
 from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.protocol import Proof
-from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, share_of, touches
+from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.touching import Touching
 from regrasp.verification.verdict import Verification
 
@@ -57,6 +59,14 @@ class Chosen(Protocol):
     @property
     def bound(self) -> float:
         """No placement is better."""
+
+    @property
+    def places(self) -> Array:
+        """(k,) arc lengths of the contacts, or (k, 3) their points in a mesh's coordinates [m]."""
+
+    @property
+    def others(self) -> tuple[Any, ...]:
+        """Grasps that were passed over, with their ``value``."""
 
     @property
     def certificate(self) -> Any:
@@ -120,6 +130,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     if not chosen.states:
         broken.append("no state shows the value")
     broken += _check_bound(chosen, proof)
+    broken += _check_others(chosen)
     in_space = hasattr(proof, "normals")
     if in_space:
         broken += check_surface_proof(cast(SurfaceProof, proof)) or _check_spots(
@@ -161,14 +172,14 @@ def _part(proof: Proof) -> str:
 
 def _area(chosen: Chosen, proof: Any) -> str:
     """Which part of a mesh the places are on that a proof is about; empty for all of it."""
-    share = share_of(proof, *cast(Any, chosen.shape).surface())
+    share = share_of(proof.corners, proof.normals, *cast(Any, chosen.shape).surface())
     return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the surface that was asked about"
 
 
 def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
     """That the contacts are fingers that the proof is about, on the mesh given."""
     shape: Any = chosen.shape
-    if not hasattr(shape, "surface") or share_of(proof, *shape.surface()) < 0:
+    if not hasattr(shape, "surface") or share_of(proof.corners, proof.normals, *shape.surface()) < 0:
         return ["the proof is about another mesh"]
     if chosen.objective in _LEVELS:
         return [f"objective {chosen.objective!r} has no bound on meshes"]
@@ -186,7 +197,7 @@ def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
         broken.append("two contacts are nearer than the least distance")
     if not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
-    return broken
+    return broken + _off_their_places(chosen, np.asarray(chosen.places) - shape.centre_of_mass)
 
 
 def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
@@ -249,11 +260,28 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     elif chosen.objective == "force":
         proven = bound >= proof.margin and mu <= proof.friction
     elif chosen.objective == "answered":
-        proven = _scaled(chosen, np.asarray(proof.loads)[1:], bound)
+        proven = _scaled_by_less(chosen, np.asarray(proof.loads), bound)
     else:  # no placement holds all loads of the proof, which are members of the ball
         sizes = np.linalg.norm(np.asarray(proof.loads) / [1.0, 1.0, chosen.length or 0.0], axis=1)
         proven = bool((sizes <= bound * (1 + _CLOSE)).all())
     return [] if proven else [f"bound {bound:.12g} is better than what the proof says"]
+
+
+def _check_others(chosen: Chosen) -> list[str]:
+    """That no grasp that was passed over is better than the bound."""
+    sign = -1 if chosen.objective in ("angle", *_ANY_LOAD) else 1
+    slack = _CLOSE * abs(chosen.bound)
+    better = [other.value for other in chosen.others if not sign * (other.value - chosen.bound) >= -slack]
+    return [f"a grasp passed over has the value {better[0]:.12g}, better than the bound"] if better else []
+
+
+def _off_their_places(chosen: Chosen, given: Array) -> list[str]:
+    """That the contacts are at the places that are said, whose points are ``given`` [m]."""
+    positions = chosen.grasp.positions
+    if given.shape != positions.shape:
+        return ["each contact needs a place"]
+    off = np.abs(given - positions).max()
+    return [] if off <= _CLOSE * np.abs(positions).max() else [f"a contact is {off:.3g} off its place"]
 
 
 def _check_ball(chosen: Chosen) -> list[str]:
@@ -294,6 +322,18 @@ def _scaled(chosen: Chosen, loads: Array, factor: float) -> bool:
     return bool((np.abs(loads - wanted) <= _CLOSE * np.abs(wanted).max()).all())
 
 
+def _scaled_by_less(chosen: Chosen, loads: Array, factor: float) -> bool:
+    """Whether loads after the first are it with the deviations by no more than a factor on top.
+
+    What does not hold these does not hold them by more either: the first load is between.
+    """
+    deviations = np.asarray(chosen.deviations)
+    if loads[1:].shape != deviations.shape or not deviations.any():
+        return False
+    own = float(((loads[1:] - loads[0]) * deviations).sum() / (deviations**2).sum())
+    return own <= factor * (1 + _CLOSE) and _scaled(chosen, loads[1:], own)
+
+
 def _norm(state: GraspState, size: str, norm: str) -> float:
     forces = state.forces
     sizes = (forces * state.grasp.normals).sum(axis=1) if size == "normal" else np.linalg.norm(forces, axis=1)
@@ -330,7 +370,7 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
                 broken.append("two contacts are nearer than the least distance")
     if chosen.objective not in _ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
-    return broken
+    return broken + _off_their_places(chosen, points_at(chosen.places, given, control))
 
 
 def _all_shown(chosen: Chosen, loads: Array) -> bool:

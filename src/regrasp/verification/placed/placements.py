@@ -117,7 +117,8 @@ class _Checked:
                 return [*broken, f"proof: box {box} is split into boxes that are not there, or not its own"]
             seen.update(inside)
             waiting += inside
-            broken += self._covered(box, inside)
+            if wrong := self._covered(box, inside):  # no box inside need be one
+                return [*broken, *wrong]
         if len(seen) < len(self.proof.children):
             broken.append("proof: some boxes belong to no other")
         return broken

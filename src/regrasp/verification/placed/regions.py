@@ -20,6 +20,8 @@ from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.chosen_grasps import Shape
 from regrasp.verification.verdict import Verification
 
+_TO_THE_END = 1 - 2e-6  # of the way to the end of a side, which counts as all of it
+
 
 class Regions(Protocol):
     """What ``verify`` needs to know of regions, whoever found them; arcs (k, 2) are arc lengths [m]."""
@@ -33,8 +35,16 @@ class Regions(Protocol):
         """The contacts."""
 
     @property
+    def places(self) -> Array:
+        """(k,) of the contacts."""
+
+    @property
     def arcs(self) -> Array:
         """Of each finger."""
+
+    @property
+    def half_width(self) -> float:
+        """Every finger may be so far off its place, or to the end of its side [m]."""
 
     @property
     def max_force(self) -> float:
@@ -71,8 +81,9 @@ def _check_corners(regions: Regions) -> list[str]:
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     slack = float(RESOLUTION) * float(starts[-1])
     ends, normals = [], []
-    if len(regions.arcs) != len(regions.grasp):
-        return ["an arc for each finger is needed"]
+    places, half = np.asarray(regions.places), regions.half_width
+    if not len(regions.arcs) == len(regions.grasp) == len(places):
+        return ["an arc and a place for each finger are needed"]
     for i, (lo, hi) in enumerate(regions.arcs.tolist(), 1):
         if not lo <= hi:
             return [f"arc {i} must not end before it begins"]
@@ -82,6 +93,15 @@ def _check_corners(regions: Regions) -> list[str]:
         if not (starts[edge] - slack <= off and off + hi - lo <= starts[edge + 1] + slack):
             return [f"arc {i} is not on one straight side"]
         unit = along[edge] / lengths[edge]
+        place = float(places[i - 1]) + off - lo
+        point = vertices[edge] + (place - starts[edge]) * unit
+        if not np.abs(point - regions.grasp.positions[i - 1]).max() <= slack:
+            return [f"contact {i} is not at its place"]
+        before, after = place - off, off + hi - lo - place
+        room = (place - starts[edge]) * _TO_THE_END, (starts[edge + 1] - place) * _TO_THE_END
+        short = max(min(half, room[0]) - before, min(half, room[1]) - after)
+        if not (0 <= half < inf and short <= slack):
+            return [f"arc {i} is less than the half width {half:.12g} about its place"]
         ends.append([vertices[edge] + (s - starts[edge]) * unit for s in (off, off + hi - lo)])
         normals.append([-unit[1], unit[0]])
     loads = {tuple(state.load.vector.tolist()) for state in regions.corners}

@@ -23,7 +23,6 @@ from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.placed.roots import root_above
 
 _ROUNDING = 1e-12  # of the terms: far more than the roundings of sums and of halving edges
-_ON = 1e-9  # of the reach: a triangle is on a face
 _AT_A_TIME = 4096
 
 
@@ -155,7 +154,8 @@ def _boxes_wrong(proof: SurfaceProof) -> list[str]:
             expected = np.where(split, np.where(place < c - 1 - number, left, right), whole)
             good &= (parts[:, number] == expected).all(axis=1)
         if c < 2 or not good.all():
-            return [f"proof: box {these[~good][0]} is not covered by the boxes it is split into"]
+            box = these[int(good.argmin())]
+            return [f"proof: box {box} is not covered by the boxes it is split into"]
     return []
 
 
@@ -278,20 +278,3 @@ def _away(corners: Array, point: Array) -> Array:
         t = np.clip(((point - p) * side).sum(axis=1) / (side**2).sum(axis=1), 0, 1)
         away = np.minimum(away, np.linalg.norm(p + t[:, None] * side - point, axis=1))
     return np.where(inside, np.abs(height), away)
-
-
-def share_of(proof: SurfaceProof, vertices: Array, faces: Any) -> float:
-    """The part of a mesh's area that the proof is about, -1 where a triangle of it is on no face [-]."""
-    t = np.asarray(vertices)[np.asarray(faces)]
-    cross = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
-    area = np.linalg.norm(cross, axis=1)
-    inward, reach = -cross / area[:, None], float(np.abs(vertices).max())
-    corners = np.asarray(proof.corners)
-    for triangle, normal in zip(corners, proof.normals, strict=True):
-        facing = np.linalg.norm(inward - normal, axis=1) <= _ON
-        if not (_away(t[facing], triangle.mean(axis=0)) <= _ON * reach).any():
-            return -1.0
-        if np.abs((triangle - triangle.mean(axis=0)) @ normal).max() > _ON * reach:
-            return -1.0
-    sides = corners[:, 1:] - corners[:, :1]
-    return float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / area.sum())

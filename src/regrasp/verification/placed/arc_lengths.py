@@ -1,0 +1,50 @@
+"""Points of a boundary by arc length: of polygons by sums, of cubics by Gauss' quadrature and bisection."""
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+_PANELS = 8
+_BISECTIONS = 60
+
+
+def points_at(arc_lengths: Array, vertices: Array, control: Array | None) -> Array:
+    """(k, 2) points of a closed boundary, counted from its first vertex, modulo its length [m].
+
+    vertices: (m, 2) of a polygon. control: (m, 4, 2) of its edges where they are cubics, None elsewhere.
+    """
+    if control is None:
+        chords = np.roll(vertices, -1, axis=0) - vertices
+        lengths = np.hypot(*chords.T)
+    else:
+        lengths = np.array([_length(edge, 1.0) for edge in control])
+    ends = np.cumsum(lengths)
+    points = []
+    for s in np.asarray(arc_lengths, dtype=float) % ends[-1]:
+        k = min(int(np.searchsorted(ends, s, side="right")), len(ends) - 1)
+        passed = s - (ends[k] - lengths[k])
+        if control is None:
+            points.append(vertices[k] + passed / lengths[k] * chords[k])
+        else:
+            points.append(_at_length(control[k], passed))
+    return np.array(points)
+
+
+def _at_length(edge: Array, passed: float) -> Array:
+    lo, hi = 0.0, 1.0
+    for _ in range(_BISECTIONS):
+        middle = (lo + hi) / 2
+        lo, hi = (middle, hi) if _length(edge, middle) < passed else (lo, middle)
+    t, s = lo, 1 - lo
+    result: Array = s**3 * edge[0] + 3 * s * s * t * edge[1] + 3 * s * t * t * edge[2] + t**3 * edge[3]
+    return result
+
+
+def _length(edge: Array, end: float) -> float:
+    """Of a cubic from its beginning to a parameter."""
+    panels = end * (np.arange(_PANELS)[:, None] + (1 + _NODES) / 2) / _PANELS
+    t = panels.ravel()[:, None]
+    d = 3 * np.diff(edge, axis=0)
+    speed = np.hypot(*((1 - t) ** 2 * d[0] + 2 * t * (1 - t) * d[1] + t**2 * d[2]).T)
+    return float(end / (2 * _PANELS) * (speed.reshape(_PANELS, -1) @ _WEIGHTS).sum())

@@ -1,0 +1,95 @@
+"""Which part of a surface triangles cover, no place of it counted twice."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+
+_ON = 1e-9  # of the reach: a triangle is on a face
+_MISSED = 1e-6  # of an area: what triangles may be beside faces, or over one another
+
+
+def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> float:
+    """The part of a mesh's area that triangles (m, 3, 3) with inward normals cover [-].
+
+    -1 where one of them is not on faces, or where two of them lie over one another.
+    """
+    t = np.asarray(vertices)[np.asarray(faces)]
+    cross = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
+    whole = np.linalg.norm(cross, axis=1) / 2
+    surface, reach = _Flat(t, -cross / (2 * whole)[:, None]), float(np.abs(vertices).max())
+    given = _Flat(np.asarray(corners), np.asarray(normals))
+    used, covered = set[int](), 0.0
+    for k, triangle in enumerate(given.corners):
+        flat = (triangle - triangle.mean(axis=0)) @ given.normals[k]
+        on = surface.beside(triangle, given.normals[k], reach)
+        if np.abs(flat).max() > _ON * reach or not len(on):
+            return -1.0
+        same = on[np.abs(t[on] - triangle).max(axis=(1, 2)) <= _ON * reach]
+        size = _area(given.corners[k])
+        if len(same):
+            if int(same[0]) in used:
+                return -1.0
+            used.add(int(same[0]))
+        elif sum(_common(triangle, t[j], given.normals[k]) for j in on) < size * (1 - _MISSED):
+            return -1.0
+        else:
+            others = given.beside(triangle, given.normals[k], reach)
+            if any(
+                j != k and _common(triangle, given.corners[j], given.normals[k]) > _MISSED * size
+                for j in others
+            ):
+                return -1.0
+        covered += size
+    return covered / float(whole.sum())
+
+
+class _Flat:
+    """Triangles (m, 3, 3) and their unit normals (m, 3)."""
+
+    def __init__(self, corners: Array, normals: Array) -> None:
+        self.corners, self.normals = corners, normals
+        self._centres = corners.mean(axis=1)
+        self._least, self._most = corners.min(axis=1), corners.max(axis=1)
+
+    def beside(self, triangle: Array, normal: Array, reach: float) -> np.ndarray:
+        """Which are in the plane of a triangle, with the same normal, and near it."""
+        found = np.linalg.norm(self.normals - normal, axis=1) <= _ON
+        found &= np.abs((self._centres - triangle.mean(axis=0)) @ normal) <= _ON * reach
+        near = (self._least <= triangle.max(axis=0) + _ON * reach) & (
+            self._most >= triangle.min(axis=0) - _ON * reach
+        )
+        return np.flatnonzero(found & near.all(axis=1))
+
+
+def _area(triangle: Array) -> float:
+    return float(np.linalg.norm(np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2)
+
+
+def _common(one: Array, other: Array, normal: Array) -> float:
+    """The area that two triangles of one plane share: the one cut along the sides of the other."""
+    u = np.linalg.svd(normal[None])[2][1:]
+    left, cutter = [p @ u.T for p in one], other @ u.T
+    way = np.sign(_turn(*cutter))
+    for p, q in pairwise((*cutter, cutter[0])):
+        heights = [way * _turn(p, q, r) for r in left]
+        kept = []
+        for (a, b), (r, s) in zip(_around(heights), _around(left), strict=True):
+            if a >= 0:
+                kept.append(r)
+            if a * b < 0:
+                kept.append(r + a / (a - b) * (s - r))
+        left = kept
+    return abs(sum(float(r[0] * s[1] - r[1] * s[0]) for r, s in _around(left))) / 2
+
+
+def _turn(p: Array, q: Array, r: Array) -> float:
+    """Twice the area of a triangle, positive counter-clockwise."""
+    return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+
+def _around(items: list[Any]) -> list[tuple[Any, Any]]:
+    """Each with the next, the last with the first."""
+    return list(zip(items, items[1:] + items[:1], strict=True))
