@@ -23,8 +23,8 @@ from regrasp.verification.exact import check_state, exact, least_angle, rounded
 from regrasp.verification.float_filter import Checked, check_rows
 from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
-from regrasp.verification.placed.chosen_grasps import Chosen, verify_chosen, verify_proof
-from regrasp.verification.placed.protocol import Proof
+from regrasp.verification.placed.chosen_grasps import verify_chosen, verify_proof
+from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
 from regrasp.verification.protocols import Course, Plan, Scaling
 from regrasp.verification.records import check_record

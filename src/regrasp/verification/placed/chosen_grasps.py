@@ -2,92 +2,21 @@
 
 from fractions import Fraction
 from math import atan, hypot, inf, isfinite, sin
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.arc_lengths import points_at
 from regrasp.verification.placed.areas import share_of
 from regrasp.verification.placed.balls import makes_ball
 from regrasp.verification.placed.placements import check_proof
-from regrasp.verification.placed.protocol import Proof
+from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.touching import Touching
 from regrasp.verification.verdict import Verification
-
-
-class Shape(Protocol):
-    """An outline as ``verify`` sees it."""
-
-    def polygon(self) -> Array:
-        """(k, 2) vertices relative to the centre of mass [m]."""
-
-    def hole_polygons(self) -> tuple[Array, ...]:
-        """(k, 2) vertices of each hole, counter-clockwise [m]."""
-
-    def cubics(self) -> Array | None:
-        """(k, 4, 2) control points of a smooth boundary's pieces, None of a polygon [m]."""
-
-
-class Chosen(Protocol):
-    """What ``verify`` needs to know of a chosen grasp, whoever chose it."""
-
-    @property
-    def shape(self) -> Any:
-        """The outline, a ``Shape``, or the mesh."""
-
-    @property
-    def objective(self) -> str:
-        """Its word."""
-
-    @property
-    def grasp(self) -> Grasp:
-        """The contacts."""
-
-    @property
-    def states(self) -> tuple[GraspState, ...]:
-        """Forces for the loads."""
-
-    @property
-    def value(self) -> float:
-        """Of the worst load."""
-
-    @property
-    def bound(self) -> float:
-        """No placement is better."""
-
-    @property
-    def places(self) -> Array:
-        """(k,) arc lengths of the contacts, or (k, 3) their points in a mesh's coordinates [m]."""
-
-    @property
-    def others(self) -> tuple[Any, ...]:
-        """Grasps that were passed over, with their ``value``."""
-
-    @property
-    def certificate(self) -> Any:
-        """The proof of the bound, a ``Proof`` or a ``SurfaceProof``."""
-
-    @property
-    def max_force(self) -> float | None:
-        """Limit on every force [N]."""
-
-    @property
-    def min_normal(self) -> float:
-        """With which every finger pushes at the least [N]."""
-
-    @property
-    def length(self) -> float | None:
-        """By which torques are divided, of ``wrench_ball`` [m]."""
-
-    @property
-    def deviations(self) -> Array | None:
-        """(m, 3) of ``answered`` [N, N m]."""
-
 
 # objective: size of a force, norm of the sizes, power of the norm
 _MEANINGS = {

@@ -1,4 +1,4 @@
-"""What a proof about placements is to those who check it."""
+"""What proofs about placements, and grasps chosen by them, are to those who check them."""
 
 from fractions import Fraction
 from typing import Any, Protocol
@@ -6,6 +6,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
 
 Point = tuple[Fraction, Fraction]
 
@@ -90,3 +92,72 @@ def after_each(count: int, rings: Any) -> np.ndarray:
     """(k,) which vertex comes after each of so many on its ring."""
     parts = np.split(np.arange(count), [] if rings is None else np.asarray(rings)[1:])
     return np.concatenate([np.roll(part, -1) for part in parts])
+
+
+class Shape(Protocol):
+    """An outline as ``verify`` sees it."""
+
+    def polygon(self) -> Array:
+        """(k, 2) vertices relative to the centre of mass [m]."""
+
+    def hole_polygons(self) -> tuple[Array, ...]:
+        """(k, 2) vertices of each hole, counter-clockwise [m]."""
+
+    def cubics(self) -> Array | None:
+        """(k, 4, 2) control points of a smooth boundary's pieces, None of a polygon [m]."""
+
+
+class Chosen(Protocol):
+    """What ``verify`` needs to know of a chosen grasp, whoever chose it."""
+
+    @property
+    def shape(self) -> Any:
+        """The outline, a ``Shape``, or the mesh."""
+
+    @property
+    def objective(self) -> str:
+        """Its word."""
+
+    @property
+    def grasp(self) -> Grasp:
+        """The contacts."""
+
+    @property
+    def states(self) -> tuple[GraspState, ...]:
+        """Forces for the loads."""
+
+    @property
+    def value(self) -> float:
+        """Of the worst load."""
+
+    @property
+    def bound(self) -> float:
+        """No placement is better."""
+
+    @property
+    def places(self) -> Array:
+        """(k,) arc lengths of the contacts, or (k, 3) their points in a mesh's coordinates [m]."""
+
+    @property
+    def others(self) -> tuple[Any, ...]:
+        """Grasps that were passed over, with their ``value``."""
+
+    @property
+    def certificate(self) -> Any:
+        """The proof of the bound, a ``Proof`` or a ``SurfaceProof``."""
+
+    @property
+    def max_force(self) -> float | None:
+        """Limit on every force [N]."""
+
+    @property
+    def min_normal(self) -> float:
+        """With which every finger pushes at the least [N]."""
+
+    @property
+    def length(self) -> float | None:
+        """By which torques are divided, of ``wrench_ball`` [m]."""
+
+    @property
+    def deviations(self) -> Array | None:
+        """(m, 3) of ``answered`` [N, N m]."""

@@ -17,7 +17,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
-from regrasp.verification.placed.chosen_grasps import Shape
+from regrasp.verification.placed.protocol import Shape
 from regrasp.verification.verdict import Verification
 
 _TO_THE_END = 1 - 2e-6  # of the way to the end of a side, which counts as all of it
