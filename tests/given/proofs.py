@@ -33,6 +33,8 @@ def planar(vertices, loads, nodes, **changes) -> SimpleNamespace:
             "number": np.array([node[2] for node in nodes]),
             "twists": np.array([node[3] for node in nodes], dtype=float),
             "control": None,
+            "margin": 0.0,
+            "rings": None,
         }
         | changes
     )

@@ -1,21 +1,25 @@
 """Points of a boundary by arc length: of polygons by sums, of cubics by Gauss' quadrature and bisection."""
 
+from typing import Any
+
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.protocol import after_each
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _PANELS = 8
 _BISECTIONS = 60
 
 
-def points_at(arc_lengths: Array, vertices: Array, control: Array | None) -> Array:
+def points_at(arc_lengths: Array, vertices: Array, control: Array | None, rings: Any = None) -> Array:
     """(k, 2) points of a closed boundary, counted from its first vertex, modulo its length [m].
 
-    vertices: (m, 2) of a polygon. control: (m, 4, 2) of its edges where they are cubics, None elsewhere.
+    vertices: (m, 2) of a polygon, of one ring after the other. control: (m, 4, 2) of its edges where they are
+    cubics, None elsewhere. rings: the first vertex of each, None of one alone.
     """
     if control is None:
-        chords = np.roll(vertices, -1, axis=0) - vertices
+        chords = vertices[after_each(len(vertices), rings)] - vertices
         lengths = np.hypot(*chords.T)
     else:
         lengths = np.array([_length(edge, 1.0) for edge in control])

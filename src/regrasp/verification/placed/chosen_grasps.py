@@ -32,6 +32,7 @@ _MEANINGS = {
     "wrench_ball": ("normal", "largest", 1),
 }
 _LEVELS = ("friction_use", "angle", "force", "answered", "wrench_ball")
+_LARGEST = ("angle", "force", "answered", "wrench_ball")  # what is best as large as can be
 _ANY_LOAD = ("answered", "wrench_ball")  # their proofs have loads that no state holds
 _CLOSE = 1e-9  # of a value, the same in another order of the sums
 
@@ -158,7 +159,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     """That the bound is what the proof proves."""
     _, _, power = _MEANINGS[chosen.objective]
     value, bound = chosen.value, chosen.bound
-    largest = chosen.objective in ("angle", "force", *_ANY_LOAD)
+    largest = chosen.objective in _LARGEST
     if not (bound >= value if largest else bound <= value):
         return [f"bound {bound:.12g} is {'below' if largest else 'above'} the value {value:.12g}"]
     if not isfinite(value) or not isfinite(bound):
@@ -198,7 +199,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
 
 def _check_others(chosen: Chosen) -> list[str]:
     """That no grasp that was passed over is better than the bound."""
-    sign = -1 if chosen.objective in ("angle", *_ANY_LOAD) else 1
+    sign = -1 if chosen.objective in _LARGEST else 1
     slack = _CLOSE * abs(chosen.bound)
     better = [other.value for other in chosen.others if not sign * (other.value - chosen.bound) >= -slack]
     return [f"a grasp passed over has the value {better[0]:.12g}, better than the bound"] if better else []
@@ -299,7 +300,7 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
                 broken.append("two contacts are nearer than the least distance")
     if chosen.objective not in _ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
-    return broken + _off_their_places(chosen, points_at(chosen.places, given, control))
+    return broken + _off_their_places(chosen, points_at(chosen.places, given, control, proof.rings))
 
 
 def _all_shown(chosen: Chosen, loads: Array) -> bool:
