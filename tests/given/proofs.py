@@ -245,3 +245,36 @@ def planar_points(proof):
                 yield at, [-along[1], along[0]]
 
     return points
+
+
+def most_work(proof, y, point, normal) -> float:
+    """The most that a force of size 1 does, of a thousand in the cone and its edges."""
+    n = np.array(normal) / np.hypot(*normal)
+    t = np.array([n[1], -n[0]])
+    v = np.array([y[0] - y[2] * point[1], y[1] + y[2] * point[0]])
+    shares = np.linspace(-proof.friction, proof.friction, 1001)
+    forces = n + shares[:, None] * t
+    if proof.size == "force":
+        forces /= np.hypot(*forces.T)[:, None]
+    return max(0.0, float((forces @ v).max()))
+
+
+SHAPES = (
+    [[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]],
+    [[-2, -1], [3, -1], [0, 5]],
+    [[8, 8], [12, 11], [9, 15], [5, 12]],  # sides of 3, 4 and 5
+)
+
+
+def random_planar(rng, size, norm, splits, **changes):
+    vertices = SHAPES[int(rng.integers(len(SHAPES)))]
+    count = len(vertices)
+    chosen = sorted(rng.choice(count, size=int(rng.integers(2, count + 1)), replace=False).tolist())
+    sides = [[e, e + float(rng.choice([0, 0.25])), e + float(rng.choice([0.5, 1]))] for e in chosen]
+    loads = rng.integers(-3, 4, size=(2, 3)) + np.array([0, 0.5, 0])
+    nodes = random_tree(rng, sides, int(rng.integers(1, 4)), loads, splits)
+    given = {
+        "friction": float(rng.choice([0, 0.25, 1, 3])), "size": size, "norm": norm, "sides": np.array(sides),
+        "centre_of_mass": np.array(rng.integers(-2, 9, size=2), dtype=float),
+    }  # fmt: skip
+    return planar(vertices, loads, nodes, **given | changes)

@@ -7,17 +7,11 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from proofs import everything, limit, planar, planar_points, random_tree
-from regrasp.verification.placed.cubic import CubicEdges
+from proofs import SHAPES, everything, limit, most_work, planar, planar_points, random_planar
 from regrasp.verification.placed.straight import StraightEdges
 
 pytestmark = pytest.mark.oracle
 
-SHAPES = (
-    [[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]],
-    [[-2, -1], [3, -1], [0, 5]],
-    [[8, 8], [12, 11], [9, 15], [5, 12]],  # sides of 3, 4 and 5
-)
 KINDS = [(size, norm) for size in ("normal", "force") for norm in ("sum", "squares", "largest")]
 
 
@@ -31,20 +25,6 @@ def said(proof) -> str:
     return "; ".join(rg.verify(proof).violations)
 
 
-def random_proof(rng, size, norm, splits, **changes):
-    vertices = SHAPES[int(rng.integers(len(SHAPES)))]
-    count = len(vertices)
-    chosen = sorted(rng.choice(count, size=int(rng.integers(2, count + 1)), replace=False).tolist())
-    sides = [[e, e + float(rng.choice([0, 0.25])), e + float(rng.choice([0.5, 1]))] for e in chosen]
-    loads = rng.integers(-3, 4, size=(2, 3)) + np.array([0, 0.5, 0])
-    nodes = random_tree(rng, sides, int(rng.integers(1, 4)), loads, splits)
-    given = {
-        "friction": float(rng.choice([0, 0.25, 1, 3])), "size": size, "norm": norm, "sides": np.array(sides),
-        "centre_of_mass": np.array(rng.integers(-2, 9, size=2), dtype=float),
-    }  # fmt: skip
-    return planar(vertices, loads, nodes, **given | changes)
-
-
 def proven(proof) -> Fraction:
     return limit(proof, planar_points(proof))
 
@@ -53,7 +33,7 @@ def proven(proof) -> Fraction:
 def test_a_bound_is_proven_to_its_last_digit(size, norm) -> None:
     rng, seen = np.random.default_rng(0), 0
     for k in range(8):
-        proof = random_proof(rng, size, norm, splits=k % 4)
+        proof = random_planar(rng, size, norm, splits=k % 4)
         most = float(proven(proof))
         if not most > 0:
             continue
@@ -77,7 +57,7 @@ def test_a_bound_is_proven_to_its_last_digit(size, norm) -> None:
 
 def test_scales_of_twists_and_of_lengths_do_not_count() -> None:
     rng = np.random.default_rng(1)
-    proof = random_proof(rng, "force", "squares", 2)
+    proof = random_planar(rng, "force", "squares", 2)
     most = float(proven(proof))
     for scale in (1e-300, 2.0**-500, 1e-60, 1e60, 2.0**500):
         for factor, good in (1 - 1e-12, True), (1 + 1e-12, False):
@@ -127,7 +107,7 @@ def test_every_part_of_a_tree_counts() -> None:
     rng = np.random.default_rng(3)
     seen = set()
     for _ in range(30):
-        proof = random_proof(rng, "normal", "sum", splits=3, bound=1e-9)
+        proof = random_planar(rng, "normal", "sum", splits=3, bound=1e-9)
         if proven(proof) < 1e-6:
             continue
         assert said(proof) == ""
@@ -256,98 +236,17 @@ def test_numbers_that_overflow_are_none_to_compute_with() -> None:
     assert "none to compute with" in said(proof)  # a side of no length
 
 
-def bent(vertices) -> np.ndarray:
-    """The sides of a polygon as cubics."""
-    p = np.array(vertices, dtype=float)
-    q = np.roll(p, -1, axis=0)
-    return np.stack([p, (2 * p + q) / 3, (p + 2 * q) / 3, q], axis=1)
-
-
-@pytest.mark.parametrize(("size", "norm"), KINDS)
-def test_cubics_that_are_straight_prove_as_much(size, norm) -> None:
-    rng, seen = np.random.default_rng(4), 0
-    for k in range(4):
-        proof = random_proof(rng, size, norm, splits=k % 3)
-        most = float(proven(proof))
-        proof.control = bent(proof.vertices)
-        if most > 0:
-            seen += 1
-            for factor, good in (1 - 1e-9, True), (1 + 1e-9, False):
-                proof.bound = most * factor
-                assert (said(proof) == "") == good, (k, factor)
-    assert seen > 1
-
-
-CURVE = np.array([[[3, -1], [4, 0.5], [3.5, 2], [2, 3]], [[2, 3], [0, 4], [-2, 2], [-2, 0]],
-                  [[-2, 0], [-2, -3], [1, -3], [3, -1]]], dtype=float)  # fmt: skip
-
-
-def on_curve(edge: int, t: float):
-    s, c = 1 - t, CURVE[edge]
-    d = np.diff(c, axis=0)
-    along = s * s * d[0] + 2 * s * t * d[1] + t * t * d[2]
-    return s**3 * c[0] + 3 * s * s * t * c[1] + 3 * s * t * t * c[2] + t**3 * c[3], [-along[1], along[0]]
-
-
-@pytest.mark.parametrize("size", ["normal", "force"])
-def test_on_curves_no_force_does_more_than_the_bound_of_a_stretch(size) -> None:
-    """Sampled places and forces; short stretches are bounded closely, in rationals and in doubles alike."""
-    rng = np.random.default_rng(5)
-    proof = planar(
-        CURVE[:, 0], [[0, -1, 0]], [([(0, 0, 0, 1)], (0, 0), 0, (0, 0, 1))], control=CURVE, size=size
-    )
-    for k in range(60):
-        proof.friction = float(rng.choice([0.0, 0.4, 1.5]))
-        edges, edge = CubicEdges(proof), int(rng.integers(3))
-        y = rng.normal(size=3)
-        width = float(rng.choice([0.25, 1e-3]))
-        lo = float(rng.uniform(0, 1 - width))
-        hi = lo + width
-        assert edges.turns_little(edge, Fraction(lo), Fraction(hi))
-        most = float(edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y]))
-        best = max(_most(proof, y, *on_curve(edge, t)) for t in np.linspace(lo, hi, 9))
-        assert best <= most * (1 + 1e-9) + 1e-12, k
-        if width == 1e-3:
-            assert most <= best + 0.02 * np.linalg.norm(y), k
-        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
-        assert rough == pytest.approx(most, rel=1e-9, abs=1e-12), k
-
-
-def _most(proof, y, point, normal) -> float:
-    """The most that a force of size 1 does, of a thousand in the cone and its edges."""
-    n = np.array(normal) / np.hypot(*normal)
-    t = np.array([n[1], -n[0]])
-    v = np.array([y[0] - y[2] * point[1], y[1] + y[2] * point[0]])
-    shares = np.linspace(-proof.friction, proof.friction, 1001)
-    forces = n + shares[:, None] * t
-    if proof.size == "force":
-        forces /= np.hypot(*forces.T)[:, None]
-    return max(0.0, float((forces @ v).max()))
-
-
-def test_stretches_of_curves_that_turn_too_far_prove_nothing() -> None:
-    """A hairpin, whose tangents at both ends are opposite."""
-    hairpin = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]], [[0, 1], [-1, 1], [-1, 0], [0, 0]]], dtype=float)
-    for hi, good in (1.0, False), (0.25, True):
-        sides = np.array([[0, 0, hi]])
-        node = (everything(sides, 1), (0, 0), 0, (0.0, 1.0, 0.0))
-        proof = planar(hairpin[:, 0], [[0, -1, 0]], [node], sides=sides, control=hairpin, bound=1e-6)
-        found = said(proof)
-        assert (found == "") == good
-        assert good or "side 0 is no stretch of an edge" in found
-
-
 def test_straight_edges_in_doubles_are_those_in_rationals() -> None:
     rng = np.random.default_rng(6)
     for k in range(60):
-        proof = random_proof(rng, ("normal", "force")[k % 2], "sum", 0)
+        proof = random_planar(rng, ("normal", "force")[k % 2], "sum", 0)
         edges, edge = StraightEdges(proof), int(rng.integers(len(proof.vertices)))
         y = rng.normal(size=3)
         lo, hi = np.sort(rng.random(2))
         exact = edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y])
         rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
         assert rough == pytest.approx(float(exact), rel=1e-12, abs=1e-12)
-        most = max(_most(proof, y, *_place(proof, edge, t)) for t in (lo, hi))
+        most = max(most_work(proof, y, *_place(proof, edge, t)) for t in (lo, hi))
         assert float(exact) == pytest.approx(most, rel=1e-5, abs=1e-9)
 
 

@@ -1,0 +1,91 @@
+"""The same on curved boundaries: straight cubics are sides, and no sampled force beats the bound of a stretch."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from proofs import everything, limit, most_work, planar, planar_points, random_planar
+from regrasp.verification.placed.cubic import CubicEdges
+
+pytestmark = pytest.mark.oracle
+
+KINDS = [(size, norm) for size in ("normal", "force") for norm in ("sum", "squares", "largest")]
+
+
+def said(proof) -> str:
+    return "; ".join(rg.verify(proof).violations)
+
+
+def proven(proof) -> Fraction:
+    return limit(proof, planar_points(proof))
+
+
+def bent(vertices) -> np.ndarray:
+    """The sides of a polygon as cubics."""
+    p = np.array(vertices, dtype=float)
+    q = np.roll(p, -1, axis=0)
+    return np.stack([p, (2 * p + q) / 3, (p + 2 * q) / 3, q], axis=1)
+
+
+@pytest.mark.parametrize(("size", "norm"), KINDS)
+def test_cubics_that_are_straight_prove_as_much(size, norm) -> None:
+    rng, seen = np.random.default_rng(4), 0
+    for k in range(4):
+        proof = random_planar(rng, size, norm, splits=k % 3)
+        most = float(proven(proof))
+        proof.control = bent(proof.vertices)
+        if most > 0:
+            seen += 1
+            for factor, good in (1 - 1e-9, True), (1 + 1e-9, False):
+                proof.bound = most * factor
+                assert (said(proof) == "") == good, (k, factor)
+    assert seen > 1
+
+
+CURVE = np.array([[[3, -1], [4, 0.5], [3.5, 2], [2, 3]], [[2, 3], [0, 4], [-2, 2], [-2, 0]],
+                  [[-2, 0], [-2, -3], [1, -3], [3, -1]]], dtype=float)  # fmt: skip
+
+
+def on_curve(edge: int, t: float):
+    s, c = 1 - t, CURVE[edge]
+    d = np.diff(c, axis=0)
+    along = s * s * d[0] + 2 * s * t * d[1] + t * t * d[2]
+    return s**3 * c[0] + 3 * s * s * t * c[1] + 3 * s * t * t * c[2] + t**3 * c[3], [-along[1], along[0]]
+
+
+@pytest.mark.parametrize("size", ["normal", "force"])
+def test_on_curves_no_force_does_more_than_the_bound_of_a_stretch(size) -> None:
+    """Sampled places and forces; short stretches are bounded closely, in rationals and in doubles alike."""
+    rng = np.random.default_rng(5)
+    proof = planar(
+        CURVE[:, 0], [[0, -1, 0]], [([(0, 0, 0, 1)], (0, 0), 0, (0, 0, 1))], control=CURVE, size=size
+    )
+    for k in range(60):
+        proof.friction = float(rng.choice([0.0, 0.4, 1.5]))
+        edges, edge = CubicEdges(proof), int(rng.integers(3))
+        y = rng.normal(size=3)
+        width = float(rng.choice([0.25, 1e-3]))
+        lo = float(rng.uniform(0, 1 - width))
+        hi = lo + width
+        assert edges.turns_little(edge, Fraction(lo), Fraction(hi))
+        most = float(edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y]))
+        best = max(most_work(proof, y, *on_curve(edge, t)) for t in np.linspace(lo, hi, 9))
+        assert best <= most * (1 + 1e-9) + 1e-12, k
+        if width == 1e-3:
+            assert most <= best + 0.02 * np.linalg.norm(y), k
+        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
+        assert rough == pytest.approx(most, rel=1e-9, abs=1e-12), k
+
+
+def test_stretches_of_curves_that_turn_too_far_prove_nothing() -> None:
+    """A hairpin, whose tangents at both ends are opposite."""
+    hairpin = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]], [[0, 1], [-1, 1], [-1, 0], [0, 0]]], dtype=float)
+    for hi, good in (1.0, False), (0.25, True):
+        sides = np.array([[0, 0, hi]])
+        node = (everything(sides, 1), (0, 0), 0, (0.0, 1.0, 0.0))
+        proof = planar(hairpin[:, 0], [[0, -1, 0]], [node], sides=sides, control=hairpin, bound=1e-6)
+        found = said(proof)
+        assert (found == "") == good
+        assert good or "side 0 is no stretch of an edge" in found
