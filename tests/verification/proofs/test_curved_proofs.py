@@ -1,4 +1,4 @@
-"""The same on curved boundaries: straight cubics are sides, and no sampled force beats the bound of a stretch."""
+"""The same on curves: straight cubics are sides, and no sampled force beats the bound of a stretch."""
 
 from fractions import Fraction
 
