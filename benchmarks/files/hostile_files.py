@@ -1,6 +1,6 @@
 """Saved plans with random edits, and whether anything false verifies.
 
-``python benchmarks/truth/hostile_files.py``
+``python benchmarks/files/hostile_files.py``
 
 Plans of every kind are written as they are saved, edited at random (``edits``), read back and verified. What
 is said is held against oracles that import nothing of the project (``tests/oracles/plan_truth.py`` and
