@@ -6,7 +6,7 @@ import pickle
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from math import inf
 from multiprocessing import Pipe
@@ -41,16 +41,7 @@ def solved_apart(
             f"a process of its own for {backend} is handed a pipe as POSIX systems do; "
             "leave isolated and time_limit out"
         )
-    ours, theirs = Pipe()
-    process = subprocess.Popen(
-        [sys.executable, "-c", _CODE, json.dumps([sys.path, theirs.fileno()])],
-        pass_fds=[theirs.fileno()],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,  # with what the solver starts
-    )
-    theirs.close()
+    ours, process = piped(_CODE)
     answering, late = False, Event()
     try:
         with ended_after(process, _START) as late:
@@ -78,6 +69,28 @@ def solved_apart(
         raise answer
     given: Solution = answer
     return Solution(program, backend, given.status, *(getattr(given, name) for name in _REST))
+
+
+def piped(
+    code: str, *more: int, environment: Mapping[str, str] | None = None
+) -> tuple["Connection[Any, Any]", subprocess.Popen[bytes]]:
+    """Our end of a pipe, and the process that runs ``code`` at the other; what it starts is of its session.
+
+    The code finds ``sys.path``, the number of its end and ``more`` in its argument, as JSON. An interrupt
+    from the keyboard is for whoever started it to handle.
+    """
+    ours, theirs = Pipe()
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, json.dumps([sys.path, theirs.fileno(), *more])],
+        pass_fds=[theirs.fileno()],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | (environment or {}),
+        start_new_session=True,
+    )
+    theirs.close()
+    return ours, process
 
 
 @contextmanager

@@ -1,19 +1,16 @@
 """A process that does cases, seen from who hands them out: started, asked, killed when it hangs, replaced."""
 
-import json
 import os
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from multiprocessing import Pipe
 from time import monotonic
 from typing import Any, NamedTuple
 
 from regrasp.errors import InvalidInput
 from regrasp.process_limits import PINNED
-from regrasp.programs.child import end_group
+from regrasp.programs.child import end_group, piped
 from regrasp.studies.cases import Case
 from regrasp.studies.task import LATE, LOST, Outcome
 
@@ -130,18 +127,8 @@ class Worker:
             raise Refused("workers are handed a pipe as POSIX systems do; give workers=0")
         if self.closed:
             raise Refused("the run has ended")
-        self._connection, theirs = Pipe()
-        given = json.dumps([sys.path, theirs.fileno(), os.getpid(), self._limits.memory])
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", _CODE, given],
-            pass_fds=[theirs.fileno()],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            env=os.environ | dict.fromkeys((*PINNED, "NUMBA_NUM_THREADS"), "1"),
-            start_new_session=True,  # an interrupt from the keyboard is the run's to handle
-        )
-        theirs.close()
+        pinned = dict.fromkeys((*PINNED, "NUMBA_NUM_THREADS"), "1")
+        self._connection, self._process = piped(_CODE, os.getpid(), self._limits.memory, environment=pinned)
         if self.closed:  # meanwhile
             end_group(self._process)
         try:

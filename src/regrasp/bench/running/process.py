@@ -1,18 +1,15 @@
 """A worker seen from the runner: started, asked, and killed when it does not answer in time."""
 
-import json
 import os
 import signal
 import subprocess
-import sys
-from multiprocessing import Pipe
 from threading import Event
 from typing import Any
 
 from regrasp.bench.running.result import CRASHED, TIMEOUT
 from regrasp.errors import InvalidInput
 from regrasp.process_limits import PINNED
-from regrasp.programs.child import awaited, end_group, ended_after
+from regrasp.programs.child import awaited, end_group, ended_after, piped
 
 _CODE = """
 import json, sys
@@ -75,18 +72,9 @@ class Worker:
             raise InvalidInput(
                 "the benchmark hands workers a pipe as POSIX systems do; run it on one of them"
             )
-        self._connection, theirs = Pipe()
-        given = json.dumps([sys.path, theirs.fileno(), os.getpid(), self._memory_limit])
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", _CODE, given],
-            pass_fds=[theirs.fileno()],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            env=os.environ | dict.fromkeys(PINNED, "1"),
-            start_new_session=True,  # an interrupt from the keyboard is the runner's to handle
+        self._connection, self._process = piped(
+            _CODE, os.getpid(), self._memory_limit, environment=dict.fromkeys(PINNED, "1")
         )
-        theirs.close()
 
     def _ended(self) -> str:
         """How the process ended, by itself; it is cleared away."""

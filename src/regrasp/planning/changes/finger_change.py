@@ -1,7 +1,7 @@
 """Planning the removal, the addition and the exchange of fingers."""
 
 from collections.abc import Sequence
-from typing import Unpack, cast
+from typing import Unpack
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import instance
@@ -9,12 +9,12 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.ends import Change, End, shared, state_among
-from regrasp.planning.changes.given_ends import grasp_and_load, kept_limits, limited
-from regrasp.planning.changes.joining import Demands, LoadFunction, joined, series_and_clock
+from regrasp.planning.changes.asked import Asked
+from regrasp.planning.changes.ends import End, state_among
+from regrasp.planning.changes.joining import LoadFunction
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import Objective
-from regrasp.planning.states.options import ChangeOptions, criteria_of, takes, with_objective
+from regrasp.planning.states.options import ChangeOptions, takes, with_objective
 from regrasp.plans.loads import LoadSeries
 from regrasp.plans.transition import Transition
 
@@ -61,21 +61,13 @@ def plan_removal(
             path keeps.
         InvalidInput: For given states that are no equilibrium inside the cones.
     """
-    options = kept_limits(start, objective, options)
-    criteria = criteria_of(objective, options)
-    demands = Demands.of(options, idle_from=idle_from)
-    series, clock = series_and_clock(load, options, demands)
-    first = series(0.0) if series is not None else cast(Wrench | None, load)
-    grasp, first = grasp_and_load(start, first)
-    last = series(series.duration) if series is not None else first
+    asked = Asked.of(start, load, objective, options, idle_from=idle_from)
+    grasp, criteria = asked.grasp, asked.criteria
     gone = _places(grasp, contact)
-    given_start = start if isinstance(start, GraspState) else None
-    given_end = None if end is None else state_among(end, grasp, last, gone, "end")
-    whole = End("start", first, given_start, with_objective(criteria, whole_objective), ())
-    rest = End("end", last, given_end, criteria, gone)
-    criteria = shared(criteria, whole, rest)
-    change = Change.between(limited(grasp, criteria.max_force), whole, rest, options)
-    return joined(change, clock, series, criteria, demands)
+    given_end = None if end is None else state_among(end, grasp, asked.last, gone, "end")
+    whole = End("start", asked.first, asked.state, with_objective(criteria, whole_objective), ())
+    rest = End("end", asked.last, given_end, criteria, gone)
+    return asked.joined(grasp, whole, rest)
 
 
 @takes(ChangeOptions)
@@ -105,28 +97,20 @@ def plan_addition(
         options
     """
     arriving = _contacts(contact)
-    options = kept_limits(start, objective, options)
-    criteria = criteria_of(objective, options)
-    demands = Demands.of(options, idle_until=idle_until)
-    series, clock = series_and_clock(load, options, demands)
-    first = series(0.0) if series is not None else cast(Wrench | None, load)
-    before, first = grasp_and_load(start, first)
-    last = series(series.duration) if series is not None else first
+    asked = Asked.of(start, load, objective, options, idle_until=idle_until)
+    before, criteria = asked.grasp, asked.criteria
     grasp = Grasp((*before, *arriving))
     if end is not None:
         instance(end, "end", GraspState)
-    if end is not None and (end.grasp != grasp or end.load != last):
+    if end is not None and (end.grasp != grasp or end.load != asked.last):
         raise InvalidInput(
             f"end must be a state of the start's contacts and the new one, in that order "
             f"({', '.join(grasp.names)}), under the same load; got {shown(end)}"
         )
-    given_start = start if isinstance(start, GraspState) else None
     new = tuple(range(len(before), len(grasp)))
-    rest = End("start", first, given_start, criteria, new)
-    whole = End("end", last, end, with_objective(criteria, whole_objective), ())
-    criteria = shared(criteria, rest, whole)
-    change = Change.between(limited(grasp, criteria.max_force), rest, whole, options)
-    return joined(change, clock, series, criteria, demands)
+    rest = End("start", asked.first, asked.state, criteria, new)
+    whole = End("end", asked.last, end, with_objective(criteria, whole_objective), ())
+    return asked.joined(grasp, rest, whole)
 
 
 @takes(ChangeOptions)
@@ -161,23 +145,15 @@ def plan_exchange(
         options
     """
     new = _contacts(arriving)
-    options = kept_limits(start, objective, options)
-    criteria = criteria_of(objective, options)
-    demands = Demands.of(options, idle_from=idle_from, idle_until=idle_until)
-    series, clock = series_and_clock(load, options, demands)
-    first = series(0.0) if series is not None else cast(Wrench | None, load)
-    before, first = grasp_and_load(start, first)
-    last = series(series.duration) if series is not None else first
+    asked = Asked.of(start, load, objective, options, idle_from=idle_from, idle_until=idle_until)
+    before, criteria = asked.grasp, asked.criteria
     gone = _places(before, leaving)
     grasp = Grasp((*before, *new))
-    given_start = start if isinstance(start, GraspState) else None
-    given_end = None if end is None else state_among(end, grasp, last, gone, "end")
+    given_end = None if end is None else state_among(end, grasp, asked.last, gone, "end")
     chosen_for = criteria if start_objective is None else with_objective(criteria, start_objective)
-    held = End("start", first, given_start, chosen_for, tuple(range(len(before), len(grasp))))
-    after = End("end", last, given_end, criteria, gone)
-    criteria = shared(criteria, held, after)
-    change = Change.between(limited(grasp, criteria.max_force), held, after, options)
-    return joined(change, clock, series, criteria, demands)
+    held = End("start", asked.first, asked.state, chosen_for, tuple(range(len(before), len(grasp))))
+    after = End("end", asked.last, given_end, criteria, gone)
+    return asked.joined(grasp, held, after)
 
 
 def _places(grasp: Grasp, contacts: str | int | Sequence[str | int]) -> tuple[int, ...]:

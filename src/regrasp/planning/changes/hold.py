@@ -1,18 +1,18 @@
 """Planning the forces of a grasp that stays under a load that changes."""
 
-from typing import Unpack, cast
+from typing import Unpack
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import instance
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.planning.changes.ends import Change, End
-from regrasp.planning.changes.given_ends import grasp_and_load, kept_limits, limited
-from regrasp.planning.changes.joining import Demands, LoadFunction, joined, series_and_clock
+from regrasp.planning.changes.asked import Asked
+from regrasp.planning.changes.ends import End
+from regrasp.planning.changes.joining import LoadFunction
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import Objective
-from regrasp.planning.states.options import ChangeOptions, criteria_of, takes, with_objective
+from regrasp.planning.states.options import ChangeOptions, takes, with_objective
 from regrasp.plans.loads import LoadSeries
 from regrasp.plans.transition import Transition
 
@@ -47,22 +47,15 @@ def plan_hold(
             limit that no path keeps.
         InvalidInput: For given states that are no equilibrium inside the cones.
     """
-    options = kept_limits(start, objective, options)
-    criteria = criteria_of(objective, options)
-    demands = Demands.of(options)
-    series, clock = series_and_clock(load, options, demands)
-    first = series(0.0) if series is not None else cast(Wrench | None, load)
-    grasp, first = grasp_and_load(start, first)
-    last = series(series.duration) if series is not None else first
+    asked = Asked.of(start, load, objective, options)
+    grasp, criteria = asked.grasp, asked.criteria
     if end is not None:
         instance(end, "end", GraspState)
-        if end.grasp != grasp or end.load != last:
+        if end.grasp != grasp or end.load != asked.last:
             raise InvalidInput(
-                f"end must be a state of the start's contacts under the load at the end, {last!r}; got "
+                f"end must be a state of the start's contacts under the load at the end, {asked.last!r}; got "
                 f"{end!r}"
             )
     chosen_for = criteria if start_objective is None else with_objective(criteria, start_objective)
-    held = End("start", first, start if isinstance(start, GraspState) else None, chosen_for, ())
-    after = End("end", last, end, criteria, ())
-    change = Change.between(limited(grasp, criteria.max_force), held, after, options)
-    return joined(change, clock, series, criteria, demands)
+    held = End("start", asked.first, asked.state, chosen_for, ())
+    return asked.joined(grasp, held, End("end", asked.last, end, criteria, ()))

@@ -5,7 +5,6 @@ that shares a hold. Where all fingers may touch everywhere it does not matter wh
 is of two certain fingers.
 """
 
-from itertools import permutations
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -68,16 +67,6 @@ class Fingering(Stances):
         a, b, c = contacts
         ids = self.holds[0]
         return int(ids[0, a, b]), int(ids[1, a, c]), int(ids[2, b, c])
-
-    def start(self, contacts: Places) -> Places:
-        """The contacts in the order in which ``ways`` gives them."""
-        return contacts if self.allowed is not None else tuple(sorted(contacts))
-
-    def ways(self, contacts: Places) -> list[Places]:
-        """How the fingers may take three contacts: one way where it does not matter which is which."""
-        if self.allowed is None:
-            return [tuple(sorted(contacts))]
-        return [w for w in permutations(contacts) if all(self.allowed[f, v] for f, v in enumerate(w))]
 
     def points(self, hold: int) -> tuple[int, int]:
         """The contacts of a hold, the first below the second."""

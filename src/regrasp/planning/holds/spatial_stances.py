@@ -1,6 +1,6 @@
 """Stances of four fingers in space: every hold is a triple of contacts (docs/facts.md, 7)."""
 
-from itertools import combinations, permutations
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -105,16 +105,6 @@ class Quads(Stances):
             spots = sorted(self._spots[f, v] for f, v in enumerate(contacts))
             places = [place_among(self.count, *three) for three in combinations(spots, 3)]
         return tuple(int(numbers[place]) for place in places)
-
-    def start(self, contacts: Places) -> Places:
-        """The contacts in the order in which ``ways`` gives them."""
-        return contacts if self.allowed is not None else tuple(sorted(contacts))
-
-    def ways(self, contacts: Places) -> list[Places]:
-        """How the fingers may take four contacts: one way where it does not matter which is which."""
-        if self.allowed is None:
-            return [tuple(sorted(contacts))]
-        return [w for w in permutations(contacts) if all(self.allowed[f, v] for f, v in enumerate(w))]
 
     def points(self, hold: int) -> tuple[int, ...]:
         """The contacts of a hold, rising."""

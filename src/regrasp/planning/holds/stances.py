@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from copy import copy
+from itertools import permutations
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -86,11 +87,13 @@ class Stances(ABC):
 
     def start(self, contacts: Places) -> Places:
         """The contacts in the order in which ``ways`` gives them."""
-        return tuple(sorted(contacts))
+        return contacts if self.allowed is not None else tuple(sorted(contacts))
 
     def ways(self, contacts: Places) -> list[Places]:
         """How the fingers may take contacts: one way where it does not matter which is which."""
-        return [tuple(sorted(contacts))]
+        if self.allowed is None:
+            return [tuple(sorted(contacts))]
+        return [w for w in permutations(contacts) if all(self.allowed[f, v] for f, v in enumerate(w))]
 
     def only(self, useful: NDArray[np.bool_]) -> "Stances":
         """The same with useful holds numbered alone; the last number stands for all others: no holds."""

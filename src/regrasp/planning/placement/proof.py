@@ -1,20 +1,16 @@
 """The proof that no placement is better than a bound: boxes that cover all of them, each with a twist."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from hashlib import sha256
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, choice, number, whole
-from regrasp.mechanics.plain import entries
-from regrasp.mechanics.value import ArrayValue
+from regrasp.planning.placement.box_proof import BoxProof, integers
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlacementProof(ArrayValue):
+class PlacementProof(BoxProof):
     """Boxes of places that cover all placements, each with a load and a twist that bound its placements.
 
     A place is u, the number of an edge plus the fraction of it passed. A box gives each finger an arc, from a
@@ -64,42 +60,13 @@ class PlacementProof(ArrayValue):
     margin: float = 0.0
     rings: np.ndarray | None = None
 
-    @property
-    def digest(self) -> str:
-        """Of all of its numbers: one that is touched no longer fits."""
-        return sha256(repr(self._plain()).encode()).hexdigest()
-
-    @property
-    def leaves(self) -> int:
-        """Boxes that are not split: what is excluded one by one."""
-        return int((self.children[:, 1] == 0).sum())
-
-    def _plain(self) -> dict[str, Any]:
-        values = ((f.name, getattr(self, f.name)) for f in fields(self))
-        given = {n: v for n, v in values if v is not None and (n != "margin" or v)}
-        return {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in given.items()}
-
-    def to_dict(self) -> dict[str, Any]:
-        """The proof as plain data, which JSON can hold; ``from_dict`` gives back the equal proof."""
-        return {**self._plain(), "digest": self.digest}
-
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """The proof of plain data; whether it proves anything ``regrasp.verify`` says.
-
-        Args:
-            data: what ``to_dict`` returned, or JSON made of it.
-
-        Raises:
-            InvalidInput: For other keys, shapes and types, and for numbers that the digest does not fit.
-        """
-        names = [f.name for f in fields(cls) if f.name not in ("control", "margin", "rings")]
-        given = entries(data, "a proof", [*names, "digest"], ("control", "margin", "rings"))
+    def _checked(cls, given: dict[str, Any]) -> Self:
         control = given.get("control")
         k = whole(given["fingers"], "fingers", least=1)
-        children = _integers(given["children"], "children", (None, 2))
+        children = integers(given["children"], "children", (None, 2))
         n = len(children)
-        proof = cls(
+        return cls(
             array(given["vertices"], "vertices", (None, 2)),
             array(given["centre_of_mass"], "centre_of_mass", (2,)),
             array(given["sides"], "sides", (None, 3)),
@@ -110,27 +77,12 @@ class PlacementProof(ArrayValue):
             choice(given["norm"], "norm", ("sum", "squares", "largest")),
             number(given["min_distance"], "min_distance", least=0),
             number(given["bound"], "bound", least=0),
-            _integers(given["arcs"], "arcs", (n, k, 2)),
+            integers(given["arcs"], "arcs", (n, k, 2)),
             array(given["ends"], "ends", (n, k, 2)),
             children,
-            _integers(given["number"], "number", (n,)),
+            integers(given["number"], "number", (n,)),
             array(given["twists"], "twists", (n, 3)),
             None if control is None else array(control, "control", (None, 4, 2)),
             number(given.get("margin", 0.0), "margin", least=0),
-            None if given.get("rings") is None else _integers(given["rings"], "rings", (None,)),
+            None if given.get("rings") is None else integers(given["rings"], "rings", (None,)),
         )
-        if given["digest"] != proof.digest:
-            raise InvalidInput("the digest of a proof does not fit its numbers: one of them was changed")
-        return proof
-
-    def __repr__(self) -> str:
-        return f"PlacementProof(bound {self.bound:.6g}, {self.fingers} fingers, {self.leaves} boxes)"
-
-
-def _integers(value: Any, what: str, shape: tuple[int | None, ...]) -> np.ndarray:
-    found = array(value, what, shape)
-    whole_numbers = found.astype(np.int64)
-    if (whole_numbers != found).any():
-        raise InvalidInput(f"{what} must be whole numbers")
-    whole_numbers.setflags(write=False)
-    return whole_numbers

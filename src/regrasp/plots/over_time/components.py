@@ -20,8 +20,8 @@ from regrasp.plots.look.style import (
     steady,
 )
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.over_time.moments import moments
 
-_SAMPLES = 201
 _DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 """Of the components along x, y and z."""
 
@@ -36,7 +36,7 @@ def plot_force_components(transition: Transition, ax: Axes | None = None, *, uni
     """
     instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
-    t = _times(transition)
+    t = moments(transition.duration)
     forces = transition.forces(t)
     colours = contact_colours(transition.grasp)
     axes = "xyz"[: transition.grasp.dimension]
@@ -81,7 +81,7 @@ def plot_wrench_components(
     instance(transition, "transition", Transition)
     i = transition.grasp.index(contact)
     ax = axes_or_new(ax)
-    t, d = _times(transition), transition.grasp.dimension
+    t, d = moments(transition.duration), transition.grasp.dimension
     wrench = transition.wrenches(t)[:, i]
     for k, axis in enumerate("xyz"[:d]):
         ax.plot(t, wrench[:, k], color=PALETTE[k], linewidth=1.4, label=f"$f_{axis}$", **marks(k, t.size))
@@ -108,10 +108,6 @@ def draw_torques(ax: Axes, t: Array, torques: Array, units: Units, **look: Any) 
     label_axis(right.yaxis, "torque", units.torque, float(np.abs(torques).max()))
     right.tick_params(labelsize=ax.yaxis.get_ticklabels()[0].get_fontsize())
     return lines
-
-
-def _times(transition: Transition) -> Array:
-    return np.linspace(0, transition.duration, _SAMPLES)
 
 
 def _finish(ax: Axes, transition: Transition, forces: Array, units: Units) -> None:

@@ -11,8 +11,7 @@ from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import PALETTE, axes_or_new, label_axis, legend, marks, steady
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.over_time.components import draw_torques
-
-_SAMPLES = 201
+from regrasp.plots.over_time.moments import moments
 
 
 def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = SI) -> Axes:
@@ -32,7 +31,7 @@ def plot_load(transition: Transition, ax: Axes | None = None, *, units: Units = 
     if not transition.load_varies:
         raise InvalidInput("the load of this path is constant; there is nothing to draw over time")
     course = transition.course
-    t = np.linspace(0, transition.duration, _SAMPLES) if course is None else course.times
+    t = moments(transition.duration) if course is None else course.times
     load = transition.load(t)
     ax = axes_or_new(ax)
     look: dict[str, Any] = {"linewidth": 1.4, "marker": "." if t.size <= 60 else "", "markersize": 4}

@@ -18,8 +18,8 @@ from regrasp.plots.look.style import (
     marks,
 )
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.over_time.moments import moments
 
-_SAMPLES = 201
 _SHOWN = 2.5  # limits up to this many times the largest force are drawn
 
 
@@ -37,7 +37,7 @@ def plot_magnitudes(transition: Transition, ax: Axes | None = None, *, units: Un
     """
     instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
-    t = _times(transition)
+    t = moments(transition.duration)
     magnitudes = np.linalg.norm(transition.wrenches(t)[..., : transition.grasp.dimension], axis=-1)
     draw_lines(ax, transition, t, magnitudes, units)
     largest = float(magnitudes.max())
@@ -60,7 +60,7 @@ def plot_angles(transition: Transition, ax: Axes | None = None, *, units: Units 
     """
     instance(transition, "transition", Transition)
     ax = axes_or_new(ax)
-    t = _times(transition)
+    t = moments(transition.duration)
     limits = np.array([contact.half_angle for contact in transition.grasp])
     draw_lines(ax, transition, t, np.degrees(limits - transition.margins(t).angle), units)
     one = len(set(limits)) == 1
@@ -95,7 +95,7 @@ def plot_margins(
     instance(transition, "transition", Transition)
     choice(objective, "objective", ("angle", "force"))
     ax = axes_or_new(ax)
-    t = _times(transition)
+    t = moments(transition.duration)
     margins = transition.margins(t)
     course = transition.course
     known = transition.margins(np.array([0.0, transition.duration]) if course is None else course.times)
@@ -116,10 +116,6 @@ def plot_margins(
         _largest(ax),
     )
     return ax
-
-
-def _times(transition: Transition) -> Array:
-    return np.linspace(0, transition.duration, _SAMPLES)
 
 
 def draw_lines(ax: Axes, transition: Transition, t: Array, values: Array, units: Units) -> None:

@@ -11,8 +11,8 @@ from regrasp.plans.transition import Transition
 from regrasp.plots.look.style import GREY, axes_or_new, contact_colours, label_axis, steady
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.over_time.magnitudes import draw_lines
+from regrasp.plots.over_time.moments import moments
 
-_SAMPLES = 201
 _SHOWN = 2.5  # limits up to this many times the fastest change are drawn
 
 
@@ -40,7 +40,7 @@ def plot_rates(
     instance(transition, "transition", Transition)
     most = _limits(transition, rate_limit)
     ax = axes_or_new(ax)
-    t = np.linspace(0, transition.duration, _SAMPLES)
+    t = moments(transition.duration)
     rates = np.linalg.norm(transition.rates(t)[..., : transition.grasp.dimension], axis=-1)
     draw_lines(ax, transition, t, rates, units)
     largest, one = float(rates.max()), len(set(most.tolist())) == 1

@@ -1,14 +1,12 @@
 """The time function T(t) (Fig. 8)."""
 
-import numpy as np
 from matplotlib.axes import Axes
 
 from regrasp.mechanics.checks import instance
 from regrasp.plans.timing import TimeScaling
 from regrasp.plots.look.style import GREY, PALETTE, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
-
-_SAMPLES = 201
+from regrasp.plots.over_time.moments import moments
 
 
 def plot_scaling(
@@ -24,7 +22,7 @@ def plot_scaling(
     """
     instance(scaling, "scaling", TimeScaling)
     ax = axes_or_new(ax)
-    t = np.linspace(0, scaling.duration, _SAMPLES)
+    t = moments(scaling.duration)
     ax.plot(t, scaling(t), color=PALETTE[0], linewidth=1.4, label="$T(t)$")
     if control:
         ax.plot(

@@ -1,20 +1,16 @@
 """The proof that no placement on a surface is better than a bound: boxes of patches, each with a twist."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from hashlib import sha256
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, choice, number, whole
-from regrasp.mechanics.plain import entries
-from regrasp.mechanics.value import ArrayValue
+from regrasp.planning.placement.box_proof import BoxProof, integers
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PatchProof(ArrayValue):
+class PatchProof(BoxProof):
     """Boxes of patches that cover all placements, each with a load and a twist that bound its placements.
 
     Patch 0 is all triangles; a group is halved into groups, a triangle across an edge, again and
@@ -57,37 +53,10 @@ class PatchProof(ArrayValue):
     number: np.ndarray
     twists: Array
 
-    @property
-    def digest(self) -> str:
-        """Of all of its numbers: one that is touched no longer fits."""
-        return sha256(repr(self._plain()).encode()).hexdigest()
-
-    @property
-    def leaves(self) -> int:
-        """Boxes that are not split: what is excluded one by one."""
-        return int((self.children[:, 1] == 0).sum())
-
-    def _plain(self) -> dict[str, Any]:
-        values = ((f.name, getattr(self, f.name)) for f in fields(self))
-        return {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in values}
-
-    def to_dict(self) -> dict[str, Any]:
-        """The proof as plain data, which JSON can hold; ``from_dict`` gives back the equal proof."""
-        return {**self._plain(), "digest": self.digest}
-
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """The proof of plain data; whether it proves anything ``regrasp.verify`` says.
-
-        Args:
-            data: what ``to_dict`` returned, or JSON made of it.
-
-        Raises:
-            InvalidInput: For other keys, shapes and types, and for numbers that the digest does not fit.
-        """
-        given = entries(data, "a proof", [*(f.name for f in fields(cls)), "digest"])
+    def _checked(cls, given: dict[str, Any]) -> Self:
         k = whole(given["fingers"], "fingers", least=1)
-        proof = cls(
+        return cls(
             array(given["corners"], "corners", (None, 3, 3)),
             array(given["normals"], "normals", (None, 3)),
             k,
@@ -97,25 +66,10 @@ class PatchProof(ArrayValue):
             choice(given["norm"], "norm", ("sum", "squares", "largest")),
             number(given["min_distance"], "min_distance", least=0),
             number(given["bound"], "bound", least=0),
-            _integers(given["spans"], "spans", (None, 2)),
-            _integers(given["halves"], "halves", (None, 3)),
-            _integers(given["boxes"], "boxes", (None, k)),
-            _integers(given["children"], "children", (None, 2)),
-            _integers(given["number"], "number", (None,)),
+            integers(given["spans"], "spans", (None, 2)),
+            integers(given["halves"], "halves", (None, 3)),
+            integers(given["boxes"], "boxes", (None, k)),
+            integers(given["children"], "children", (None, 2)),
+            integers(given["number"], "number", (None,)),
             array(given["twists"], "twists", (None, 6)),
         )
-        if given["digest"] != proof.digest:
-            raise InvalidInput("the digest of a proof does not fit its numbers: one of them was changed")
-        return proof
-
-    def __repr__(self) -> str:
-        return f"PatchProof(bound {self.bound:.6g}, {self.fingers} fingers, {self.leaves} boxes)"
-
-
-def _integers(value: Any, what: str, shape: tuple[int | None, ...]) -> np.ndarray:
-    found = array(value, what, shape)
-    whole_numbers = found.astype(np.int64)
-    if (whole_numbers != found).any():
-        raise InvalidInput(f"{what} must be whole numbers")
-    whole_numbers.setflags(write=False)
-    return whole_numbers
