@@ -10,8 +10,7 @@ states are judged so everywhere (``exact_judge``).
 """
 
 import argparse
-import json
-from collections import Counter
+from functools import partial
 from math import inf
 from pathlib import Path
 
@@ -19,6 +18,7 @@ import numpy as np
 
 import regrasp as rg
 from boundary import KINDS, boundary
+from chunks import Judged, gathered, run
 from exact_judge import is_escape, is_held, state_faults
 
 CHUNK = 50
@@ -76,36 +76,17 @@ def outcome(at: object, grasp: rg.Grasp, load: np.ndarray, inside: bool, objecti
     return f"wrong: {faults[0]}" if faults else "held"
 
 
-def run(count: int, folder: Path, only: tuple[float, ...] = DISTANCES) -> None:
-    """Grasps up to ``count``, those of chunks not yet there."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for first in range(0, count, CHUNK):
-        path = folder / f"{first:08d}.json"
-        if path.exists():
-            continue
-        counts: Counter[str] = Counter()
-        faults: list[list] = []
-        for seed in range(first, min(first + CHUNK, count)):
-            for d, distance, word in verdicts(seed, only):
-                counts[f"{d}|{distance:g}|{word.split(':')[0]}"] += 1
-                if word.split(":")[0] not in ("held", "proven", "at its limit"):
-                    faults.append([seed, distance, word])
-        part = path.with_suffix(".part")
-        part.write_text(
-            json.dumps({"counts": counts, "faults": faults, "grasps": min(CHUNK, count - first)}),
-            encoding="utf-8",
-        )
-        part.replace(path)
+def judged(seed: int, only: tuple[float, ...] = DISTANCES) -> Judged:
+    """What is counted of a grasp."""
+    for d, distance, word in verdicts(seed, only):
+        plain = word.split(":")[0]
+        fault = None if plain in ("held", "proven", "at its limit") else [seed, distance, word]
+        yield f"{d}|{distance:g}|{plain}", fault
 
 
 def table(folder: Path) -> str:
     """Counts by dimension and distance, in Markdown."""
-    counts: Counter[str] = Counter()
-    grasps = 0
-    for path in sorted(folder.glob("*.json")):
-        chunk = json.loads(path.read_text(encoding="utf-8"))
-        counts.update(chunk["counts"])
-        grasps += chunk["grasps"]
+    counts, _, grasps = gathered(folder)
     words = sorted({key.split("|")[2] for key in counts})
     lines = [
         f"{grasps:,} grasps",
@@ -131,7 +112,7 @@ def main() -> None:
     parser.add_argument("--only", type=float, nargs="+", choices=DISTANCES, default=DISTANCES)
     options = parser.parse_args()
     if not options.table:
-        run(options.count, options.output, tuple(options.only))
+        run(options.count, CHUNK, options.output, partial(judged, only=tuple(options.only)))
     print(table(options.output))
 
 

@@ -10,18 +10,18 @@ them.
 """
 
 import argparse
-import json
 import signal
 import sys
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator
 from math import inf
 from pathlib import Path
 
 import numpy as np
 
+import chunks
 import regrasp as rg
+from chunks import Judged, gathered
 from exact_judge import is_escape, is_held, state_faults
 from hostile import Problem, problem
 from regrasp.cli.warming import warm_up
@@ -239,38 +239,27 @@ def warm() -> None:
 
 def run(count: int, folder: Path) -> None:
     """Problems up to ``count``, those of chunks not yet there."""
-    folder.mkdir(parents=True, exist_ok=True)
     warm()
-    for first in range(0, count, CHUNK):
-        path = folder / f"{first:08d}.json"
-        if path.exists():
-            continue
-        counts: Counter[str] = Counter()
-        faults: list[list] = []
-        for seed in range(first, min(first + CHUNK, count)):
-            for verb, word in answers(seed):
-                is_wrong = word.startswith(WRONG) or word in ("refused though held", "solver failed")
-                counts[f"{verb}|{word.split(':')[0]}"] += 1
-                if is_wrong or word.startswith("invalid"):
-                    faults.append([seed, verb, word])
-        part = path.with_suffix(".part")
-        part.write_text(json.dumps({"counts": counts, "faults": faults, "problems": CHUNK}), encoding="utf-8")
-        part.replace(path)
+    chunks.run(count, CHUNK, folder, judged)
+
+
+def judged(seed: int) -> Judged:
+    """What is counted of a problem."""
+    for verb, word in answers(seed):
+        is_fault = is_wrong(word) or word.startswith("invalid")
+        yield f"{verb}|{word.split(':')[0]}", [seed, verb, word] if is_fault else None
+
+
+def is_wrong(word: str) -> bool:
+    """Whether an answer is none."""
+    return word.startswith(WRONG) or word in ("refused though held", "solver failed")
 
 
 def again(folder: Path) -> str:
     """Faults that are left of those of ``folder``, and the number of problems they were in."""
-    known = [
-        fault for path in sorted(folder.glob("*.json")) for fault in json.loads(path.read_text())["faults"]
-    ]
-    seeds = sorted({seed for seed, _, word in known if not word.startswith("invalid")})
+    seeds = sorted({seed for seed, _, word in gathered(folder)[1] if not word.startswith("invalid")})
     warm()
-    left = [
-        f"{seed} {verb}: {word}"
-        for seed in seeds
-        for verb, word in answers(seed)
-        if word.startswith(WRONG) or word in ("refused though held", "solver failed")
-    ]
+    left = [f"{seed} {verb}: {word}" for seed in seeds for verb, word in answers(seed) if is_wrong(word)]
     return "\n".join(
         [f"{len(seeds)} problems with faults; of today's answers, {len(left)} are faults", *left]
     )
@@ -278,12 +267,7 @@ def again(folder: Path) -> str:
 
 def table(folder: Path) -> str:
     """Counts per verb, in Markdown."""
-    counts: Counter[str] = Counter()
-    problems = 0
-    for path in sorted(folder.glob("*.json")):
-        chunk = json.loads(path.read_text(encoding="utf-8"))
-        counts.update(chunk["counts"])
-        problems += chunk["problems"]
+    counts, _, problems = gathered(folder)
     verbs = list(dict.fromkeys(key.split("|")[0] for key in counts))
     words = sorted(
         {key.split("|")[1] for key in counts}, key=lambda word: (word.startswith((*WRONG, "refused")), word)
