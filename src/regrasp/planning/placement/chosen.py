@@ -12,8 +12,8 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
-from regrasp.planning.placement.proof import PlacementProof
-from regrasp.planning.placement.space.patch_proof import PatchProof
+from regrasp.planning.placement.proofs.patch_proof import PatchProof
+from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 
 
 @dataclass(frozen=True, eq=False, repr=False)

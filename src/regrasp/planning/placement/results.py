@@ -18,7 +18,7 @@ from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
 from regrasp.planning.placement.laws import Law
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import AnsweredLevel, Level, Shown
-from regrasp.planning.placement.proof import PlacementProof
+from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import RingSides, Sides
 from regrasp.planning.states.choosing import choose_state

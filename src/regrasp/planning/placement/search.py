@@ -8,7 +8,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.laws import Law
-from regrasp.planning.placement.proof import PlacementProof
+from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.sides import RingSides, Sides
 
 MOST_BOXES = 200_000

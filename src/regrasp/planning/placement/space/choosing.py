@@ -15,8 +15,8 @@ from regrasp.mesh.clear import clear_faces
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
 from regrasp.planning.placement.laws import LEVELS, Law
+from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.search import Progress
-from regrasp.planning.placement.space.patch_proof import PatchProof
 from regrasp.planning.placement.space.patches import patches_of
 from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state

@@ -6,7 +6,7 @@ from typing import Any, Self
 import numpy as np
 
 from regrasp.mechanics.checks import Array, array, choice, number, whole
-from regrasp.planning.placement.box_proof import BoxProof, integers
+from regrasp.planning.placement.proofs.box_proof import BoxProof, integers
 
 
 @dataclass(frozen=True, eq=False, repr=False)
