@@ -50,8 +50,11 @@ def wrench_balls(
         except ValueError:
             raise InvalidInput(f"length must be a number or {grasps.shape}, got {given.shape}") from None
     result = np.empty(len(grasps.positions))
-    for rows in grasps.blocks():
+
+    def work(rows: slice) -> None:
         result[rows] = most * _radii(grasps, rows, lengths[rows], total)
+
+    grasps.each_block(work)
     return result.reshape(grasps.shape)
 
 

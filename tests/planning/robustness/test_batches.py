@@ -42,8 +42,42 @@ def test_tolerances_of_arrays_are_those_of_each(fingers: int) -> None:
             value = getattr(alone, key)
             if value < inf:
                 assert getattr(found, key)[i] == pytest.approx(value, rel=1e-8, abs=1e-10), key
+        np.testing.assert_allclose(found.position[i], alone.position, rtol=1e-7, atol=1e-10)
+        kept = rg.least_stiffness(state, stiffness=stiffness[i])
+        assert found.stiffness[i] == pytest.approx(kept, rel=1e-9, abs=1e-12)
         wrench = rg.Criteria("wrench", stiffness=stiffness[i]).objective.value(state)
         assert found.wrench[i] * state.grasp.size**0 == pytest.approx(wrench, rel=1e-8)
+
+
+def test_springs_of_arrays_differ_by_direction_and_idle_fingers_do_not_answer() -> None:
+    rng = np.random.default_rng(1)
+    states = grasps(12, 3)
+    spread = rng.normal(size=(12, 3, 2, 2))
+    springs = spread @ spread.transpose(0, 1, 3, 2) + 0.1 * np.eye(2)
+    positions, normals, frictions, forces = (
+        np.array([getattr(owner, name) for owner in owners])
+        for name, owners in (
+            ("positions", [s.grasp for s in states]), ("normals", [s.grasp for s in states]),
+            ("frictions", [s.grasp for s in states]), ("forces", states),
+        )
+    )  # fmt: skip
+    found = rg.batch_tolerances(positions, normals, frictions, forces, stiffness=springs)
+    for i, state in enumerate(states):
+        alone = rg.tolerances(state, stiffness=springs[i]).withstood
+        assert found.centre[i] == pytest.approx(alone.centre, rel=1e-8)
+        if state.grasp.contacts[0].max_force is None and np.isfinite(found.position[i]).all():
+            np.testing.assert_allclose(found.position[i], alone.position, rtol=1e-7)
+    two = grasps(1, 2)[0]
+    idle = rg.Contact([0.1, 5.0], [0, -1], 0.5, name="idle")
+    state = rg.GraspState(two.grasp.with_contact(idle), two.load, [*two.forces, [0, 0]])
+    g = state.grasp
+    both = rg.batch_tolerances(g.positions, g.normals, g.frictions, state.forces)
+    alone = rg.tolerances(state).withstood
+    assert both.load == pytest.approx(alone.load)
+    np.testing.assert_allclose(both.position, alone.position, rtol=1e-7)
+    assert both.position[2] == inf
+    with pytest.raises(rg.InvalidInput, match="symmetric and positive definite"):
+        rg.batch_tolerances(positions, normals, frictions, forces, stiffness=np.ones((12, 3, 2, 2)))
 
 
 @pytest.mark.parametrize("norm", ["Linf", "L1"])
@@ -118,7 +152,8 @@ def test_states_of_arrays_are_those_of_each(fingers: int, dimension: int) -> Non
     given = arrays(12, fingers, dimension)
     for objective, limit in (
         ("force", 4.0),
-        ("force", None),
+        ("angle", None),
+        ("friction_use", 4.0),
         ("effort", None),
         ("peak", None),
         ("peak_normal", 6.0),

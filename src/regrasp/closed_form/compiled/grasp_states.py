@@ -7,10 +7,10 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import INNER, compiled, digest
 from regrasp.closed_form.compiled.sharing import shared
-from regrasp.closed_form.conic import balance, cone_program, grasp_states
+from regrasp.closed_form.conic import balance, cone_program, grasp_states, levels, state_program
 from regrasp.closed_form.conic.balance import Room
 
-_MODULES = cone_program, balance, grasp_states
+_MODULES = cone_program, balance, state_program, levels, grasp_states
 _best_state = compiled(_MODULES, inline=False)["best_state"]
 
 
@@ -35,7 +35,10 @@ def _room(n, d):  # type: ignore[no-untyped-def]
         np.zeros((rows, unknowns)),
         np.zeros(n),
         np.zeros(n),
+        np.zeros(n),
         np.zeros((n, d)),
+        np.zeros((n, d)),
+        np.zeros(unknowns),
     )
 
 
@@ -53,6 +56,7 @@ def _loop(sources: str) -> Any:
         mu,
         limits,
         forces,
+        used,
         twists,
         found,
     ):
@@ -62,7 +66,7 @@ def _loop(sources: str) -> Any:
         for k in range(begin, end):
             found[k] = _best_state(
                 objective, matrices[k], loads[k], normals[k], tangents[k], mu[k], limits[k], peak_ratio, n, d,
-                room, forces[k], twists[k],
+                room, forces[k], used[k], twists[k],
             )  # fmt: skip
         return 0
 
@@ -70,4 +74,4 @@ def _loop(sources: str) -> Any:
 
 
 best_states = _loop(digest(_MODULES))
-"""Writes forces (m, n, d), twists (m, q) and verdicts (m,) of ``best_state``."""
+"""Writes forces (m, n, d), limits (m, n), twists (m, q) and verdicts (m,) of ``best_state``."""

@@ -9,9 +9,10 @@ _FLAT = 1e-9
 class Room(NamedTuple):
     """Arrays that one grasp after the other is written into, for n contacts of d numbers and q loads.
 
-    qr: (nd, q). tau: (q,). basis: (nd, nd). base: (nd,). A: (rows, nd + 1). b, s, z: (rows,). c, x: (nd +
-    1,). first: (3n + 2,). vectors: (12, rows). h: (nd + 1, nd + 1). scaled: (rows, nd + 1). mu, limits: (n,).
-    deep: (n, d) forces well inside.
+    qr: (nd, q). tau: (q,). basis: (nd, nd). base: (nd,). A: (rows, nd + 1). b, s, z: (rows,). c, x, start:
+    (nd + 1,). first: (3n + 2,). vectors: (12, rows). h: (nd + 1, nd + 1). scaled: (rows, nd + 1). mu, limits:
+    (n,). weights: (n,) how deep in a cone a unit of depth is. deep,
+    trial: (n, d) forces well inside, and of the last step.
     """
 
     qr: Any
@@ -30,7 +31,10 @@ class Room(NamedTuple):
     scaled: Any
     mu: Any
     limits: Any
+    weights: Any
     deep: Any
+    trial: Any
+    start: Any
 
 
 def split(matrix: Any, load: Any, count: int, q: int, room: Room) -> bool:

@@ -1,6 +1,8 @@
 """Arrays of planar grasps, checked: positions, normals and frictions of n fingers, many grasps at once."""
 
-from collections.abc import Iterator
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -64,10 +66,15 @@ class PlanarGrasps(NamedTuple):
         far = np.sqrt((self.positions**2).sum(axis=-1)).max(axis=1)
         return np.where(far > 0, far, 1.0)
 
-    def blocks(self) -> Iterator[slice]:
-        """The grasps, ``BLOCK`` at a time."""
-        for first in range(0, len(self.positions), BLOCK):
-            yield slice(first, first + BLOCK)
+    def each_block(self, work: Callable[[slice], None]) -> None:
+        """Call ``work`` for ``BLOCK`` grasps at a time, on all cores: NumPy lets go of Python's lock."""
+        blocks = [slice(first, first + BLOCK) for first in range(0, len(self.positions), BLOCK)]
+        if len(blocks) < 2:
+            for rows in blocks:
+                work(rows)
+            return
+        with ThreadPoolExecutor(min(len(blocks), _cores())) as pool:
+            list(pool.map(work, blocks))
 
     def wrenches(self, rows: slice, directions: Array, lengths: Array) -> Array:
         """(k, n, ..., 3) of forces along ``directions`` (k, n, ..., 2), torques over lengths (k,)."""
@@ -75,3 +82,9 @@ class PlanarGrasps(NamedTuple):
         torques = r[..., 0] * directions[..., 1] - r[..., 1] * directions[..., 0]
         torques = torques / lengths.reshape(-1, *[1] * (torques.ndim - 1))
         return np.concatenate([directions, torques[..., None]], axis=-1)
+
+
+def _cores() -> int:
+    """That this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1

@@ -10,7 +10,6 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
@@ -23,6 +22,8 @@ from regrasp.planning.robustness.views import View
 
 _STEPS = 24  # finer near 0, where little may fail and hold again
 _SECTIONS, _ROUNDS = 12, 9
+_ZOOMS = 6
+_NEXT = 1e-4  # its square is the first length of all, so that a dip after it has three around it
 _DIRECTIONS = 8
 _TURN = 3.0  # of a normal, at most [rad]
 
@@ -45,23 +46,68 @@ def farthest_offsets(
 def _first_failure(moving: "_Moving", most: float) -> tuple[float, tuple[str, str]]:
     """The least length in any direction, and which finger fails there and how."""
     ways = _directions(moving.view.grasp.dimension)
-    steps = most * ((np.arange(_STEPS) + 1) / _STEPS) ** 2
-    fails = moving.fails(steps, ways)  # (ways, steps)
-    first = np.where(fails.any(axis=1), fails.argmax(axis=1), _STEPS)
-    if first.min() == _STEPS:
+    steps = most * np.append(_NEXT, (np.arange(_STEPS) + 1) / _STEPS) ** 2
+    left = moving.left(np.tile(steps, (len(ways), 1)), ways)  # (ways, steps, n)
+    fails = np.asarray((left < 0).any(axis=2))
+    first = np.where(fails.any(axis=1), fails.argmax(axis=1), steps.size)
+    ends = np.append(0.0, steps)
+    high = np.append(steps, inf)[first]
+    low = ends[first]
+    for way, at in _dips(moving, ways, steps, left).items():
+        if at < high[way]:
+            high[way], low[way] = at, ends[np.searchsorted(ends, at) - 1]
+    if high.min() == inf:
         return inf, ("", "")
-    ways = ways[first == first.min()]
-    ends = np.append(0.0, steps)[first.min() : first.min() + 2]
-    low, width = float(ends[0]), float(ends[1] - ends[0])
+    near = low < high.min()
+    ways, start = ways[near], float(low[near].min())
+    width = float(high.min()) - start
     for _ in range(_ROUNDS):
-        inner = low + width * (np.arange(_SECTIONS) + 1) / _SECTIONS
-        fails = moving.fails(inner, ways)
+        inner = start + width * (np.arange(_SECTIONS) + 1) / _SECTIONS
+        fails = np.asarray((moving.left(np.tile(inner, (len(ways), 1)), ways) < 0).any(axis=2))
         first = np.where(fails.any(axis=1), fails.argmax(axis=1), _SECTIONS)
         k = min(int(first.min()), _SECTIONS - 1)
         ways = ways[first == first.min()]
         width /= _SECTIONS
-        low += k * width
-    return low, moving.who((low + 2 * width) * ways[0])
+        start += k * width
+    return start, moving.who((start + 2 * width) * ways[0])
+
+
+def _dips(moving: "_Moving", ways: Array, steps: Array, left: Array) -> dict[int, float]:
+    """By way, the least length between steps at which a finger fails that holds at both.
+
+    What a finger has left is smooth, so where it is least between three steps a parabola finds the bottom.
+    """
+    middle = left[:, 1:-1]
+    bottoms = (middle >= 0) & (middle <= left[:, :-2]) & (middle <= left[:, 2:])
+    way, k, finger = np.nonzero(bottoms & np.isfinite(left[:, :-2] + left[:, 2:]))
+    if not way.size:
+        return {}
+    x = np.stack([steps[k], steps[k + 1], steps[k + 2]])
+    v = np.stack([left[way, k + j, finger] for j in range(3)])
+    found: dict[int, float] = {}
+    for _ in range(_ZOOMS):
+        at = _vertex(x, v)
+        value = moving.left(at[:, None], ways[way])[np.arange(way.size), 0, finger]
+        for place in np.flatnonzero(value < 0).tolist():
+            found[way[place]] = min(found.get(way[place], inf), float(at[place]))
+        lower, right = value < v[1], at > x[1]
+        inner_x, inner_v = np.where(lower, at, x[1]), np.where(lower, value, v[1])
+        outer_x, outer_v = np.where(lower, x[1], at), np.where(lower, v[1], value)
+        replaced = right != lower  # the end on the left is what is not the new middle's side
+        x = np.stack([np.where(replaced, x[0], outer_x), inner_x, np.where(replaced, outer_x, x[2])])
+        v = np.stack([np.where(replaced, v[0], outer_v), inner_v, np.where(replaced, outer_v, v[2])])
+    return found
+
+
+def _vertex(x: Array, v: Array) -> Array:
+    """(m,) where the parabola through three points (3, m) is least, well inside of them."""
+    a, b = x[1] - x[0], x[2] - x[1]
+    p, q = (v[0] - v[1]) / a, (v[2] - v[1]) / b  # not negative
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shift = (p * b - q * a) / (2 * (p + q))
+    shift = np.where(np.isfinite(shift), shift, 0.0)
+    shift = np.where(np.abs(shift) < 1e-3 * (a + b), np.where(b > a, 0.1 * b, -0.1 * a), shift)
+    return np.asarray(x[1] + np.clip(shift, -0.9 * a, 0.9 * b))
 
 
 def _directions(dimension: int) -> Array:
@@ -96,12 +142,11 @@ class _Moving:
         self.across = float((np.trace(inner) - self.along) / (grasp.dimension - 1))
         self.working = view.state.forces.any(axis=1)
 
-    def fails(self, lengths: Array, ways: Array) -> NDArray[np.bool_]:
-        """(ways, lengths) whether some finger fails."""
-        offsets = (ways[:, None] * lengths[:, None]).reshape(-1, ways.shape[1])
+    def left(self, lengths: Array, ways: Array) -> Array:
+        """(ways, lengths, n) what fingers have left for lengths (ways, lengths); negative where they fail."""
+        offsets = (ways[:, None] * lengths[:, :, None]).reshape(-1, ways.shape[1])
         spares = self._spares(offsets)
-        broken = (np.minimum(spares.slipping, spares.exceeding) < 0).any(axis=1)
-        return np.asarray(broken.reshape(len(ways), lengths.size))
+        return np.minimum(spares.slipping, spares.exceeding).reshape(*lengths.shape, -1)
 
     def who(self, offset: Array) -> tuple[str, str]:
         """Which finger is farthest outside, and how."""
