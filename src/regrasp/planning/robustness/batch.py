@@ -113,7 +113,8 @@ class _Planar:
         self.t = np.stack([-self.n[..., 1], self.n[..., 0]], axis=-1)
         self.edges = np.stack([-self.t, self.t], axis=2) + (self.mu[..., None] * self.n)[:, :, None]
         self.room = np.einsum("mnea,mna->mne", self.edges, f)
-        self.springs = np.where(f.any(axis=2)[..., None, None], springs, 0.0)  # nobody commands the idle ones
+        working: Flags = np.array(f.any(axis=2))  # nobody commands the idle ones
+        self.springs = np.where(working[..., None, None], springs, 0.0)
         axes = np.broadcast_to(np.eye(2), (*f.shape[:2], 2, 2))
         self.blocks = grasps.wrenches(rows, axes, self.sizes)  # (m, n, 2, 3): G', torques divided by sizes
         held = np.einsum("mnax,mnab,mnby->mxy", self.blocks, self.springs, self.blocks)
