@@ -25,11 +25,9 @@ def state_lies(state: dict) -> str:
     """What is wrong with a state of plain data."""
     judge, state = Judge(), plainly(state)
     load = state["load"]
-    force = list(load["force"])
-    torque = load["torque"] if isinstance(load["torque"], list) else [load["torque"]]
     try:
-        _state(judge, state["grasp"]["contacts"], state["forces"], [*force, *torque])
-    except (KeyError, TypeError, ValueError, IndexError, ZeroDivisionError):
+        _state(judge, state["grasp"]["contacts"], state["forces"], vector(load))
+    except (KeyError, TypeError, ValueError, IndexError, ArithmeticError):
         return "a state has no form"
     return "a state is out of balance, its cones or its limits" if judge.false else ""
 
@@ -138,8 +136,8 @@ def _loads_shown(data: dict, proof: dict, word: str) -> str:
 
 
 def vector(load: dict) -> list[float]:
-    torque = load["torque"] if isinstance(load["torque"], list) else [load["torque"]]
-    return [*load["force"], *torque]
+    torque = load.get("torque", [0.0] * (2 * len(load["force"]) - 3))
+    return [*load["force"], *(torque if isinstance(torque, list) else [torque])]
 
 
 def _off_places(data: dict, contacts: list[dict]) -> str:

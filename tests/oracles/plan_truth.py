@@ -45,7 +45,7 @@ def truth(plan: dict) -> bool | None:
             _regrasp(judge, plan)
         else:
             _transition(judge, plan)
-    except (KeyError, TypeError, IndexError, ValueError, AttributeError, ZeroDivisionError):
+    except (KeyError, TypeError, IndexError, ValueError, AttributeError, ArithmeticError):
         judge.false = True  # of no form
     return judge.verdict
 

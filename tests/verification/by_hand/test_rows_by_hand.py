@@ -1,6 +1,7 @@
 """Rows that doubles could settle wrongly, names one after the other, time functions, one by one."""
 
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 from math import inf
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ import pytest
 import regrasp as rg
 from foreign import Plan, Record, Scaling, course, cross, soft_pair, solid_cross
 from regrasp.verification import verify_setpoints
+from regrasp.verification.exact import check_state, load_size
 from regrasp.verification.falling import steepest
 
 pytestmark = pytest.mark.contract
@@ -63,7 +65,7 @@ def test_no_forces_hold_no_load(make) -> None:
 def test_forces_beside_which_a_load_is_small_hold_it_to_a_thousandth() -> None:
     """Squeezes of 2^32 and a load of 1: rounding alone may be 2^-8, what is asked is 2^-10."""
     grasp, forces = cross((0.75,) * 4, force=2.0**32)
-    for off, good in (0.9, True), (1.1, False), (1.9, False):
+    for off, good in (0.9, True), (1.0, True), (1 + 2.0**-8, False), (1.9, False):
         rows = np.array([forces] * 3)
         rows[:, 0, 1] += 0.5
         rows[:, 2, 1] += 0.5
@@ -71,6 +73,46 @@ def test_forces_beside_which_a_load_is_small_hold_it_to_a_thousandth() -> None:
         found = said(along(grasp, rows, [[0, -1.0, 0]] * 3))
         assert (found == "") == good, off
         assert good or "instant 1: the load is not held" in found
+
+
+def test_the_load_that_is_to_be_held_is_the_largest_of_a_plan() -> None:
+    """A residual of 2^-12 at the start, where the load is 2^-20; later it is 1."""
+    grasp, forces = cross((0.75,) * 4, force=2.0**32)
+    rows, loads = np.array([forces] * 3), np.zeros((3, 3))
+    rows[1:, 0, 1] += 0.5
+    rows[1:, 2, 1] += 0.5
+    loads[0, 1], loads[1:, 1] = 2.0**-12, -1.0
+    plan = along(grasp, rows, loads)
+    assert said(plan) == ""
+    assert verify_setpoints(plan, rows).ok
+    loads[1:], rows[1:] = loads[0], rows[0]
+    assert "the load is not held" in said(along(grasp, rows, loads))
+    for lever in (1.0, 4.0):
+        far = rg.Grasp(rg.Contact([x, 0], [-np.sign(x), 0], 0.5) for x in (-lever, 1.0))
+        assert load_size(far, np.array([[0.0, 0, 8.0], [1.0, 0, 0]])) == 8 / lever
+    for d, torque in ((2, 0.0), (3, 0.0)):
+        origin = rg.Grasp(rg.Contact([0.0] * d, [-x, 0, 0][:d], 0.5) for x in (-1, 1))
+        assert load_size(origin, np.array([[3.0, 4.0] + [torque] * (3 * d - 5)])) == 5
+
+
+def test_cones_are_those_of_the_very_numbers() -> None:
+    """Forces a bit inside and a bit outside of cones, about normals whose length is 1 but for last bits."""
+    rng, seen = np.random.default_rng(0), set()
+    for _ in range(150):
+        d = int(rng.integers(2, 4))
+        n = rng.normal(size=d)
+        contact = rg.Contact(np.zeros(d), n, float(rng.uniform(0.1, 2)), name="A")
+        n, across = contact.normal, rng.normal(size=d)
+        across -= (across @ n) * n
+        force = n + contact.friction * across / np.linalg.norm(across)
+        force[0] = np.nextafter(force[0], rng.choice([-9, 9]))
+        f, m, mu = ([Fraction(x) for x in v] for v in (force.tolist(), n.tolist(), [contact.friction]))
+        push, ff, nn = (sum(a * b for a, b in zip(*v, strict=True)) for v in ((f, m), (f, f), (m, m)))
+        outside = ff * nn > (1 + mu[0] ** 2) * push**2
+        state = rg.GraspState(rg.Grasp([contact]), rg.Wrench([0.0] * d), [force])
+        assert ("outside its friction cone" in "; ".join(check_state(state, "A")[2])) == outside
+        seen.add(outside)
+    assert seen == {True, False}
 
 
 def test_the_worst_residual_is_that_of_all_rows() -> None:
@@ -225,6 +267,12 @@ def test_what_says_itself_what_it_is_about_takes_nothing_else() -> None:
     ):  # fmt: skip
         with pytest.raises(rg.InvalidInput, match="verify takes nothing else beside it"):
             rg.verify(cut, **more)
+
+
+def test_steps_alone_make_no_regrasp() -> None:
+    for more in ({"steps": ()}, {"orientations": (0.0,)}):
+        with pytest.raises(rg.InvalidInput, match="verify needs a plan"):
+            rg.verify(SimpleNamespace(**more))
 
 
 def test_a_record_is_judged_choice_by_choice() -> None:
