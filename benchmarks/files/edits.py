@@ -74,6 +74,8 @@ def _edit(data: Any, place: tuple[Any, ...], rng: Random) -> str:
 
 def _number(old: float, rng: Random) -> float:
     how = rng.random()
+    if isinstance(old, int) and abs(old) > 10**300:
+        return rng.choice((0, -old))
     if how < 0.45:
         new = old * (1 + rng.choice((-1, 1)) * 10.0 ** rng.randint(-17, 0))
     elif how < 0.6:

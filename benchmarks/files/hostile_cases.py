@@ -129,6 +129,13 @@ def _chosen(objective: str, **options: Any) -> rg.ChosenGrasp:
     )
 
 
+STATES: dict[str, Callable[[], rg.GraspState]] = {
+    "state": lambda: rg.choose_state(GRASP, LOAD),
+    "state in space": lambda: rg.choose_state(BALL, WEIGHT),
+    "state of soft fingers": lambda: rg.choose_state(_soft(), rg.Wrench([0, -3.0, 0], [0.5, 0, 0])),
+}
+
+
 @dataclass(frozen=True)
 class Case:
     """Plain data of one plan, how it is read and judged, and what is true of an edit of it.
@@ -146,18 +153,19 @@ class Case:
 def cases(folder: Path) -> Iterator[Case]:
     """Every kind, one after the other."""
     for name, make in PLANS.items():
-        yield _of_plan(name, make(), folder)
+        yield of_plan(name, make(), folder)
     for name, make in CHOSEN.items():
-        yield _of_choice(name, make(), folder)
-    yield _of_regions("regions", rg.contact_regions(BRACKET, _on(BRACKET, 0.12, 0.37, 0.7), LOAD))
-    for name, state in (
-        ("state", rg.choose_state(GRASP, LOAD)),
-        ("state in space", rg.choose_state(BALL, WEIGHT)),
-        ("state of soft fingers", rg.choose_state(_soft(), rg.Wrench([0, -3.0, 0], [0.5, 0, 0]))),
-    ):
-        yield _of_state(name, state)
+        yield of_choice(name, make(), folder)
+    yield regions()
+    for name, make in STATES.items():
+        yield of_state(name, make())
     for name in ("removal", "turn", "regrasp"):
-        yield _of_setpoints(f"set-points, {name}", PLANS[name](), folder)
+        yield of_setpoints(f"set-points, {name}", PLANS[name](), folder)
+
+
+def regions() -> Case:
+    """Contact regions, which have no file: their values as plain data."""
+    return of_regions("regions", rg.contact_regions(BRACKET, _on(BRACKET, 0.12, 0.37, 0.7), LOAD))
 
 
 def _saved(plan: Any, folder: Path) -> Any:
@@ -171,11 +179,13 @@ def _reread(data: Any, folder: Path) -> str:
     return "\n".join(rg.verify(read_plan(file)).violations)
 
 
-def _of_plan(name: str, plan: Any, folder: Path) -> Case:
+def of_plan(name: str, plan: Any, folder: Path) -> Case:
+    """A transition or a regrasp, as a file."""
     return Case(name, _saved(plan, folder), lambda data: _reread(data, folder), lambda data, ok: truth(data))
 
 
-def _of_choice(name: str, chosen: rg.ChosenGrasp, folder: Path) -> Case:
+def of_choice(name: str, chosen: rg.ChosenGrasp, folder: Path) -> Case:
+    """A chosen grasp, as a file, whose proof a forger may have signed."""
     good = _saved(chosen, folder)
     kind = type(chosen.certificate)
 
@@ -206,7 +216,8 @@ def _of_choice(name: str, chosen: rg.ChosenGrasp, folder: Path) -> Case:
     return Case(name, good, told, true)
 
 
-def _of_regions(name: str, regions: rg.ContactRegions) -> Case:
+def of_regions(name: str, regions: rg.ContactRegions) -> Case:
+    """Regions as plain data."""
     good = {
         "polygon": regions.shape.polygon().tolist(),
         "grasp": regions.grasp.to_dict(),
@@ -221,28 +232,32 @@ def _of_regions(name: str, regions: rg.ContactRegions) -> Case:
         try:
             ring, arcs, places = (np.array(data[k], dtype=float) for k in ("polygon", "arcs", "places"))
             numbers = {k: float(data[k]) for k in ("half_width", "max_force")}
+            grasp, corners = data["grasp"], list(data["corners"])
             if ring.ndim != 2 or len(ring) < 3 or arcs.ndim != 2 or not np.isfinite(ring).all():
                 return "no regions"
         except (KeyError, TypeError, ValueError, OverflowError):
             return "no regions"
         given = SimpleNamespace(
-            shape=SimpleNamespace(polygon=lambda: ring), grasp=rg.Grasp.from_dict(data["grasp"]),
+            shape=SimpleNamespace(polygon=lambda: ring), grasp=rg.Grasp.from_dict(grasp),
             arcs=arcs, places=places, alone=np.zeros((len(arcs), 2)), **numbers,
-            corners=tuple(map(rg.GraspState.from_dict, data["corners"])),
+            corners=tuple(map(rg.GraspState.from_dict, corners)),
         )  # fmt: skip
         return "\n".join(rg.verify(given).violations)
 
     return Case(name, good, told, lambda data, ok: not region_lies(data) if ok else None, ())
 
 
-def _of_state(name: str, state: rg.GraspState) -> Case:
+def of_state(name: str, state: rg.GraspState) -> Case:
+    """A state as plain data."""
+
     def told(data: Any) -> str:
         return "\n".join(check_state(rg.GraspState.from_dict(data), "state")[2])
 
     return Case(name, state.to_dict(), told, lambda data, ok: not state_lies(data) if ok else None, ())
 
 
-def _of_setpoints(name: str, plan: Any, folder: Path) -> Case:
+def of_setpoints(name: str, plan: Any, folder: Path) -> Case:
+    """A table of set-points."""
     file = folder / "setpoints.csv"
     write_setpoints(plan, file, 8.0)
     header, *rows = [line.split(",") for line in file.read_text(encoding="utf-8").splitlines()]
@@ -267,7 +282,7 @@ def _same_rows(good: dict[str, Any], data: Any) -> bool | None:
     """Whether rows are those of the plan but for rounding; None where it is near."""
     try:
         one, other = (np.array(table["rows"], dtype=float) for table in (good, data))
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, OverflowError):
         return False
     if data.get("header") != good["header"]:
         return None

@@ -6,7 +6,7 @@ Plans of every kind are written as they are saved, edited at random (``edits``),
 is said is held against oracles that import nothing of the project (``tests/oracles/plan_truth.py`` and
 ``placement_truth.py``): a lie is what verifies and is false, a false alarm what does not and is true. An
 exception that is not ``InvalidInput`` is a traceback, and more than 10 s of processor time are a hang. Half
-of the edits of proofs fit their digest again, as a forger's would. EDITS a kind (400), SEED (0), KINDS and
+of the edits of proofs fit their digest again, as a forger's would. EDITS a kind (2,000), SEED (0), KINDS and
 SECONDS in the environment; results in ``results/hostile_files.json``.
 """
 
@@ -50,7 +50,11 @@ def tried(case: Case, edits: int, rng: Random, until: float) -> dict[str, Any]:
         data, how = edited(case.data, rng, case.kept)
         verdict, words = _judged(case, data)
         if verdict in ("verified", "not verified") and data != case.data:
-            expected = case.true(data, verdict == "verified")
+            try:
+                with np.errstate(all="ignore"):
+                    expected = case.true(data, verdict == "verified")
+            except (KeyError, TypeError, ValueError, IndexError, ArithmeticError):
+                expected = False  # an oracle that cannot read it
             if verdict == "verified" and expected is False:
                 verdict = "lies"
             elif verdict == "not verified" and expected is True:
@@ -91,7 +95,7 @@ def _judged(case: Case, data: Any) -> tuple[str, str]:
 
 
 def main() -> None:
-    edits, seed = int(os.environ.get("EDITS", "400")), int(os.environ.get("SEED", "0"))
+    edits, seed = int(os.environ.get("EDITS", "2000")), int(os.environ.get("SEED", "0"))
     wanted = os.environ.get("KINDS", "")
     until = time.monotonic() + float(os.environ.get("SECONDS", "1e9"))
     rows = []

@@ -201,6 +201,10 @@ def _anywhere(proof: dict, rng) -> tuple[np.ndarray, np.ndarray]:
     return at - centre, np.array([-along[1], along[0]]) / np.hypot(*along)
 
 
+def _cross(r, f):
+    return r[0] * f[1] - r[1] * f[0] if len(r) == 2 else np.cross(r, f)
+
+
 def _least(placement, mu: float, load: np.ndarray, size: str, norm: str) -> float:
     """The norm of forces that hold a load, of the least largest or summed weight; infinite for none."""
     edges, columns = [], []
@@ -210,7 +214,7 @@ def _least(placement, mu: float, load: np.ndarray, size: str, norm: str) -> floa
             (cos(2 * pi * k / 12), sin(2 * pi * k / 12)) for k in range(12)]  # fmt: skip
         some = [normal + mu * np.array(way) @ tangents for way in ways]
         edges.append(some)
-        columns += [np.append(f, np.cross(point, f)) for f in some]
+        columns += [np.append(f, _cross(point, f)) for f in some]
     n, per = len(columns), len(edges[0])
     G = np.array(columns).T
     weights = np.ones(n) if size == "normal" else np.linalg.norm(np.concatenate(edges), axis=1)

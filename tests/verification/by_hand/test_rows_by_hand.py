@@ -250,6 +250,13 @@ def test_how_fast_a_time_function_falls_at_most() -> None:
             assert float(found) == pytest.approx(most, rel=2e-4), (degree, spans)
 
 
+def test_a_time_function_that_names_no_degree_is_cubic_where_it_can_be() -> None:
+    for count in range(2, 8):
+        control = tuple((np.linspace(1, 0, count) ** 2).tolist())
+        named = SimpleNamespace(duration=1.0, control=control, degree=min(3, count - 1))
+        assert steepest(SimpleNamespace(duration=1.0, control=control)) == steepest(named)
+
+
 def test_of_very_large_splines_control_values_are_the_bound() -> None:
     control = np.r_[1.0, np.linspace(1, 0, 4000), 0.0]
     control[2000] = control[2001]
