@@ -229,6 +229,9 @@ def test_ends_of_cuts_are_on_their_sides() -> None:
         goal=goal, boxes=np.array([[1, 3, 0, 1, 0, 1]], dtype=float), twists=np.array([[0, -1.0, 0]])
     )
     assert "of the goal" not in said(inside)
+    for box in ([1, 3, 0, 1, 0, 0.25], [1, 3, 0, 0.25, 0, 1]):  # one of the two places is in it
+        inside.boxes = np.array([box], dtype=float)
+        assert "places of the goal on sides 3 and 1 may hold" in said(inside)
 
 
 @pytest.mark.parametrize(

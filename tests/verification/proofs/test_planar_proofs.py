@@ -160,6 +160,13 @@ def test_children_share_out_fingers_of_one_arc() -> None:
     ):
         assert "is not covered by the boxes it is split into" in told(*wrong), wrong
     assert told((left, root[1]), (right, root[1])) == ""  # one of two alike: the other is still anywhere
+    empty, all_again = (0, -1, 0.0, 3.0), (0, 1, 0.0, 3.0)  # before the first side
+    nodes = [
+        (everything(sides, 1), (1, 2), 0, twist),
+        ([empty], (0, 0), 0, twist),
+        ([all_again], (0, 0), 0, twist),
+    ]
+    assert "is not covered" in said(planar(vertices, [[0, -1, 0]], nodes, sides=sides, bound=1e-9))
     short = (0, 0, 0.0, 0.5)
     for a, b in ((short, right), (left, (1, 1, 2.25, 3.0)), ((0, 1, 0.0, 3.0), right), (left, left)):
         assert "is not covered" in told((a, a), (a, b), (b, b))

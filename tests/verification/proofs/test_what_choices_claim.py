@@ -11,6 +11,8 @@ import pytest
 import regrasp as rg
 from regrasp.verification.placed.arc_lengths import points_at
 from regrasp.verification.placed.areas import share_of
+from regrasp.verification.placed.surfaces import touches
+from regrasp.verification.placed.touching import Touching
 
 pytestmark = pytest.mark.contract
 
@@ -132,6 +134,53 @@ def test_contacts_are_at_their_places(make) -> None:
     assert "off its place" in said(replace(good, places=places * nan))
     if places.ndim == 1:
         assert said(replace(good, places=places + 8.0)) == ""  # once around
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_contacts_are_on_the_boundary_to_a_part_of_its_size(scale) -> None:
+    shape = rg.Outline(scale * np.array([[0, 0], [2, 0], [2, 2], [0, 2]]))
+    good = rg.choose_grasp(shape, 2, rg.Wrench([0, -1.0]), friction=0.5, objective="peak", tolerance=0.5)
+    touching = Touching(good.certificate)
+    assert touching.reach == pytest.approx(scale * np.sqrt(2))
+    for contact in good.grasp:
+        for off, fine in (0.9, True), (-0.9, True), (1.1, False), (-1.1, False):
+            step = off * 2.0**-40 * touching.reach * contact.normal
+            assert (rg.Contact(contact.position + step, contact.normal, 0.5) in touching) == fine, off
+        for turn, fine in (3e-12, True), (-3e-12, True), (4e-12, False), (np.pi, False):
+            c, s = np.cos(turn), np.sin(turn)
+            normal = np.array([[c, -s], [s, c]]) @ contact.normal
+            assert (rg.Contact(contact.position, normal, 0.5) in touching) == fine, turn
+
+
+def test_contacts_are_on_the_faces_that_were_asked_about() -> None:
+    """Beside the triangles, in their plane, near the edge of the box; and off them."""
+    good = on_box()
+    proof = good.certificate
+    for contact in good.grasp:
+        assert touches(proof, contact)
+        n = np.asarray(contact.normal)
+        for axis in np.eye(3)[np.abs(n) < 0.5]:
+            far = contact.position * (1 - np.abs(axis)) + 0.999 * axis * np.abs(BOX.surface()[0]).max(axis=0)
+            assert not touches(proof, rg.Contact(far, n, 0.5))
+        reach = float(np.linalg.norm(proof.corners, axis=2).max())
+        for off, fine in (0.9, True), (1.1, False):
+            moved = contact.position + off * 2.0**-40 * reach * n
+            assert touches(proof, rg.Contact(moved, n, 0.5)) == fine
+        assert not touches(proof, rg.Contact(contact.position, -n, 0.5))
+
+
+def test_fingers_in_holes_are_at_their_places() -> None:
+    ring = [[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5]]
+    shape = rg.Outline([[0, 0], [2, 0], [2, 2], [0, 2]], holes=[ring])
+    good = rg.choose_grasp(
+        shape, 2, rg.Wrench([0, -1.0]), friction=0.5, objective="peak", tolerance=0.5, in_holes=True
+    )
+    assert said(good) == ""
+    rings = np.asarray(good.certificate.rings)
+    assert rings.tolist() == [0, 4]
+    assert said(replace(good, places=np.array(good.places) + 12.0)) == ""  # once around both
+    assert "off its place" in said(replace(good, places=np.array(good.places) + 8.0))
+    assert said(replace(good, certificate=replace(good.certificate, rings=np.array([0, 5])))) != ""
 
 
 def test_contacts_on_curves_are_at_their_places() -> None:
