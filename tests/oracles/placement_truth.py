@@ -136,7 +136,8 @@ def _loads_shown(data: dict, proof: dict, word: str) -> str:
 
 
 def vector(load: dict) -> list[float]:
-    torque = load.get("torque", [0.0] * (2 * len(load["force"]) - 3))
+    torque = load.get("torque")
+    torque = [0.0] * (2 * len(load["force"]) - 3) if torque is None else torque
     return [*load["force"], *(torque if isinstance(torque, list) else [torque])]
 
 

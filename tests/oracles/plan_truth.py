@@ -89,7 +89,9 @@ def _state(judge: Judge, contacts: list[dict], forces, load) -> None:
         for k, value in enumerate([*f, *cross(r, f)]):
             total[k] += value
         if m:
-            total[d:] = [a + m * b for a, b in zip(total[d:], n, strict=True)]
+            length = sqrt(dot(n, n))  # normals may have any
+            about = n if abs(length - 1) < 1e-9 else [x / Fraction(length) for x in n]
+            total[d:] = [a + m * b for a, b in zip(total[d:], about, strict=True)]
         arm2, scale2 = max(arm2, dot(r, r)), max(scale2, dot(f, f))
     scale2 = max(scale2, dot(load[d:], load[d:]) / (arm2 or 1))
     off2 = max(dot(total[:d], total[:d]), dot(total[d:], total[d:]) / (arm2 or 1))

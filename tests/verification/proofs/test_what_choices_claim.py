@@ -274,7 +274,10 @@ def test_regions_are_as_wide_as_they_say_about_places_that_are_the_contacts() ->
             found = said(replace(good, places=places))
             assert (found == "") == fine, (k, off)
             assert fine or f"contact {k + 1} is not at its place" in found
-    assert "a place for each finger" in said(replace(good, places=good.places[:2]))
+    for places in (good.places[:2], good.arcs, good.places[:, None]):
+        assert "a place for each finger" in said(replace(good, places=places))
+    for arcs in (good.arcs[:2], good.places, good.arcs[:, :1]):
+        assert "a place for each finger" in said(replace(good, arcs=arcs))
     around = replace(good, places=good.places + 8.0, arcs=good.arcs + 8.0)
     assert said(around) == ""
 

@@ -82,7 +82,7 @@ def _check_corners(regions: Regions) -> list[str]:
     slack = float(RESOLUTION) * float(starts[-1])
     ends, normals = [], []
     places, half = np.asarray(regions.places), regions.half_width
-    if not len(regions.arcs) == len(regions.grasp) == len(places):
+    if np.shape(regions.arcs) != (len(regions.grasp), 2) or places.shape != (len(regions.grasp),):
         return ["an arc and a place for each finger are needed"]
     for i, (lo, hi) in enumerate(regions.arcs.tolist(), 1):
         if not lo <= hi:
