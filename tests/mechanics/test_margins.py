@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
-from regrasp.mechanics.margins import margins
+from regrasp.mechanics.margins import largest_use, least_angle, margins
 from strategies import POWERS
 
 pytestmark = pytest.mark.laws
@@ -266,3 +266,20 @@ def test_values_hand_out_arrays_that_cannot_be_written() -> None:
     for array in kept:
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 0
+
+
+@pytest.mark.parametrize("width", [2, 3, 4])
+def test_the_least_margin_and_largest_use_alone_are_those_of_all(width):
+    rng = np.random.default_rng(width)
+    for k in range(200):
+        n = int(rng.integers(1, 20))  # few contacts and many are worked out differently
+        normals = rng.normal(size=(n, width))
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        forces = (normals * rng.uniform(-0.2, 2, (n, 1)) + 0.3 * rng.normal(size=(n, width))) * (k % 7 > 0)
+        forces *= (rng.random((n, 1)) < 0.8) * 10.0 ** rng.integers(-9, 9)
+        forces[k % n] = normals[k % n] * (k % 3)
+        frictions = rng.uniform(0, 1, n) * (rng.random(n) < 0.7)
+        of_all = margins(forces, normals, frictions)
+        expected = of_all.least_angle, of_all.largest_friction_use
+        found = least_angle(forces, normals, frictions), largest_use(forces, normals, frictions)
+        assert found == pytest.approx(expected, rel=1e-12, abs=1e-14, nan_ok=True)

@@ -1,7 +1,8 @@
 """How far forces are from the boundary of their friction cones."""
 
 from dataclasses import dataclass
-from math import inf, nan, pi
+from math import atan, atan2, hypot, inf, nan, pi
+from operator import mul
 
 import numpy as np
 
@@ -79,6 +80,41 @@ def margins(forces: Array, normals: Array, frictions: Array) -> Margins:
         read_only(np.where(idle, 0.0, force)),
         read_only(np.where(idle | straight, nan, use)),
     )
+
+
+_FEW = 12  # contacts whose margins take less in plain numbers than as arrays
+
+
+def least_angle(forces: Array, normals: Array, frictions: Array) -> float:
+    """``margins(...).least_angle`` of one state (n, d), to rounding."""
+    if len(forces) > _FEW:
+        return margins(forces, normals, frictions).least_angle
+    used = _used_parts(forces, normals, frictions)
+    return min([atan(mu) - atan2(tangent, normal) for normal, tangent, _, mu in used], default=nan)
+
+
+def largest_use(forces: Array, normals: Array, frictions: Array) -> float:
+    """``margins(...).largest_friction_use`` of one state (n, d), to rounding."""
+    if len(forces) > _FEW:
+        return margins(forces, normals, frictions).largest_friction_use
+    uses = []
+    for normal, tangent, size, mu in _used_parts(forces, normals, frictions):
+        if mu <= IDLE and normal > 0 and tangent <= IDLE * size:
+            continue
+        available = mu * normal
+        uses.append(tangent / available if available > 0 else inf if normal < 0 or tangent > 0 else nan)
+    return max((use for use in uses if use == use), default=nan)
+
+
+def _used_parts(forces: Array, normals: Array, frictions: Array) -> list[tuple[float, float, float, float]]:
+    """(f_n, |f_t|, |f|, mu) of the contacts that carry force."""
+    parts = []
+    for f, n, mu in zip(forces.tolist(), normals.tolist(), frictions.tolist(), strict=True):
+        normal = sum(map(mul, f, n))
+        tangent = hypot(*[a - normal * b for a, b in zip(f, n, strict=True)])
+        parts.append((normal, tangent, hypot(*f), mu))
+    least = IDLE * max([size for _, _, size, _ in parts], default=0.0)
+    return [part for part in parts if part[2] > least]
 
 
 def _over_used(values: Array, pick: np.ufunc, start: float) -> float:

@@ -7,6 +7,7 @@ import pytest
 
 import regrasp as rg
 from exhaustive import least_cost, trade_off, turns
+from regrasp.closed_form.compiled.stances import plain_others
 from regrasp.planning.holds.cost_search import cheapest
 from regrasp.planning.holds.sequences import as_sequence, preferred
 from regrasp.planning.holds.spatial_stances import Quads
@@ -152,3 +153,13 @@ def test_efforts_are_those_of_chosen_states():
             assert found[t, o] == pytest.approx(state.value / 3.0, rel=1e-6)
             held += 1
     assert held >= 8
+
+
+def test_the_holds_of_a_stance_are_found_without_compiling_too():
+    fingers = stances(small_graph(np.random.default_rng(3), 7, 1, 1.0), 1.0, None)
+    corners = fingers.holds[1].tolist()
+    for hold in range(0, len(corners), 3):
+        for point in set(range(7)) - set(corners[hold]):
+            others = plain_others(fingers.holds, hold, point)
+            expected = set(combinations(sorted([*corners[hold], point]), 3)) - {tuple(corners[hold])}
+            assert {tuple(corners[h]) for h in others} == expected

@@ -103,9 +103,12 @@ class Moves(NamedTuple):
 def others_of(holds, hold, point):  # type: ignore[no-untyped-def]
     """The other holds of a stance. Numba takes the function for this kind of ``holds``.
 
-    Were it an argument or in a closure, the loops would be compiled anew in every process.
+    Were it an argument or in a closure, the loops would be compiled anew in every process. This is what runs
+    where nothing is compiled.
     """
-    raise NotImplementedError("compiled code only: see stances")
+    from regrasp.closed_form.compiled.stances import plain_others
+
+    return plain_others(holds, hold, point)  # type: ignore[no-untyped-call]
 
 
 @kept("stances of holds", error_model="numpy")

@@ -65,6 +65,11 @@ def _place(n, i, j, k):  # type: ignore[no-untyped-def]
     return before + ((m - 1) * (m - 2) - rest * (rest - 1)) // 2 + k - j - 1
 
 
+def plain_others(holds, hold, point):  # type: ignore[no-untyped-def]
+    """``others_of`` where nothing is compiled (NUMBA_DISABLE_JIT)."""
+    return (pair_others if len(holds) == 4 else triple_others)(holds, hold, point)
+
+
 @overload(others_of)
 def _others_of(holds, hold, point):  # type: ignore[no-untyped-def]
     if len(holds) == 4:

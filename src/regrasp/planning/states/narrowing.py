@@ -19,7 +19,6 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.margins import margins
 from regrasp.mechanics.opposition import parts
 from regrasp.planning.states.objectives import LevelObjective
 
@@ -52,7 +51,7 @@ class Narrowing:
 
     def level(self, forces: Array) -> float:
         """The level of forces (n, d), over the contacts that carry any."""
-        level = self.objective.level(margins(forces, self.grasp.cones.normals, np.array(self.frictions)))
+        level = self.objective.level_of(forces, self.grasp.cones.normals, np.array(self.frictions))
         return self.top if isnan(level) else level  # nothing is used of nothing
 
     def falls(self, level: float, cones: dict[int, float]) -> Array:

@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import NEGLIGIBLE
+from regrasp.mechanics.value import kept
+from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives import FORCE
+from regrasp.planning.states.program import state_program
 from regrasp.planning.states.solving import SLACK, Chooser, Depth
 from regrasp.programs import Program
 from regrasp.programs.backends import answered_quickly
@@ -20,6 +23,7 @@ from regrasp.programs.backends import answered_quickly
 NOISE = 1e-4
 """A force below this fraction of the largest may be what a solver leaves at a finger that need not push: the
 root of its tolerance, where the optimum is flat."""
+_NO_LOAD = {2: Wrench((0.0, 0.0)), 3: Wrench((0.0, 0.0, 0.0))}
 
 
 class Depths:
@@ -54,23 +58,17 @@ class _Table:
     """A = base + friction slope entry by entry, but for the last column, where the weights are."""
 
     def __init__(self, chooser: Chooser, limits: list[float]) -> None:
-        n, w = len(chooser.grasp), chooser.grasp.width
+        n = len(chooser.grasp)
         self.chooser, self._unit = chooser, chooser.unit
         self.program: Program = chooser.program(FORCE, [1.0] * n, limits, None, SLACK)
-        twice = chooser.program(FORCE, [2.0] * n, limits, None, SLACK).A
-        A = self.program.A
-        last = int(A.indptr[-2])
-        self._slope = (twice.data - A.data)[:last]
-        self._base = A.data[:last] - self._slope
-        self._contact: NDArray[np.intp] = np.repeat(np.arange(w * n) // w, A.indptr[1:-1] - A.indptr[:-2])
-        self._rows = A.indices[last:]
-        self._each = self._rows.size // n
+        self._entries = kept(chooser.grasp, tuple(limit < chooser.loose for limit in limits), _entries)
 
     def depth(self, mu: Array, weights: Array | None) -> Depth | None:
         """For frictions (n,) and weights (n,), or those of distances."""
         n, chooser = mu.size, self.chooser
+        base, slope, contact, rows, each = self._entries
         units = np.sqrt(1 + mu * mu) if weights is None else weights
-        entries = np.concatenate([self._base + self._slope * mu[self._contact], units.repeat(self._each)])
+        entries = np.concatenate([base + slope * mu[contact], units.repeat(each)])
         answer = answered_quickly(self.program, entries)
         if answer is None:
             return None
@@ -78,14 +76,31 @@ class _Table:
         if not np.isfinite(x[-1]):
             return chooser.out_of_reach(duals)
         forces = chooser.in_newtons(x)
-        shares = duals[self._rows].reshape(n, -1)
+        shares = duals[rows].reshape(n, -1)
         return Depth(
             float(x[-1]),
             forces,
             chooser.grasp.cones.normal(forces) / self._unit,
-            np.add.reduce(shares, axis=1) if self._each > 1 else shares[:, 0],
+            np.add.reduce(shares, axis=1) if each > 1 else shares[:, 0],
             chooser.twist_of(duals),
         )
+
+
+def _entries(
+    grasp: Grasp, limited: tuple[bool, ...]
+) -> tuple[Array, Array, NDArray[np.intp], NDArray[np.int32], int]:
+    """Entries of A without friction, what a unit of it adds, and whose; the rows of weights, k of each."""
+    n, w = len(grasp), grasp.width
+    limits = [1.0 if some else inf for some in limited]
+    once, twice = (
+        state_program(grasp, _NO_LOAD[grasp.dimension], FORCE, [mu * (1 - SLACK)] * n, limits, 1.0).A
+        for mu in (1.0, 2.0)
+    )
+    last = int(once.indptr[-2])
+    slope = (twice.data - once.data)[:last]
+    contact: NDArray[np.intp] = np.repeat(np.arange(w * n) // w, once.indptr[1:-1] - once.indptr[:-2])
+    rows = once.indices[last:]
+    return once.data[:last] - slope, slope, contact, rows, rows.size // n
 
 
 def of_some(chooser: Chooser, contacts: Collection[int]) -> Chooser:

@@ -11,7 +11,7 @@ from regrasp.closed_form import choice as closed
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.margins import Margins, margins
+from regrasp.mechanics.margins import Margins, largest_use, least_angle, margins
 from regrasp.planning.states.objectives.objective import (
     Bound,
     ConvexObjective,
@@ -80,6 +80,9 @@ class _Angle(LevelObjective):
     def level(self, reached: Margins) -> float:
         return reached.least_angle
 
+    def level_of(self, forces: Array, normals: Array, frictions: Array) -> float:
+        return least_angle(forces, normals, frictions)
+
     def slopes(self, frictions: Array, narrowed: Array, level: float) -> tuple[Array, Array]:
         fall = 1 + narrowed**2
         return fall / (1 + frictions**2), fall
@@ -101,6 +104,9 @@ class _FrictionUse(LevelObjective):
 
     def level(self, reached: Margins) -> float:
         return 1 - reached.largest_friction_use
+
+    def level_of(self, forces: Array, normals: Array, frictions: Array) -> float:
+        return 1 - largest_use(forces, normals, frictions)
 
     def slopes(self, frictions: Array, narrowed: Array, level: float) -> tuple[Array, Array]:
         return np.full(frictions.size, 1 - level), frictions

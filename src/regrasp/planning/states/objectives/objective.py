@@ -14,7 +14,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.margins import Margins
+from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue, hashable
 
@@ -128,6 +128,10 @@ class LevelObjective(Objective):
     @abstractmethod
     def level(self, reached: Margins) -> float:
         """The level of forces by their margins, over the contacts that carry any; NaN where none does."""
+
+    def level_of(self, forces: Array, normals: Array, frictions: Array) -> float:
+        """The level of forces (n, d) in cones; the same by itself where margins are more than it asks for."""
+        return self.level(margins(forces, normals, frictions))
 
     @abstractmethod
     def slopes(self, frictions: Array, narrowed: Array, level: float) -> tuple[Array, Array]:
