@@ -7,7 +7,7 @@ import pytest
 
 import regrasp as rg
 from exhaustive import least_cost, trade_off, turns
-from regrasp.closed_form.compiled.stances import plain_others
+from regrasp.closed_form.compiled.hold_paths import others_of
 from regrasp.planning.holds.cost_search import cheapest
 from regrasp.planning.holds.sequences import as_sequence, preferred
 from regrasp.planning.holds.spatial_stances import Quads
@@ -160,6 +160,6 @@ def test_the_holds_of_a_stance_are_found_without_compiling_too():
     corners = fingers.holds[1].tolist()
     for hold in range(0, len(corners), 3):
         for point in set(range(7)) - set(corners[hold]):
-            others = plain_others(fingers.holds, hold, point)
+            others = others_of(fingers.holds, hold, point)
             expected = set(combinations(sorted([*corners[hold], point]), 3)) - {tuple(corners[hold])}
             assert {tuple(corners[h]) for h in others} == expected

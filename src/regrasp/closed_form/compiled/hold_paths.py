@@ -100,15 +100,17 @@ class Moves(NamedTuple):
     cheapest: Any
 
 
+PLAIN_OTHERS: dict[int, Any] = {}
+"""``others_of`` by the length of ``holds``, as ``stances`` enters them."""
+
+
 def others_of(holds, hold, point):  # type: ignore[no-untyped-def]
     """The other holds of a stance. Numba takes the function for this kind of ``holds``.
 
     Were it an argument or in a closure, the loops would be compiled anew in every process. This is what runs
     where nothing is compiled.
     """
-    from regrasp.closed_form.compiled.stances import plain_others
-
-    return plain_others(holds, hold, point)  # type: ignore[no-untyped-call]
+    return PLAIN_OTHERS[len(holds)](holds, hold, point)
 
 
 @kept("stances of holds", error_model="numpy")

@@ -2,7 +2,7 @@
 
 from numba.extending import overload
 
-from regrasp.closed_form.compiled.hold_paths import Moves, cheapest, others_of, widest
+from regrasp.closed_form.compiled.hold_paths import PLAIN_OTHERS, Moves, cheapest, others_of, widest
 from regrasp.compilation import kept
 
 
@@ -65,9 +65,7 @@ def _place(n, i, j, k):  # type: ignore[no-untyped-def]
     return before + ((m - 1) * (m - 2) - rest * (rest - 1)) // 2 + k - j - 1
 
 
-def plain_others(holds, hold, point):  # type: ignore[no-untyped-def]
-    """``others_of`` where nothing is compiled (NUMBA_DISABLE_JIT)."""
-    return (pair_others if len(holds) == 4 else triple_others)(holds, hold, point)
+PLAIN_OTHERS.update({4: pair_others, 2: triple_others})
 
 
 @overload(others_of)
