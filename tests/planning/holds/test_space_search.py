@@ -157,6 +157,7 @@ def test_efforts_are_those_of_chosen_states():
 
 def test_the_holds_of_a_stance_are_found_without_compiling_too():
     fingers = stances(small_graph(np.random.default_rng(3), 7, 1, 1.0), 1.0, None)
+    assert fingers.moves.others is not None  # its module enters what is called here
     corners = fingers.holds[1].tolist()
     for hold in range(0, len(corners), 3):
         for point in set(range(7)) - set(corners[hold]):
