@@ -215,8 +215,8 @@ def test_soft_fingers_have_costs_too() -> None:
         ({"weights": 0.0}, "one of them above it"),
         ({"name": "angle"}, "name must be a word that is not one of angle"),
         ({"towards": [1.0, 2.0]}, "towards must have shape"),
-        ({"weights": [1.0, 2.0]}, "weights must be one number or 3, got 2"),
-        ({"towards": [[0.0, 0.0]]}, r"towards must have shape \(3, 2\) for this grasp"),
+        ({"weights": [1.0, 2.0]}, "must be one number or 3, for P1, P2, P3 which it is asked for, got 2"),
+        ({"towards": [[0.0, 0.0]]}, r"towards of 'cost' must have shape \(3, 2\), for P1, P2, P3"),
     ],
 )
 def test_costs_that_do_not_fit(arguments: dict, words: str) -> None:

@@ -4,15 +4,15 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from regrasp.closed_form.choice import OBJECTIVES
 from regrasp.errors import shown
 from regrasp.planning.changes.joining import PATH_OBJECTIVES
+from regrasp.planning.states.objectives.known import JOINT, OBJECTIVES
 
 
 def _objective(value: str) -> str:
     if value.startswith("own:") and value[4:].isprintable() and value[4:].strip():
         return value  # of a user's own: a name says all there is to say
-    return _one_of(value, OBJECTIVES)
+    return _one_of(value, (*OBJECTIVES, JOINT))
 
 
 def _path_objective(value: str) -> str:

@@ -20,6 +20,7 @@ from regrasp.planning.holds.stances import Places
 from regrasp.planning.states.choosing import choose_forces
 from regrasp.planning.states.criteria import Criteria
 from regrasp.planning.states.objectives import ANGLE, FORCE, recorded
+from regrasp.planning.states.objectives.known import JOINT
 from regrasp.plans.record import Choice, Record
 from regrasp.plans.straight import STRAIGHT
 from regrasp.plans.timing import TimeScaling
@@ -230,7 +231,7 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
         unit,
     )
     return [
-        replace(state, forces=forces, objective="joint force", method="clarabel")
+        replace(state, forces=forces, objective=JOINT, method="clarabel")
         for state, forces in zip(states, together, strict=True)
     ]
 

@@ -11,7 +11,7 @@ from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.planning.states.objectives.objective import ConvexObjective
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ForceCost(ConvexObjective):
     """The least sum of weights_i |f_i - towards_i|^2 + prices_i . f_i, of a user's own.
 
@@ -119,9 +119,13 @@ class ForceCost(ConvexObjective):
 
     def _check(self, grasp: Grasp) -> None:
         if self.weights.ndim and self.weights.shape != (len(grasp),):
-            raise InvalidInput(f"weights must be one number or {len(grasp)}, got {self.weights.size}")
+            raise InvalidInput(
+                f"weights of {self.name!r} must be one number or {len(grasp)}, for {', '.join(grasp.names)} "
+                f"which it is asked for, got {self.weights.size}"
+            )
         for key, value in (("towards", self.towards), ("prices", self.prices)):
             if value is not None and value.shape != (len(grasp), grasp.width):
                 raise InvalidInput(
-                    f"{key} must have shape ({len(grasp)}, {grasp.width}) for this grasp, got {value.shape}"
+                    f"{key} of {self.name!r} must have shape ({len(grasp)}, {grasp.width}), for "
+                    f"{', '.join(grasp.names)} which it is asked for, got {value.shape}"
                 )

@@ -144,6 +144,8 @@ OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
     {o.name: o for o in (ANGLE, FORCE, EFFORT, PEAK, PEAK_NORMAL, FRICTION_USE, SUM_NORMAL, WRENCH)}
 )
 """The objectives that words name."""
+JOINT = "joint force"
+"""The word in records for states of a whole sequence that are chosen together."""
 
 
 def recorded(objective: Objective) -> str:

@@ -25,7 +25,7 @@ _TOGETHER: Mapping[str, Callable[..., Any]] = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Objective(ArrayValue, ABC):
     """What a state is chosen for.
 
@@ -69,6 +69,10 @@ class Objective(ArrayValue, ABC):
     def __str__(self) -> str:
         return self.name
 
+    def __repr__(self) -> str:
+        """Short, as messages show it."""
+        return f"{type(self).__name__}({self.name!r})"
+
 
 class Bound(Enum):
     """What the one unknown besides the forces bounds in a program, and so what is optimised."""
@@ -80,7 +84,7 @@ class Bound(Enum):
     FACTOR = "the factor of a set that is withstood from below"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConvexObjective(Objective):
     """An objective that is one convex program (``regrasp.planning.states.program``)."""
 

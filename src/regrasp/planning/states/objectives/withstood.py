@@ -14,7 +14,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives.objective import ConvexObjective
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WithstoodFactor(ConvexObjective):
     """The widest factor of deviations with which forces stay in cones and the contacts' own limits.
 
