@@ -89,9 +89,7 @@ def _state(judge: Judge, contacts: list[dict], forces, load) -> None:
         for k, value in enumerate([*f, *cross(r, f)]):
             total[k] += value
         if m:
-            length = sqrt(dot(n, n))  # normals may have any
-            about = n if abs(length - 1) < 1e-9 else [x / Fraction(length) for x in n]
-            total[d:] = [a + m * b for a, b in zip(total[d:], about, strict=True)]
+            total[d:] = [a + m * b for a, b in zip(total[d:], _unit(n), strict=True)]
         arm2, scale2 = max(arm2, dot(r, r)), max(scale2, dot(f, f))
     scale2 = max(scale2, dot(load[d:], load[d:]) / (arm2 or 1))
     off2 = max(dot(total[:d], total[:d]), dot(total[d:], total[d:]) / (arm2 or 1))
@@ -99,6 +97,12 @@ def _state(judge: Judge, contacts: list[dict], forces, load) -> None:
     asked2 = max(dot(load[:d], load[:d]), dot(load[d:], load[d:]) / (arm2 or 1))
     if asked2:
         judge.at_most(off2, asked2 / 2**20, Fraction(1, 100))
+
+
+def _unit(n: list[Fraction]) -> list[Fraction]:
+    """Normals may have any length; one that is nearly 1 is taken as it is."""
+    length = sqrt(dot(n, n))
+    return n if abs(length - 1) < 1e-14 else [x / Fraction(length) for x in n]
 
 
 def _spun(contact: dict, m: Fraction) -> Fraction:
@@ -111,7 +115,7 @@ def _spun(contact: dict, m: Fraction) -> Fraction:
 
 def _rows(contact: dict, f) -> list[tuple[Fraction, Fraction]]:
     """(a . f, b) of the linear limits of a planar contact, in the frame of its normal."""
-    limits, (nx, ny, *_) = contact.get("limits"), exact(contact["normal"])
+    limits, (nx, ny, *_) = contact.get("limits"), _unit(exact(contact["normal"]))
     if limits is None:
         return []
     frame = dot(f, [nx, ny]), dot(f, [-ny, nx])

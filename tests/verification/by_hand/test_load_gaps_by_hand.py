@@ -43,8 +43,9 @@ def changed_by(grasp, k, **changes):
 
 
 def cases(make):
-    grasp, forces = make((0.9, 1.0, 1.1, 1.2))
-    yield "cone of the first", grasp, forces, ()
+    for length in (2.0**-10, 2.0**10):
+        grasp, forces = make((0.9, 1.0, 1.1, 1.2), length=length)
+        yield "cone of the first", grasp, forces, ()
     grasp, forces = make((1.1, 1.2, 1.0, 0.9))
     yield "cone of the last", grasp, forces, ()
     grasp, forces = make((3.0,) * 4)

@@ -276,6 +276,14 @@ def test_what_says_itself_what_it_is_about_takes_nothing_else() -> None:
             rg.verify(cut, **more)
 
 
+def test_set_points_of_no_form_have_no_margins() -> None:
+    grasp, forces = cross()
+    state = rg.GraspState(grasp, NONE, forces)
+    verdict = verify_setpoints(Plan("rotation", None, state, state), forces)
+    assert not verdict.ok
+    assert (verdict.worst_residual, verdict.least_angle, verdict.least_cone_slack) == (inf, 0, 0)
+
+
 def test_steps_alone_make_no_regrasp() -> None:
     for more in ({"steps": ()}, {"orientations": (0.0,)}):
         with pytest.raises(rg.InvalidInput, match="verify needs a plan"):

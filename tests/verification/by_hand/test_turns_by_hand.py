@@ -49,10 +49,10 @@ def test_linear_limits_between_two_angles(step, growth) -> None:
 
 
 @pytest.mark.parametrize("step", [0.5, -0.5, 2.0, -2.0])
-@pytest.mark.parametrize("growth", [1.0, 1.05, 0.95])
-def test_force_limits_between_two_angles(step, growth) -> None:
-    _, forces = cross((1.0,) * 4)
-    most = crest(1.0, growth, step) * sqrt(1.25)
+@pytest.mark.parametrize(("growth", "size"), [(1.0, 1.0), (1.05, 2.0**-40), (0.95, 2.0**40)])
+def test_force_limits_between_two_angles(step, growth, size) -> None:
+    _, forces = cross((1.0,) * 4, force=size)
+    most = crest(1.0, growth, step) * sqrt(1.25) * size
     for factor, good in (1 + 1e-8, True), (1 - 1e-8, False):
         grasp, _ = cross((1.0,) * 4, limits=(None, None, most * factor, None))
         found = said(turned(grasp, forces, growth * forces, step))
