@@ -107,20 +107,15 @@ def _unit(n: list[Fraction]) -> list[Fraction]:
 
 def _spun(contact: dict, m: Fraction) -> Fraction:
     """The tangential force that uses as much friction as a soft finger's torque."""
-    if contact.get("torsion") is None:
-        return Fraction(0)
-    mu, torsion = exact([contact["friction"], contact["torsion"]])
-    return max(mu, EPS) * m / torsion
+    mu, torsion = exact([contact["friction"], contact.get("torsion") or 1])
+    return Fraction(0) if contact.get("torsion") is None else max(mu, EPS) * m / torsion
 
 
 def _rows(contact: dict, f) -> list[tuple[Fraction, Fraction]]:
     """(a . f, b) of the linear limits of a planar contact, in the frame of its normal."""
     limits, (nx, ny, *_) = contact.get("limits"), _unit(exact(contact["normal"]))
-    if limits is None:
-        return []
-    frame = dot(f, [nx, ny]), dot(f, [-ny, nx])
-    given = zip(limits["rows"], exact(limits["bounds"]), strict=True)
-    return [(dot(exact(row), frame), most) for row, most in given]
+    given = [] if limits is None else zip(limits["rows"], exact(limits["bounds"]), strict=True)
+    return [(dot(exact(row), (dot(f, [nx, ny]), dot(f, [-ny, nx]))), most) for row, most in given]
 
 
 def _transition(judge: Judge, plan: dict) -> None:
@@ -153,10 +148,8 @@ def _transition(judge: Judge, plan: dict) -> None:
 
 def _moving(judge: Judge, plan: dict) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The fingers that carry nothing at the start and at the end, of the kind that the plan says."""
-    kind, one, other = plan["kind"], plan["contact"], plan.get("arrival")
-    if kind == "addition":
-        one, other = other, one
-    leaving, arriving = ((() if name is None else (name,)) for name in (one, other))
+    kind, names = plan["kind"], [plan["contact"], plan.get("arrival")]
+    leaving, arriving = (() if n is None else (n,) for n in (names[::-1] if kind == "addition" else names))
     if plan.get("leaving") is not None or plan.get("arriving") is not None:
         leaving, arriving = (tuple(plan.get(key) or ()) for key in ("leaving", "arriving"))
     wanted = {"removal": (1, 0), "addition": (0, 1), "exchange": (1, 1), "rotation": (0, 0), "hold": (0, 0)}
