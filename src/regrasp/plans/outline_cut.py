@@ -13,6 +13,19 @@ from regrasp.mechanics.value import ArrayValue
 
 _WIDTHS = {"start": 2, "goal": 2, "reached": 3, "boxes": 6, "twists": 3}
 _OPTIONAL = ("turned", "forbidden")
+_LIMITS = ("min_normal", "max_force")
+
+
+def limits_in_words(min_normal: float, max_force: float | None) -> str:
+    """What every hold keeps; empty for nothing.
+
+    Args:
+        min_normal: least normal force [N].
+        max_force: force limit [N], or None.
+    """
+    parts = [f"normal forces of at least {min_normal:g} N"] if min_normal > 0 else []
+    parts += [f"forces of at most {max_force:g} N"] if max_force is not None else []
+    return f", with {' and '.join(parts)}" if parts else ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,9 +34,10 @@ class OutlineCut(ArrayValue):
 
     The object keeps its orientation, or turns within bounds, and two of three fingers hold it while the third
     moves, so every hold shares a place with the next. Boxes of places cover all pairs of one place from
-    either part; each has a twist that does work against no force of fingers in it while the load does work
-    at both ends of the turn, so that none holds there or between. The start's pairs are on its side, or
-    excluded too, the goal's on the other. ``verify`` decides all that in rationals, the tiling included.
+    either part; each has a twist along which the load does more work than any forces of fingers in it, within
+    their limits, can take up, at both ends of the turn, so that none holds there or between. The start's
+    pairs are on its side, or excluded too, the goal's on the other. ``verify`` decides all that in rationals,
+    the tiling included.
 
     Not covered: other orientations, fingers that slide or roll, fingers on holes.
 
@@ -40,6 +54,8 @@ class OutlineCut(ArrayValue):
         turned: (2,) the force where the object has turned as far as it may, less than half a turn from
             ``force``, which is then that at the other end [N]; the same if not given.
         forbidden: sides that no finger touches.
+        min_normal: with which both fingers of every hold push at the least [N].
+        max_force: limit on the force of every finger [N]; None for none.
     """
 
     vertices: Array
@@ -52,6 +68,8 @@ class OutlineCut(ArrayValue):
     twists: Array
     turned: Array | None = None
     forbidden: Array = ()  # type: ignore[assignment]
+    min_normal: float = 0.0
+    max_force: float | None = None
 
     def __post_init__(self) -> None:
         vertices = array(self.vertices, "vertices of a cut", (None, 2))
@@ -68,6 +86,9 @@ class OutlineCut(ArrayValue):
         object.__setattr__(self, "forbidden", sides)
         if not np.isin(self.forbidden, np.arange(len(vertices))).all():
             raise InvalidInput(f"forbidden must be sides, whole numbers from 0 to {len(vertices) - 1}")
+        object.__setattr__(self, "min_normal", number(self.min_normal, "min_normal", least=0))
+        if self.max_force is not None:
+            object.__setattr__(self, "max_force", number(self.max_force, "max_force", above=0))
         for name, width in _WIDTHS.items():
             rows = numbers_in(getattr(self, name), f"{name} must be rows of {width} numbers")
             rows = array(rows.reshape(-1, width) if rows.size == 0 else rows, name, (None, width))
@@ -90,7 +111,8 @@ class OutlineCut(ArrayValue):
     def to_dict(self) -> dict[str, Any]:
         """The cut as plain data, which JSON can hold; ``from_dict`` gives back the equal cut."""
         tables = ("vertices", "force", *_WIDTHS, *_OPTIONAL)
-        return {"friction": self.friction} | {name: getattr(self, name).tolist() for name in tables}
+        limits = {name: value for name in _LIMITS if (value := getattr(self, name))}
+        return {"friction": self.friction, **limits} | {name: getattr(self, name).tolist() for name in tables}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "OutlineCut":
@@ -102,7 +124,11 @@ class OutlineCut(ArrayValue):
         Raises:
             InvalidInput: For other keys and as ``OutlineCut`` does.
         """
-        return cls(**entries(data, "an outline cut", ("friction", "vertices", "force", *_WIDTHS), _OPTIONAL))
+        return cls(
+            **entries(
+                data, "an outline cut", ("friction", "vertices", "force", *_WIDTHS), (*_OPTIONAL, *_LIMITS)
+            )
+        )
 
     def __repr__(self) -> str:
         return f"OutlineCut({len(self.vertices)} sides, {len(self.reached)} arcs, {len(self.boxes)} boxes)"
@@ -113,4 +139,5 @@ class OutlineCut(ArrayValue):
             f"a cut of {len(self.vertices)} sides into {len(self.reached)} arcs on the start's side and "
             f"the rest, with {len(self.boxes)} boxes that no hold is in at "
             f"{'this orientation' if still else 'any orientation between'}"
+            + limits_in_words(self.min_normal, self.max_force)
         )

@@ -80,9 +80,9 @@ class Verification(ArrayValue):
             )
         if self.excluded is not None and self.bound is None:
             return (
-                f"no regrasp leads from the start to the goal on this outline, at this orientation: "
-                f"{self.excluded} boxes cover all pairs of places across the cut, each excluded by its "
-                f"twist, in exact arithmetic"
+                f"no regrasp leads from the start to the goal on this outline, at this "
+                f"orientation{self.asked}: {self.excluded} boxes cover all pairs of places across the cut, "
+                f"each excluded by its twist, in exact arithmetic"
             )
         if self.excluded is not None:
             if not isfinite(self.least_cone_slack):  # the proof alone

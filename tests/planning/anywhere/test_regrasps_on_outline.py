@@ -182,6 +182,8 @@ def test_every_part_of_a_proof_is_needed():
     "more",
     [
         {"friction": float("nan")},
+        {"min_normal": -1.0},
+        {"max_force": float("inf")},
         {"twists": np.full((12, 3), np.nan)},
         {"start": np.array([[0, 2.0], [1, 0.5], [2, 0.5]])},
         {"start": np.array([[0, 0.5], [1, 0.5]])},
@@ -203,6 +205,8 @@ def test_cuts_of_others_that_are_none_are_not_taken(more):
         "twists",
         "turned",
         "forbidden",
+        "min_normal",
+        "max_force",
     )
     foreign = SimpleNamespace(**{name: getattr(cut, name) for name in fields} | more)
     words = str(rg.verify(foreign))

@@ -6,7 +6,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.planning.anywhere.hold_map import TIE, HoldMap, Place
-from regrasp.planning.anywhere.twists import excluding_twists
+from regrasp.planning.anywhere.limited_twists import excluded
 
 MOST_BOXES = 20_000
 """Boxes that a proof may take; beyond, the answer is open."""
@@ -69,9 +69,7 @@ def excluded_boxes(
             return None
         table = np.array(todo)
         sides = table[:, :2].astype(np.intp)
-        sure, found = excluding_twists(
-            holds.vertices, holds.friction, holds.forces[[0, -1]], sides, table[:, 2:]
-        )
+        sure, found = excluded(holds, sides, table[:, 2:])
         boxes += [box for box, known in zip(todo, sure, strict=True) if known]
         twists += found[sure].tolist()
         todo = [

@@ -1,7 +1,6 @@
 """Whether any regrasp exists on an outline, decided without sampling of places."""
 
-from itertools import combinations
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
@@ -12,28 +11,16 @@ from regrasp.mechanics.limits.limit_rows import refuse_limits
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.planning.anywhere.cut import excluded_boxes, reached_arcs
-from regrasp.planning.anywhere.fewest import fewest_layers, fewest_walk
 from regrasp.planning.anywhere.forbidden import parted_outline
-from regrasp.planning.anywhere.hold_map import TIE, HoldMap, Place, TooLarge, flooded
-from regrasp.planning.anywhere.polygons import width
+from regrasp.planning.anywhere.hold_map import flooded
+from regrasp.planning.anywhere.limits import Limits
 from regrasp.planning.anywhere.results import OutlineRegrasps
-from regrasp.planning.anywhere.walk import Hold, walk_through
-from regrasp.planning.states.batch import locus_intervals
+from regrasp.planning.anywhere.search import Asked, End, Places, decided
 from regrasp.planning.states.choosing import choose_state
-from regrasp.plans.outline_cut import OutlineCut
 
 MOST_SIDES = 500
-_ORIENTATIONS = 3, 9, 33
-_ROOMS = 3e-2, 3e-3, 1e-4, 1e-6, TIE
 _LESS = 1e-9  # of two sides that meet one where fingers may touch is taken
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
-
-# Regions that a walk prefers are wider than the first of these fractions, then than the next: narrow ones
-# take many holds.
-_WIDTHS = (1e-2, 1e-3, 0.0)
-
-Places = tuple[Place, ...]
 
 
 def regrasps_on_outline(
@@ -46,6 +33,8 @@ def regrasps_on_outline(
     goal_orientation: float = 0.0,
     turns: ArrayLike = (0.0, 0.0),
     forbidden: ArrayLike = (),
+    min_normal: float = 0.0,
+    max_force: float | None = None,
 ) -> OutlineRegrasps:
     """Whether any regrasp of three fingers exists on a polygon, while the object stays or turns.
 
@@ -54,8 +43,9 @@ def regrasps_on_outline(
     another where their projections on a side overlap. That a regrasp exists is shown by a walk of holds,
     each checked again; that none exists by a certificate, which ``verify`` decides in rationals, for all
     orientations between the ends of the turns at once. The holds of walks are looked for at up to 33 of them.
-    Force limits, least normal forces and corners that fingers keep away from are not looked at: with them
-    there may be none where one exists here.
+    A least normal force leaves the map exact. With a force limit it lies between two sets of polygons, of
+    tangents and of chords of the disc, 16 within each cone at the most: what is decided by neither is open.
+    Corners that fingers keep away from are not looked at: with them there may be none where one exists here.
 
     Args:
         outline: a polygon of up to 500 sides; fingers touch its outer boundary.
@@ -67,6 +57,8 @@ def regrasps_on_outline(
         turns: (2,) the least and the largest angle of the object, less than pi apart, 0 between them [rad].
         forbidden: (k, 2) arc lengths where arcs begin and end within which no finger may touch,
             counter-clockwise [m].
+        min_normal: with which both fingers of every hold push at the least [N].
+        max_force: limit on the force of every finger [N]; none if not given.
 
     Raises:
         InvalidInput: For arguments that are not what they must be.
@@ -83,54 +75,55 @@ def regrasps_on_outline(
         raise InvalidInput(
             f"load must be a planar force through the centre of mass, not zero, got {shown(load)}"
         )
+    limits = _limits(min_normal, max_force)
     lo, hi = _turns(turns, number(goal_orientation, "goal_orientation"))
     ends = tuple(
-        _places(vertices, free, grasp, mu, name) for grasp, name in ((start, "start"), (goal, "goal"))
+        _places(vertices, free, grasp, mu, max_force, name)
+        for grasp, name in ((start, "start"), (goal, "goal"))
     )
     if lo < hi:
         for grasp, angle in ((start, 0.0), (goal, goal_orientation)):
-            choose_state(grasp, load.rotated(-angle), "force")
-    walk, holds, neighbours, certificate = None, None, [], None
-    for count in _ORIENTATIONS if lo < hi else (1,):
-        angles = np.unique([*np.linspace(lo, hi, count), 0.0, goal_orientation])
-        forces = np.array([load.rotated(-a).force for a in angles.tolist()])
-        try:
-            holds = HoldMap.of(vertices, mu, forces, free)
-            neighbours = holds.neighbours(TIE)
-            walk = _walk(holds, neighbours, *ends)
-            certificate = _certificate(holds, *ends) if walk is None else None
-        except TooLarge:
-            holds = None
-            break
-        if walk is not None or certificate is not None:
-            break
+            choose_state(grasp, load.rotated(-angle), "force", max_force=max_force)
+    found = decided(
+        Asked(vertices, free, mu, load, limits, (lo, hi)),
+        End(start, ends[0], 0.0),
+        End(goal, ends[1], float(goal_orientation)),
+    )
+    walk = found.walk or []
     lengths = np.hypot(*(np.roll(vertices, -1, axis=0) - vertices).T)
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
 
     def along(side: int, fraction: float) -> float:
         return float(starts[side] + fraction * lengths[side])
 
-    fewest = None
-    if holds is not None and walk is not None:
-        walk, fewest = _fewest(holds, walk, *ends)
     return OutlineRegrasps(
         outline,
         start,
         goal,
         load,
         mu,
-        True if walk is not None else None if certificate is None else False,
+        True if found.walk is not None else None if found.certificate is None else False,
         tuple(
             read_only(np.array([[along(r.sides[0], f), along(r.sides[1], g)] for f, g in r.polygon]))
-            for r in (holds.regions if holds else ())
+            for r in (found.holds.regions if found.holds else ())
         ),
-        _components(neighbours) if holds else (),
-        read_only(np.array([[along(*p), along(*q)] for p, q, _ in walk or []]).reshape(-1, 2)),
-        certificate,
-        read_only(angles[[turn for _, _, turn in walk or []]]),
-        fewest,
+        _components(found.neighbours),
+        read_only(np.array([[along(*p), along(*q)] for p, q, _ in walk]).reshape(-1, 2)),
+        found.certificate,
+        read_only(found.angles[[turn for _, _, turn in walk]]),
+        found.exchanges,
         (lo, hi),
+        limits.min_normal,
+        max_force,
     )
+
+
+def _limits(min_normal: float, max_force: float | None) -> Limits:
+    least = number(min_normal, "min_normal", least=0)
+    most = inf if max_force is None else number(max_force, "max_force", above=0)
+    if least > most:
+        raise InvalidInput(f"min_normal must be at most max_force, got {least:g} and {most:g}")
+    return Limits(least, most)
 
 
 def _turns(turns: ArrayLike, goal_orientation: float) -> tuple[float, float]:
@@ -143,27 +136,17 @@ def _turns(turns: ArrayLike, goal_orientation: float) -> tuple[float, float]:
     return lo, hi
 
 
-def _fewest(
-    holds: HoldMap, walk: list[Hold], start: Places, goal: Places
-) -> tuple[list[Hold], tuple[int, int]]:
-    """The walk of fewest exchanges that is sure, and between what bounds their number is."""
-    low = fewest_layers(holds, start, goal, -TIE)
-    least = len(low) if low is not None else 0
-    for room in _ROOMS:  # well inside regions, if that takes no more
-        layers = fewest_layers(holds, start, goal, room)
-        few = None if layers is None else fewest_walk(holds, start, goal, layers, room)
-        if few is not None and len(few) < len(walk) and _held(holds, few):
-            walk = few
-        if len(walk) - 1 <= least:
-            break
-    return walk, (least, max(len(walk) - 1, 0))
-
-
-def _places(vertices: Array, free: np.ndarray, grasp: Grasp, friction: float, name: str) -> Places:
+def _places(
+    vertices: Array, free: np.ndarray, grasp: Grasp, friction: float, max_force: float | None, name: str
+) -> Places:
     """The sides of three contacts, by point and normal, and the fractions passed."""
     if not isinstance(grasp, Grasp) or grasp.dimension != 2 or len(grasp) != 3:
         raise InvalidInput(f"{name} must be a planar Grasp of three contacts, got {shown(grasp)}")
     refuse_limits(grasp, "a search on a whole outline")
+    if any(c.max_force not in (None, max_force) for c in grasp):
+        raise InvalidInput(
+            f"contacts of the {name} have force limits of their own; all fingers have the one limit max_force"
+        )
     if (grasp.frictions != friction).any():
         raise InvalidInput(
             f"all contacts of the {name} must have the friction {friction:g} of the outline, "
@@ -188,70 +171,6 @@ def _places(vertices: Array, free: np.ndarray, grasp: Grasp, friction: float, na
             raise InvalidInput(f"contact {shown(contact.name)} of the {name} is on a forbidden arc")
         found.append((side, float(f[side])))
     return tuple(found)
-
-
-def _walk(holds: HoldMap, neighbours: list[set[int]], start: Places, goal: Places) -> list[Hold] | None:
-    """Holds from the start to the goal, through fewest wide regions; None where none is sure."""
-    if sorted(start) == sorted(goal):
-        return []
-    leave, arrive = (
-        {k: at for p, q in combinations(end, 2) for k, at in holds.at(p, q, TIE)} for end in (start, goal)
-    )
-    for least in _WIDTHS:
-        wide = {k for k, region in enumerate(holds.regions) if width(region.polygon) > least}
-        wide |= leave.keys() | arrive.keys()
-        before = flooded([near & wide for near in neighbours], set(leave))
-        last = next((k for k in before if k in arrive), None)
-        if last is None:
-            continue
-        path = [last]
-        while (previous := before[path[-1]]) is not None:
-            path.append(previous)
-        path.reverse()
-        walk = walk_through(holds, path, leave[path[0]], arrive[last])
-        if walk is not None and _held(holds, walk):
-            return walk
-    return None
-
-
-def _held(holds: HoldMap, walk: list[Hold]) -> bool:
-    """Whether the closed form of two contacts says so, too, hold by hold."""
-    vertices = holds.vertices
-    along = np.roll(vertices, -1, axis=0) - vertices
-    normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
-    sides = np.array([[p[0], q[0]] for p, q, _ in walk])
-    fractions = np.array([[p[1], q[1]] for p, q, _ in walk])
-    forces = holds.forces[[turn for _, _, turn in walk]]
-    points, n = vertices[sides] + fractions[..., None] * along[sides], normals[sides]
-    mu = holds.friction
-    lo, hi = locus_intervals(points[:, 0], n[:, 0], mu, points[:, 1], n[:, 1], mu, forces)
-    return bool((lo < hi).all())
-
-
-def _certificate(holds: HoldMap, start: Places, goal: Places) -> OutlineCut | None:
-    """The proof that none exists, where there is one, nearly touching regions taken to be joined."""
-    leave = {k for p, q in combinations(start, 2) for k, _ in holds.at(p, q, -TIE)}
-    arrive = {k for p, q in combinations(goal, 2) for k, _ in holds.at(p, q, -TIE)}
-    arcs, inside = reached_arcs(holds, leave)
-    if inside & arrive:
-        return None
-    if not arrive:  # the goal cannot be held by two: the start may reach everything
-        arcs = [(side, 0.0, 1.0) for side in np.flatnonzero(holds.free).tolist()]
-    found = excluded_boxes(holds, arcs, start, goal)
-    if found is None:
-        return None
-    return OutlineCut(
-        holds.vertices,
-        holds.friction,
-        holds.forces[0],
-        np.array(start),
-        np.array(goal),
-        np.array(arcs),
-        np.array(found[0]),
-        np.array(found[1]),
-        holds.forces[-1],
-        np.flatnonzero(~holds.free).astype(np.float64),
-    )
 
 
 def _components(neighbours: list[set[int]]) -> tuple[int, ...]:

@@ -5,11 +5,13 @@ are in one where their projections on a side overlap.
 """
 
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.anywhere.limits import NONE, Limits
 from regrasp.planning.anywhere.polygons import Polygon, hold_polygons, sides_across
 from regrasp.planning.anywhere.twists import excluding_twists
 
@@ -49,7 +51,7 @@ class Region(NamedTuple):
         along = np.roll(points, -1, axis=0) - points
         lengths = np.hypot(*along.T)
         away = np.array(at) - points
-        kept = lengths > 0
+        kept = lengths > TIE  # rounding turns shorter ones
         distance = (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])[kept] / lengths[kept]
         return float(distance.min())
 
@@ -67,7 +69,8 @@ class Region(NamedTuple):
 class HoldMap:
     """All regions of a polygon [any unit of length], one friction, and forces in some orientations.
 
-    forces: (k, 2), seen from the object, by its turn. free: (n,) which sides fingers may touch.
+    forces: (k, 2), seen from the object, by its turn. free: (n,) which sides fingers may touch. limits: of
+    the fingers' forces, a force limit by ``parts`` tangents within each cone.
     """
 
     vertices: Array
@@ -75,9 +78,18 @@ class HoldMap:
     forces: Array
     free: np.ndarray
     regions: tuple[Region, ...]
+    limits: Limits = NONE
 
     @classmethod
-    def of(cls, vertices: Array, friction: float, forces: Array, free: np.ndarray | None = None) -> "HoldMap":
+    def of(
+        cls,
+        vertices: Array,
+        friction: float,
+        forces: Array,
+        free: np.ndarray | None = None,
+        limits: Limits = NONE,
+        parts: int = 0,
+    ) -> "HoldMap":
         """The map, whose pairs of sides are looked at only where no twist excludes them whole.
 
         Raises ``TooLarge`` beyond ``MOST_REGIONS``.
@@ -92,12 +104,14 @@ class HoldMap:
         )
         found: list[Region] = []
         for turn, force in enumerate(forces):
-            sides = sides_across(vertices / size, friction, (force / np.hypot(*force)).tolist())
+            unit = float(np.hypot(*force))
+            rows = partial(limits.per(unit).rows, friction=friction, parts=parts)
+            sides = sides_across(vertices / size, friction, (force / unit).tolist(), rows)
             for i, j in pairs[~none].tolist():
                 found += [Region((i, j), each, turn) for each in hold_polygons(sides[i], sides[j], TIE)]
                 if len(found) > MOST_REGIONS:
                     raise TooLarge
-        return cls(vertices, friction, forces, free, tuple(found))
+        return cls(vertices, friction, forces, free, tuple(found), limits)
 
     def spans(self) -> list[tuple[int, float, float, int, int]]:
         """Side, least and largest fraction, region and finger, in rising order."""
@@ -107,8 +121,10 @@ class HoldMap:
             for axis in (0, 1)
         )
 
-    def neighbours(self, overlap: float) -> list[set[int]]:
+    def neighbours(self, overlap: float, turns: int | None = None) -> list[set[int]]:
         """Of every region those that share more than an overlap with it, on some side.
+
+        turns: how many places of the forces the two may be apart; None for any number.
 
         Raises ``TooLarge`` beyond ``MOST_LINKS``.
         """
@@ -119,13 +135,17 @@ class HoldMap:
             for other_side, lo, top, other, _ in spans[k + 1 :]:
                 if other_side != side or lo >= hi - overlap:
                     break
-                if other != region and top > lo + overlap:
+                if other != region and top > lo + overlap and self.is_near(region, other, turns):
                     result[region].add(other)
                     result[other].add(region)
                     links += 1
                     if links > MOST_LINKS:
                         raise TooLarge
         return result
+
+    def is_near(self, region: int, other: int, turns: int | None) -> bool:
+        """Whether the forces of two regions are at most so many places apart."""
+        return turns is None or abs(self.regions[region].turn - self.regions[other].turn) <= turns
 
     def at(self, one: Place, other: Place, room: float) -> list[tuple[int, tuple[float, float]]]:
         """Regions that a pair of places is in by more than a room, and where."""

@@ -1,6 +1,7 @@
 """Whether fingers anywhere on an outline can regrasp, as a value."""
 
 from dataclasses import dataclass
+from math import atan, cos
 
 import numpy as np
 
@@ -12,8 +13,9 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.anywhere.cut import MOST_BOXES
 from regrasp.planning.anywhere.hold_map import MOST_LINKS, MOST_REGIONS, TIE
+from regrasp.planning.anywhere.limits import PARTS
 from regrasp.planning.anywhere.walk import MOST_HOLDS
-from regrasp.plans.outline_cut import OutlineCut
+from regrasp.plans.outline_cut import OutlineCut, limits_in_words
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,6 +41,9 @@ class OutlineRegrasps(ArrayValue, Pictured):
         exchanges: the fewest exchanges of a finger that any walk has, but for near ties, and those of this
             one; None without a walk. Where the object turns, of walks at the orientations looked at.
         turns: the least and the largest angle of the object [rad].
+        min_normal: with which both fingers of every hold push at the least [N].
+        max_force: limit on the force of every finger [N]; None for none. With one the regions lie within all
+            holds, by up to the fraction 1 - cos(atan(friction) / 16) of the limit.
     """
 
     outline: Outline
@@ -54,6 +59,8 @@ class OutlineRegrasps(ArrayValue, Pictured):
     angles: Array
     exchanges: tuple[int, int] | None
     turns: tuple[float, float]
+    min_normal: float = 0.0
+    max_force: float | None = None
 
     _drawn_by = "regrasp.plots.regrasps.outline_map:outline_map_png"
 
@@ -70,10 +77,25 @@ class OutlineRegrasps(ArrayValue, Pictured):
             return (
                 f"open: start or goal is within {TIE:g} of where holds end, or a way takes more than "
                 f"{MOST_HOLDS:,} holds, a proof more than {MOST_BOXES:,} boxes, or the map has more than "
-                f"{MOST_REGIONS:,} regions, or {MOST_LINKS:,} pairs of them that overlap"
+                f"{MOST_REGIONS:,} regions, or {MOST_LINKS:,} pairs of them that overlap" + self._nearly()
             )
+        at += limits_in_words(self.min_normal, self.max_force)
         if self.exists:
             least, most = self.exchanges or (0, 0)
             count = f"{most} exchanges" if least == most else f"{most} exchanges, {least} at the least"
             return f"a regrasp exists on this outline {at}, through {len(self.walk)} holds by {count}"
         return f"no regrasp exists on this outline {at}: {self.certificate}"
+
+    def _nearly(self) -> str:
+        """What else is open with a force limit."""
+        if self.max_force is None:
+            return ""
+        turning = (
+            ", or a walk turns farther than its forces leave room for"
+            if self.turns[0] < self.turns[1]
+            else ""
+        )
+        lost = 1 - cos(atan(self.friction) / PARTS[-1])
+        return (
+            f", or it takes a force limit known within {100 * lost:.2g} % by {PARTS[-1]} tangents" + turning
+        )

@@ -1,22 +1,27 @@
 """The verdict on a cut of an outline that no hold crosses, in rational arithmetic.
 
-A finger anywhere between two ends of a straight side makes only sums of the edges of its cone at both ends,
-so a box of two stretches is excluded by a twist that does no negative work with any of these eight wrenches
-while the load does positive work. Where it does at both ends of a turn of less than half a turn it does
-between, for the load there is a sum of both. Normals are not normalised: cones are the same for every
-length of them.
+A finger anywhere between two ends of a straight side makes only sums of what it makes at both ends, so a box
+of two stretches is excluded by a twist y along which the load does more work than the forces of the fingers
+there can take up,
+
+    min_1 y . w + min_2 y . w + min y . w_ext > 0,
+
+each minimum over both ends. Without limits those over forces are zero, or there is none. Between both ends of
+a turn of less than half a turn the load is in the triangle of these two and of where the tangents of its arc
+meet.
 """
 
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import combinations, pairwise
-from math import inf
+from math import inf, isfinite
 from typing import Protocol
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.verification.exact import cross, dot, exact
+from regrasp.verification.refusals.limited_work import corners, least_work
 from regrasp.verification.verdict import Verification
 
 Span = tuple[Fraction, Fraction]
@@ -47,6 +52,14 @@ class OutlineCut(Protocol):
         """Sides that no finger touches."""
 
     @property
+    def min_normal(self) -> float:
+        """Of both fingers of a hold [N]."""
+
+    @property
+    def max_force(self) -> float | None:
+        """Of every finger [N]; None for none."""
+
+    @property
     def start(self) -> Array:
         """(3, 2) sides and fractions."""
 
@@ -75,7 +88,14 @@ def verify_outline_cut(cut: OutlineCut) -> Verification:
     judged = _Cut(cut)
     broken = [] if judged.is_counter_clockwise() else ["the vertices do not run counter-clockwise"]
     broken += [*judged.turn(), *judged.twists_at_work(), *judged.ends(), *judged.gaps()]
-    return Verification(tuple(broken), 0.0, inf, inf, excluded=len(cut.boxes))
+    asked = _in_words(cut.min_normal, cut.max_force)
+    return Verification(tuple(broken), 0.0, inf, inf, excluded=len(cut.boxes), asked=asked)
+
+
+def _in_words(min_normal: float, max_force: float | None) -> str:
+    least = [f"normal forces of at least {min_normal:g} N"] if min_normal > 0 else []
+    most = [] if max_force is None else [f"forces of at most {max_force:g} N"]
+    return f", with {' and '.join(least + most)}" if least or most else ""
 
 
 def _is_formed(cut: OutlineCut) -> bool:
@@ -97,7 +117,11 @@ def _is_formed(cut: OutlineCut) -> bool:
     fractions = [cut.start[:, 1:], cut.goal[:, 1:], cut.reached[:, 1:], cut.boxes[:, 2:]]
     return (
         all(np.isfinite(table).all() for table in tables)
+        and isfinite(cut.friction)
         and cut.friction > 0
+        and isfinite(cut.min_normal)
+        and cut.min_normal >= 0
+        and (cut.max_force is None or (isfinite(cut.max_force) and cut.max_force > 0))
         and np.shape(turned) == np.shape(cut.force) == (2,)
         and bool(np.isin(forbidden, np.arange(count)).all())
         and len(cut.start) == len(cut.goal) == 3
@@ -118,6 +142,8 @@ class _Cut:
         self.points = [exact(p) for p in cut.vertices.tolist()]
         self.friction = Fraction(cut.friction)
         self.forces = [[*exact(force.tolist()), Fraction(0)] for force in (cut.force, _turned(cut))]
+        most = None if cut.max_force is None else Fraction(cut.max_force)
+        self.limits = Fraction(cut.min_normal), most
         self.forbidden = {int(side) for side in np.asarray(cut.forbidden).tolist()}
         self.start, self.goal = (
             [(int(i), Fraction(f)) for i, f in end.tolist()] for end in (cut.start, cut.goal)
@@ -141,29 +167,33 @@ class _Cut:
     def turn(self) -> Iterator[str]:
         """Loads at the ends of a turn that is half a turn: between them it may be from either side."""
         one, other = self.forces
-        if cross(one, other)[2] == 0 and dot(one, other) <= 0:
+        if (cross(one, other)[2] == 0 and dot(one, other) <= 0) or not corners(one, other):
             yield "the ends of the turn are half a turn apart"
 
     def twists_at_work(self) -> Iterator[str]:
         """Boxes that their twists do not exclude."""
+        around = corners(*self.forces) or self.forces
         for k, ((i, j), (a, b, c, d), y) in enumerate(
             zip(self.sides, self.boxes, self.twists, strict=True), 1
         ):
-            places = ((i, a), (i, b), (j, c), (j, d))
-            if any(dot(y, force) <= 0 for force in self.forces):
-                yield f"box {k}: the load does no work along its twist"
-            elif any(dot(y, w) < 0 for place in places for w in self.edges(place)):
+            least = [
+                min(self.least_work(y, (side, f)) for f in ends) for side, ends in ((i, (a, b)), (j, (c, d)))
+            ]
+            work = min(dot(y, force) for force in around)
+            if min(least) == -inf:
                 yield f"box {k}: some force of a finger in it opposes its twist"
+            elif sum(least) + work <= 0:
+                words = ", beyond what forces within the limits take up" if any(least) else ""
+                yield f"box {k}: the load does no work along its twist{words}"
 
-    def edges(self, place: Place) -> Iterator[list[Fraction]]:
-        """The wrenches of both edges of the cone at a place."""
+    def least_work(self, y: list[Fraction], place: Place) -> Fraction | float:
+        """Of the forces of a finger there, along a twist."""
         side, f = place
         p, q = self.points[side], self.points[(side + 1) % len(self.points)]
-        tx, ty = q[0] - p[0], q[1] - p[1]
-        at = [p[0] + f * tx, p[1] + f * ty]
-        for s in (1, -1):
-            edge = [-ty + s * self.friction * tx, tx + s * self.friction * ty]
-            yield [*edge, *cross(at, edge)]
+        t = [q[0] - p[0], q[1] - p[1]]
+        at = [p[0] + f * t[0], p[1] + f * t[1]]
+        way = [y[0] - y[2] * at[1], y[1] + y[2] * at[0]]
+        return least_work(dot(way, [-t[1], t[0]]), dot(way, t), dot(t, t), self.friction, *self.limits)
 
     def ends(self) -> Iterator[str]:
         """Pairs of the start or the goal that may hold on the wrong side."""
