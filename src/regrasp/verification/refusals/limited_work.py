@@ -9,11 +9,10 @@ or without M there is none where a < mu |b|. Where N is beyond the ends of the a
 corners are N a - sqrt(M^2 - N^2) |b|. Roots are rounded so that works only become less.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from math import inf, isqrt
 
-from regrasp.verification.exact import dot
+from regrasp.verification.exact import Vector, dot
 
 _BITS = 128
 
@@ -64,7 +63,7 @@ def least_work(
     return min([*corners, -most * speed] if on_arc else corners)
 
 
-def corners(one: Sequence[Fraction], other: Sequence[Fraction]) -> list[list[Fraction]]:
+def corners(one: Vector, other: Vector) -> list[list[Fraction]]:
     """Corners around all loads of a turn between two: these, and where the tangents of their arc meet.
 
     That corner is added a little farther out, for the cosine is rounded down. None where it is at infinity.
