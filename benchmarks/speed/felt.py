@@ -156,10 +156,10 @@ def objectives(effort: Effort) -> Iterator[Row]:
             yield Row.of(
                 f"{objective}_{len(grasp)}_{grasp.dimension}", f"`choose_state`, `{objective}`, {what}",
                 "bare Clarabel, one program of effort", effort.of(one, bare), Measure.TIMES, 10.0,
-                "the least peak, then five or six programs from level 0 to the proof, Newton's method converging "
-                "quadratically: a kept solver takes half of a bare call to all of it for each, which is 40 % of "
-                "the time; some 350 us of Python are spread evenly over forty functions; `force` spends half "
-                "of its time on the last digits",
+                "the least peak, then five or six programs from level 0 to the proof, Newton's method "
+                "converging quadratically: a kept solver takes half of a bare call to all of it for "
+                "each, which is 40 % of the time; some 350 us of Python are spread evenly over forty "
+                "functions; `force` spends half of its time on the last digits",
             )  # fmt: skip
 
 
