@@ -23,6 +23,7 @@ def rows() -> dict[str, Row]:
                 "min_normal": "not negative",
                 "keep": "function",
                 "removable": "flag",
+                "in_holes": "flag",
                 "most_boxes": "count",
                 "progress": "function",
             },
