@@ -184,7 +184,7 @@ def _signature(entry: Documented) -> str:
 
 def test_help_on_a_verb_reads_well() -> None:
     text = pydoc.plain(pydoc.render_doc(rg.choose_state))
-    assert max(map(len, text.splitlines()[3:])) <= 110
+    assert max(map(len, text[text.index("The best forces") :].splitlines())) <= 110  # below the signature
     for name, (_, option) in described(StateOptions).items():
         assert f"        {name}: {option.words[:20]}" in text
     assert text.index("    Args:") < text.index("    Returns:") < text.index("    Raises:")
