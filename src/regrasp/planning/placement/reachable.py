@@ -9,9 +9,9 @@ from regrasp.mechanics.checks import Array
 from regrasp.outline.boundary import Boundary
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
-from regrasp.planning.placement.curved_sides import CurvedSides, curved_sides
+from regrasp.planning.placement.curves.curved_sides import CurvedSides, curved_sides
+from regrasp.planning.placement.curves.tips import Spans, out_of_reach, within_reach
 from regrasp.planning.placement.sides import RingSides, Sides
-from regrasp.planning.placement.tips import Spans, out_of_reach, within_reach
 
 _ROUNDING = 1e-9  # of the length
 Arcs = list[tuple[float, float]] | None

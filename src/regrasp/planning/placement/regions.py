@@ -16,6 +16,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
+from regrasp.planning.placement.curves.curved_regions import CurvedPlaces
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.loads import check_planar, inner_and_outer
 from regrasp.planning.placement.reachable import sides_of
@@ -27,6 +28,7 @@ PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least largest force of the grasp as it is."""
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
 _HALVINGS = 40
+_ON_CURVES = 14
 _LESS = 1e-6  # of widths and of friction, given up so that forces at the corners exist for solvers, too
 
 
@@ -44,7 +46,9 @@ class ContactRegions(ArrayValue):
         alone: (k, 2) how far one finger may be off, back and ahead, while the others are at their places: not
             proven by ``corners``, nor judged by ``regrasp.verify`` [m].
         max_force: no force need be larger [N].
-        corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12).
+        corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12). On a curve
+            they are beside it, at the ends of chords, with the cones that all points of an arc share.
+        spans: (k, 2) of arcs on a curve, number of the cubic and fraction of it passed; None on a polygon.
     """
 
     shape: Outline
@@ -55,6 +59,7 @@ class ContactRegions(ArrayValue):
     alone: Array
     max_force: float
     corners: tuple[GraspState, ...]
+    spans: Array | None = None
 
     @property
     def widths(self) -> Array:
@@ -75,10 +80,12 @@ def contact_regions(
     On straight sides every placement of a box of arcs holds a load, with forces below a limit, if and only if
     the box's corners do: between two ends of one arc, forces are mixed so that the centre of pressure of that
     finger is where it stands. So corners prove regions, and the half width is exact to rounding. From there
-    the ends of the arcs are moved out one after the other as far as they go.
+    the ends of the arcs are moved out one after the other as far as they go. On a curve chords beside the
+    arcs, and the cones that all points of an arc share, take the place of sides (``curved_regions``): what is
+    returned is proven, too, and not the widest that there is.
 
     Args:
-        shape: a polygon.
+        shape: a polygon or a smooth outline.
         grasp: contacts on its outer boundary, all of one friction, relative to the centre of mass; up to six.
         load: external wrench on the object about its centre of mass, or a set of them [N, N m].
         max_force: limit on every force [N]; three times the least that the grasp needs if not given.
@@ -87,8 +94,8 @@ def contact_regions(
         Infeasible: Where the grasp itself does not hold the loads.
         InvalidInput: For arguments that are not what they must be.
     """
-    if not isinstance(shape, Outline) or not isinstance(shape.boundary, PolygonBoundary):
-        raise InvalidInput(f"shape must be an Outline that is a polygon, got {shown(shape)}")
+    if not isinstance(shape, Outline):
+        raise InvalidInput(f"shape must be an Outline, got {shown(shape)}")
     if not isinstance(grasp, Grasp) or grasp.dimension != 2 or not 2 <= len(grasp) <= 6:
         raise InvalidInput(f"grasp must be a planar Grasp of two to six contacts, got {shown(grasp)}")
     refuse_limits(grasp, "a search for regions")
@@ -96,12 +103,18 @@ def contact_regions(
         raise InvalidInput("contacts of a grasp with regions must all have the same friction")
     check_planar(load)
     given = None if max_force is None else number(max_force, "max_force", above=0)
+    _, loads = inner_and_outer(load, 1e-3)
+    if not isinstance(shape.boundary, PolygonBoundary):
+        return _on_curve(CurvedPlaces(shape, grasp, loads), given)
     sides = sides_of(shape, 0.0)
     places, u = _on_sides(sides, grasp)
-    _, loads = inner_and_outer(load, 1e-3)
     kept = float(grasp.frictions[0]) * (1 - _LESS)
     search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
-    least = search.norm_at(places, u)
+    return _widest(shape, grasp, search, places, u, _limit(search.norm_at(places, u), given))
+
+
+def _limit(least: float, given: float | None) -> float:
+    """Of forces, where a grasp needs ``least``."""
     if not least < np.inf:
         raise Infeasible(
             "the grasp itself does not hold the loads with a millionth of its friction kept back"
@@ -111,7 +124,29 @@ def contact_regions(
     limit = PEAK_RATIO * least if given is None else given
     if least > limit:
         raise Infeasible(f"the grasp itself needs a force of {least:.6g} N, above max_force {limit:.6g} N")
-    return _widest(shape, grasp, search, places, u, limit)
+    return limit
+
+
+def _on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
+    at, k = around.places, len(around.places)
+    single = np.stack([at, at], axis=1)
+    limit = _limit(around.need(single), given)
+    far = 0.25 * around.shape.length
+    ways: Array = np.array([-1.0, 1.0])
+
+    def holds(box: Array) -> bool:
+        return around.need(box) <= limit
+
+    half = (1 - _LESS) * _farthest(lambda width: holds(single + width * ways), far, _ON_CURVES)
+    box, alone = single + half * ways, np.zeros((k, 2))
+    for i, end in product(range(k), range(2)):
+        last = at[i] + far * ways[end]
+        box[i, end] = at[i] + (1 - _LESS) * (_moved_out(holds, box, i, end, last, _ON_CURVES) - at[i])
+        alone[i, end] = (1 - _LESS) * abs(_moved_out(holds, single, i, end, last, _ON_CURVES) - at[i])
+    return ContactRegions(
+        around.shape, around.grasp, read_only(at), read_only(box), half * (1 - _LESS), read_only(alone),
+        limit * (1 + _LESS), around.states(box, limit * (1 + _LESS)), read_only(around.spans(box)),
+    )  # fmt: skip
 
 
 def _widest(
@@ -162,18 +197,20 @@ def _plain(grasp: Grasp, load: Wrench, limit: float) -> GraspState:
     return GraspState(grasp, load, choose_state(grasp, load, "peak", max_force=limit * (1 + _LESS)).forces)
 
 
-def _farthest(holds: Callable[[float], bool], most: float) -> float:
+def _farthest(holds: Callable[[float], bool], most: float, halvings: int = _HALVINGS) -> float:
     """The largest width that holds, of nested ones; 0 holds."""
     if holds(most):
         return most
     lo, hi = 0.0, most
-    for _ in range(_HALVINGS):
+    for _ in range(halvings):
         middle = 0.5 * (lo + hi)
         lo, hi = (middle, hi) if holds(middle) else (lo, middle)
     return lo
 
 
-def _moved_out(holds: Callable[[Array], bool], box: Array, i: int, end: int, last: float) -> float:
+def _moved_out(
+    holds: Callable[[Array], bool], box: Array, i: int, end: int, last: float, halvings: int = _HALVINGS
+) -> float:
     """Where one end of a box may be moved towards ``last``."""
 
     def moved(fraction: float) -> Array:
@@ -181,7 +218,7 @@ def _moved_out(holds: Callable[[Array], bool], box: Array, i: int, end: int, las
         there[i, end] = box[i, end] + fraction * (last - box[i, end])
         return there
 
-    fraction = _farthest(lambda part: holds(moved(part)), 1.0)
+    fraction = _farthest(lambda part: holds(moved(part)), 1.0, halvings)
     return float(moved(fraction)[i, end])
 
 

@@ -83,7 +83,7 @@ def plot_contact_regions(regions: ContactRegions, ax: Axes | None = None, *, uni
     colours = contact_colours(regions.grasp)
     for contact, (lo, hi), width in zip(regions.grasp, regions.arcs, regions.widths, strict=True):
         colour = colours[contact.name or ""]
-        ends = regions.shape.points([lo, hi])
+        ends = regions.shape.points(np.linspace(lo, hi, 2 if regions.spans is None else 60))
         _cone(ax, contact, 0.6 * _CONE * size, colour)
         ax.plot(*ends.T, color=colour, linewidth=4, solid_capstyle="butt", alpha=0.75, zorder=3, gid="region")
         note(

@@ -4,12 +4,13 @@ Fix all fingers but one, which may be anywhere between two ends of an arc of a s
 ends hold a load, with normal forces N_a and N_b of that finger. Mixed with weights 1 - c and c, its forces
 press at c N_b / ((1 - c) N_a + c N_b) of the way, which runs from 0 to 1 with c; so for each place between
 there are forces, mixtures of those at the ends, that hold the load there. Cones and limits are convex and
-keep them. Finger by finger, the corners of a box of arcs prove the whole of it.
+keep them. Finger by finger, the corners of a box of arcs prove the whole of it. On curves the corners are
+beside it (``curved_regions``).
 """
 
 from itertools import product
 from math import inf
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,17 +18,25 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
+from regrasp.verification.placed.curved_regions import beside, point_at
 from regrasp.verification.placed.protocol import Shape
 from regrasp.verification.verdict import Verification
 
 _TO_THE_END = 1 - 2e-6  # of the way to the end of a side, which counts as all of it
 
 
+class Curved(Shape, Protocol):
+    """The same with its points."""
+
+    def points(self, s: float) -> Array:
+        """(2,) the point at an arc length [m]."""
+
+
 class Regions(Protocol):
     """What ``verify`` needs to know of regions, whoever found them; arcs (k, 2) are arc lengths [m]."""
 
     @property
-    def shape(self) -> Shape:
+    def shape(self) -> Curved:
         """The outline."""
 
     @property
@@ -45,6 +54,10 @@ class Regions(Protocol):
     @property
     def half_width(self) -> float:
         """Every finger may be so far off its place, or to the end of its side [m]."""
+
+    @property
+    def spans(self) -> Array | None:
+        """(k, 2) of arcs on a curve: number of the cubic and fraction of it passed; None on a polygon."""
 
     @property
     def max_force(self) -> float:
@@ -75,6 +88,9 @@ def verify_regions(regions: Regions) -> Verification:
 
 def _check_corners(regions: Regions) -> list[str]:
     """That every load has a state at every combination of ends, and that arcs are on straight sides."""
+    control = regions.shape.cubics()
+    if control is not None:
+        return _check_curved(regions, control)
     vertices = np.asarray(regions.shape.polygon())
     along = np.roll(vertices, -1, axis=0) - vertices
     lengths = np.hypot(*along.T)
@@ -104,10 +120,51 @@ def _check_corners(regions: Regions) -> list[str]:
             return [f"arc {i} is less than the half width {half:.12g} about its place"]
         ends.append([vertices[edge] + (s - starts[edge]) * unit for s in (off, off + hi - lo)])
         normals.append([-unit[1], unit[0]])
+    return _missing(regions, ends, normals, slack)
+
+
+def _check_curved(regions: Regions, control: Array) -> list[str]:
+    """The same on a curve, where the ends are those of chords beside it."""
+    k, spans = len(regions.grasp), regions.spans
+    if spans is None or not np.shape(spans) == np.shape(regions.arcs) == (k, 2) == (
+        *np.shape(regions.places),
+        2,
+    ):
+        return ["a place, an arc and its span are needed for each finger"]
+    if not regions.corners:
+        return ["no corner has a state"]
+    first, last = regions.corners[0].grasp, regions.corners[-1].grasp
+    if len(first) != k or len(last) != k or not (first.normals == last.normals).all():
+        return ["corners must have one normal for each finger"]
+    slack = float(RESOLUTION) * float(np.abs(control).max())
+    ends = []
+    for i in range(k):
+        at = np.array([first.positions[i], last.positions[i]])
+        friction = float(regions.grasp.frictions[i])
+        if not spans[i, 0] <= spans[i, 1]:
+            return [f"arc {i + 1} must not end before it begins"]
+        if not beside(control, spans[i], at, first.normals[i], float(first.frictions[i]), friction):
+            return [f"the corners do not stand for all places of arc {i + 1}"]
+        place, half = float(regions.places[i]), regions.half_width
+        if not np.hypot(*(regions.shape.points(place) - regions.grasp.positions[i])) <= 100 * slack:
+            return [f"contact {i + 1} is not at its place"]
+        before, after = place - regions.arcs[i, 0], regions.arcs[i, 1] - place
+        if not (0 <= half < inf and half - min(before, after) <= slack):
+            return [f"arc {i + 1} is less than the half width {half:.12g} about its place"]
+        for u, s in zip(spans[i], regions.arcs[i], strict=True):
+            if not np.hypot(*(point_at(control, float(u)) - regions.shape.points(s))) <= 100 * slack:
+                return [f"the span of arc {i + 1} is another arc"]
+        ends.append(list(at))
+    return _missing(regions, ends, first.normals.tolist(), slack, first.frictions)
+
+
+def _missing(
+    regions: Regions, ends: list[Any], normals: list[Any], slack: float, frictions: Array | None = None
+) -> list[str]:
     loads = {tuple(state.load.vector.tolist()) for state in regions.corners}
     if not loads:
         return ["no corner has a state"]
-    frictions = regions.grasp.frictions
+    frictions = regions.grasp.frictions if frictions is None else frictions
     missing = 0
     for corner in product(*ends):
         here = {

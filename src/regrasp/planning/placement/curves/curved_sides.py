@@ -82,6 +82,19 @@ class CurvedSides(Sides):
     def _knots(self) -> Array:
         return self._boundary.cubics()[0]
 
+    def hull(self, lo: float, hi: float) -> tuple[Array, Array]:
+        """(m, 2) points whose hull contains a part, and (m, 2) tangents between whose directions its own are.
+
+        The u may run past the start.
+        """
+        edges = np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1))
+        a, b = np.clip(lo - edges, 0.0, 1.0), np.clip(hi - edges, 0.0, 1.0)
+        control = self.control[edges.astype(int) % len(self.control)]
+        at = ((a, a, a), (a, a, b), (a, b, b), (b, b, b))
+        points = np.concatenate([_blossom(control, u, v, w) for u, v, w in at])
+        tangents = np.concatenate([_polar(control, u, v) for u, v in ((a, a), (a, b), (b, b))])
+        return points, tangents / np.hypot(*tangents.T)[:, None]
+
     def frames(self, u: Array) -> tuple[Array, Array, Array]:
         """(m, 2) points at places, (m, 2) inward normals, (m,) curvatures, above 0 where convex [1/m]."""
         edge = np.minimum(u.astype(int), len(self.control) - 1)
@@ -132,6 +145,15 @@ def _at(control: Array, t: Array) -> Array:
     s, t = (1 - t)[:, None], t[:, None]
     p = np.moveaxis(control, 1, 0)
     result: Array = s**3 * p[0] + 3 * s**2 * t * p[1] + 3 * s * t**2 * p[2] + t**3 * p[3]
+    return result
+
+
+def _blossom(control: Array, u: Array, v: Array, w: Array) -> Array:
+    """(m, 2) the polar form of cubics."""
+    points = np.moveaxis(control, 1, 0)
+    for t in (u, v, w):
+        points = points[:-1] + t[:, None] * (points[1:] - points[:-1])
+    result: Array = points[0]
     return result
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.placement.curved_sides import CurvedSides
+from regrasp.planning.placement.curves.curved_sides import CurvedSides
 from regrasp.planning.placement.sides import Sides
 
 Spans = list[tuple[float, float]]

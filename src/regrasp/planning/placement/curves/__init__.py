@@ -1,0 +1,1 @@
+"""Placement on smooth outlines: their sides, what tips reach, regions."""

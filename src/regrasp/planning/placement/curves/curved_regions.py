@@ -1,0 +1,143 @@
+"""How far the fingers of a grasp may miss their places on a curve: proven by points beside it.
+
+A force acts along a line, so one of a finger at p on a part of a curve, h off a chord A B, is one on the
+chord where that line meets it: within h tan(gamma) of the foot of p, gamma the widest angle of a force of the
+cone to the chord's normal. Let fingers at A and B, with forces in the cones of all points of the part,
+hold a load. Their mixtures press on the chord from A to B; the places where they would have to press to be
+forces at p stay between, if A and B are so far beyond the feet of the part. So some mixture does: there are
+forces for p, in its own cone and within the limit. Finger by finger this proves all places of a box of parts.
+"""
+
+from itertools import product
+
+import numpy as np
+
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.curves.curved_sides import CurvedSides, curved_sides
+from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sides import Sides
+from regrasp.planning.states.choosing import choose_state
+
+ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
+_LESS = 1e-6  # of friction and limits, given up so that forces at the corners exist for solvers, too
+_BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
+_STEEP = 1.3  # angles of forces to a chord's normal of no more are tried [rad]
+
+
+class CurvedPlaces:
+    """Parts of a smooth outline around contacts of one grasp, and whether loads are held all over them."""
+
+    def __init__(self, shape: Outline, grasp: Grasp, loads: Array) -> None:
+        control = shape.cubics()
+        assert control is not None
+        self.shape, self.grasp, self.loads = shape, grasp, loads
+        self.sides: CurvedSides = curved_sides(shape, control)
+        self.places = np.array([shape.nearest(c.position + shape.centre_of_mass) for c in grasp])
+        for contact, s in zip(grasp, self.places, strict=True):
+            away = np.hypot(*(shape.points(s) - contact.position)) / self.sides.size
+            if away + np.hypot(*(shape.normals(s) - contact.normal)) > ON_CURVE:
+                raise InvalidInput(f"contact {contact.name} is not on the outline, with its inward normal")
+
+    def spans(self, box: Array) -> Array:
+        """(k, 2) the u of arc lengths (k, 2), which may run past the start."""
+        turns = np.floor(box / self.shape.length)
+        at = [[self.sides.u_at(float(s)) for s in row] for row in box - turns * self.shape.length]
+        result: Array = np.array(at) + turns * len(self.sides.control)
+        return result
+
+    def corners(self, box: Array) -> tuple[Array, Array, float] | None:
+        """(k, 2, 2) points, (k, 2) normals and friction of fingers beside parts; None where cones differ."""
+        mu = float(self.grasp.frictions[0]) * (1 - _LESS)
+        points, normals, angles, wide = [], [], [], []
+        for lo, hi in self.spans(box):
+            hull, tangents = self.sides.hull(lo, hi)
+            middle = tangents.sum(axis=0)
+            middle /= np.hypot(*middle)
+            turned = np.arctan2(middle[0] * tangents[:, 1] - middle[1] * tangents[:, 0], tangents @ middle)
+            turn = 0.5 * (turned.max() + turned.min())
+            n = middle * np.cos(turn) + np.array([-middle[1], middle[0]]) * np.sin(turn)
+            wide.append(np.ptp(turned) / 2)
+            angles.append(np.arctan(mu) - wide[-1])
+            normals.append([-n[1], n[0]])
+            points.append(hull)
+        alpha = min(angles) - (1e-9 if max(wide) > 0 else 0.0)
+        if alpha < 0 or max(wide) > 0.5:
+            return None
+        ends = []
+        for hull, n in zip(points, np.array(normals), strict=True):
+            t = np.array([n[1], -n[0]])  # the chord lies along the middle tangent
+            base = hull[0]
+            along, off = (hull - base) @ t, np.abs((hull - base) @ n).max()
+            if alpha > _STEEP:
+                return None
+            reach = off * np.tan(alpha) + (_BEYOND * self.sides.size if np.ptp(along) > 0 else 0.0)
+            ends.append([base + (along.min() - reach) * t, base + (along.max() + reach) * t])
+        return np.array(ends), np.array(normals), float(np.tan(alpha))
+
+    def need(self, box: Array) -> float:
+        """The largest least force that a corner needs [N], infinite where one holds no load."""
+        found = self.corners(box)
+        if found is None:
+            return np.inf
+        ends, normals, mu = found
+        k = len(ends)
+        table = _Points(ends.reshape(-1, 2), np.repeat(normals, 2, axis=0), self.sides.size)
+        search = Search(table, k, mu, self.loads, LAWS["peak"], 0.0, 0.0)
+        worst = 0.0
+        for corner in product(range(2), repeat=k):
+            places = 2 * np.arange(k) + corner
+            worst = max(worst, search.norm_at(places, places.astype(float)))
+            if worst == np.inf:
+                break
+        return worst
+
+    def states(self, box: Array, limit: float) -> tuple[GraspState, ...]:
+        """States at all corners, load by load, which prove the box."""
+        found = self.corners(box)
+        assert found is not None
+        ends, normals, mu = found
+        states = []
+        for corner in product(range(2), repeat=len(ends)):
+            at = Grasp(
+                Contact(p[e], n, mu, name=c.name)
+                for p, n, e, c in zip(ends, normals, corner, self.grasp, strict=True)
+            )
+            for load in map(Wrench.from_vector, self.loads):
+                try:
+                    forces = choose_state(at, load, "peak", max_force=limit).forces
+                except RegraspError as error:
+                    raise Infeasible(
+                        f"a corner of the regions was left without forces by rounding: {error}"
+                    ) from None
+                states.append(GraspState(at, load, forces))
+        return tuple(states)
+
+
+class _Points(Sides):
+    """Points with normals of their own, as sides of no length."""
+
+    def __init__(self, points: Array, normals: Array, size: float) -> None:
+        n = np.arange(len(points))
+        super().__init__(points, n, np.stack([n, n + 0.0], axis=1))
+        object.__setattr__(self, "normals", normals)
+        object.__setattr__(self, "extent", size)
+
+    normals: Array
+    extent: float
+
+    @property
+    def size(self) -> float:
+        """What lengths are measured in [m]."""
+        return self.extent
+
+    def table(self) -> Array:
+        """(m, 9) as the compiled search takes them."""
+        n = np.arange(len(self.vertices), dtype=float)[:, None]
+        return np.hstack([self.vertices / self.extent, 0 * self.vertices, self.normals, n, n, n])

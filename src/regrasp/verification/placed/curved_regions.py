@@ -1,0 +1,62 @@
+"""That states beside a curve prove regions on it: chords reach beyond the arcs, and their cones are shared.
+
+A force of a finger at p, h off the chord A B, acts along a line that meets the chord within h tan(gamma) of
+the foot of p, gamma the widest angle between forces of the cone at A and B and the chord's normal. Where all
+feet are so far from A and from B, mixtures of the forces at A and at B press at each of these places: one of
+them is a force of the finger at p. It is in the cone of p if that contains the cone at A and B.
+"""
+
+from math import atan, tan
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.verification.exact import RESOLUTION
+
+_WIDEST = 1.5  # [rad] of gamma
+
+
+def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float, friction: float) -> bool:
+    """Whether fingers at ``ends`` (2, 2), of one normal and friction ``inner``, stand for those of a span.
+
+    control: (k, 4, 2) of the curve. span: (2,) number of the cubic and fraction of it passed, from and to.
+    """
+    lo, hi = span.tolist()
+    edges = np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1))
+    a, b = np.clip(lo - edges, 0.0, 1.0), np.clip(hi - edges, 0.0, 1.0)
+    pieces = np.moveaxis(control[edges.astype(int) % len(control)], 1, 0)
+    points = np.concatenate([_polar(pieces, at) for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))])
+    tangents = np.concatenate([_polar(np.diff(pieces, axis=0), at) for at in ((a, a), (a, b), (b, b))])
+    tangents = tangents / np.hypot(*tangents.T)[:, None]
+    inward = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
+    slack = float(RESOLUTION)
+    apart = np.arctan2(np.abs(normal[0] * inward[:, 1] - normal[1] * inward[:, 0]), inward @ normal)
+    if not (apart + atan(inner) <= atan(friction) + slack).all():
+        return False
+    chord = ends[1] - ends[0]
+    length = float(np.hypot(*chord))
+    reach = float(np.abs(control).max())
+    if length <= slack * reach:
+        return bool((np.hypot(*(points - ends[0]).T) <= slack * reach).all())
+    t = chord / length
+    gamma = abs(float(np.arctan2(normal @ t, t[0] * normal[1] - t[1] * normal[0]))) + atan(inner)
+    if gamma > _WIDEST:
+        return False
+    along, off = (points - ends[0]) @ t, np.abs(points @ [-t[1], t[0]] - ends[0] @ [-t[1], t[0]]).max()
+    need = off * tan(gamma)
+    return bool(along.min() >= need and along.max() + need <= length)
+
+
+def point_at(control: Array, u: float) -> Array:
+    """(2,) the point at a place."""
+    edge = int(np.floor(u))
+    at = np.array([u - edge])
+    result: Array = _polar(control[edge % len(control)][:, None], (at, at, at))[0]
+    return result
+
+
+def _polar(points: Array, at: tuple[Array, ...]) -> Array:
+    for s in at:
+        points = points[:-1] + s[:, None] * (points[1:] - points[:-1])
+    result: Array = points[0]
+    return result
