@@ -50,7 +50,7 @@ def test_every_choice_within_regions_on_a_curve_holds() -> None:
         (replace(regions, spans=None), "span"),
         (replace(regions, half_width=regions.half_width * (1 + 1e-5)), "less than the half width"),
         (replace(regions, half_width=-0.1), "less than the half width"),
-        (replace(regions, places=regions.places + [1e-4, 0]), "not at its place"),
+        (replace(regions, places=regions.places + np.array([1e-4, 0.0])), "not at its place"),
         (replace(regions, places=regions.places[:1]), "a place"),
     ):
         assert any(words in v for v in rg.verify(wrong).violations), words

@@ -130,7 +130,7 @@ def _check_curved(regions: Regions, control: Array) -> list[str]:
         *np.shape(regions.places),
         2,
     ):
-        return ["a place, an arc and its span are needed for each finger"]
+        return ["a place is needed for each finger"]
     if not regions.corners:
         return ["no corner has a state"]
     first, last = regions.corners[0].grasp, regions.corners[-1].grasp
