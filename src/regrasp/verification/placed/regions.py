@@ -126,10 +126,9 @@ def _check_corners(regions: Regions) -> list[str]:
 def _check_curved(regions: Regions, control: Array) -> list[str]:
     """The same on a curve, where the ends are those of chords beside it."""
     k, spans = len(regions.grasp), regions.spans
-    if spans is None or not np.shape(spans) == np.shape(regions.arcs) == (k, 2) == (
-        *np.shape(regions.places),
-        2,
-    ):
+    if spans is None or not np.shape(spans) == np.shape(regions.arcs) == (k, 2):
+        return ["an arc and its span are needed for each finger"]
+    if np.shape(regions.places) != (k,):
         return ["a place is needed for each finger"]
     if not regions.corners:
         return ["no corner has a state"]
