@@ -91,7 +91,7 @@ def test_the_benchmark_of_regrasps_measures_every_row(tmp_path: Path) -> None:
     report = json.loads((tmp_path / "results" / "regrasps.json").read_text(encoding="utf-8"))
     assert [row["key"] for row in report["rows"]] == [
         "sweep_numpy", "sweep_highs", "growth_points", "growth_orientations", "sequence", "exact_numpy",
-        "exact_sequence", "bytes", "widest_time", "widest_memory",
+        "exact_first", "exact_sequence", "bytes", "widest_time", "widest_memory",
     ]  # fmt: skip
     for row in report["rows"]:
         assert all(isfinite(row[name]) and row[name] > 0 for name in ("ours", "theirs", "goal")), row

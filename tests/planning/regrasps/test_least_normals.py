@@ -166,3 +166,10 @@ def test_holds_withstand_the_disturbance_of_criteria() -> None:
     assert least[str(criteria)] >= 1 - 1e-9
     with pytest.raises(rg.InvalidInput, match="joint' has one force margin for all states"):
         replace(problem(), objective="wrench", states="joint")
+
+
+def test_asking_for_more_leaves_the_problem_as_it_was() -> None:
+    asked = problem()
+    pushed = asked.asking(0.1)
+    assert (asked.min_normal, pushed.min_normal) == (None, 0.1)
+    assert asked.graph is not pushed.graph

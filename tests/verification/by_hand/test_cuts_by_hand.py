@@ -124,6 +124,7 @@ def outline_cut(**changes) -> SimpleNamespace:
             twists.append([0.0, -1.0, 0.0])
     given = {
         "vertices": SQUARE, "friction": 1e-3, "force": np.array([0.0, -1.0]), "turned": None,
+        "min_normal": 0.0, "max_force": None,
         "forbidden": np.array([0]), "start": np.array([[1, 0.25], [1, 0.5], [1, 0.75]]),
         "goal": np.array([[3, 0.25], [3, 0.5], [3, 0.75]]), "reached": np.array([[1, 0.0, 1.0]]),
         "boxes": np.array(boxes, dtype=float), "twists": np.array(twists),
@@ -145,12 +146,15 @@ def test_twists_of_boxes_at_their_limit() -> None:
         cut_ = outline_cut(force=np.array([0.0, -work]) if work else np.array([1.0, 0.0]))
         assert ("the load does no work along its twist" not in said(cut_)) == good
     turned = outline_cut(turned=np.array([1.0, 0.0]))
-    assert "box 1: the load does no work along its twist" in said(turned)
+    assert "box 5: the load does no work along its twist" in said(turned)
 
 
 def test_ends_of_a_turn_are_less_than_half_a_turn_apart() -> None:
     for turned, good in (([0.0, 1.0], False), ([1e-9, 1.0], True), ([0.0, -2.0], True), ([0.0, 0.0], False)):
         found = said(outline_cut(turned=np.array(turned)))
+        assert ("half a turn apart" not in found) == good, turned
+    for turned, good in (([1e-9, 1.0], False), ([1.0, 1e-9], True)):  # loads between are beyond both ends'
+        found = said(outline_cut(turned=np.array(turned), max_force=9.0))
         assert ("half a turn apart" not in found) == good, turned
 
 

@@ -1,7 +1,6 @@
 """What a regrasp is to do and under which limits: the hold graph, its ends, and the plans on it."""
 
 from collections.abc import Iterable
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -294,7 +293,8 @@ class RegraspProblem(ArrayValue):
         Args:
             min_normal: [N].
         """
-        asking = copy(self)
+        asking = object.__new__(RegraspProblem)  # a value is its own copy
+        asking.__dict__.update(self.__dict__)
         object.__setattr__(asking, "min_normal", number(min_normal, "min_normal", least=0))
         for changed in ("criteria", "setting", "graph"):  # all else that was worked out stays
             asking.__dict__.pop(changed, None)

@@ -167,7 +167,9 @@ class _Cut:
     def turn(self) -> Iterator[str]:
         """Loads at the ends of a turn that is half a turn: between them it may be from either side."""
         one, other = self.forces
-        if (cross(one, other)[2] == 0 and dot(one, other) <= 0) or not corners(one, other):
+        # Without limits what works at both ends works between them, however far they are apart.
+        limited = self.limits != (Fraction(0), None)
+        if (cross(one, other)[2] == 0 and dot(one, other) <= 0) or (limited and not corners(one, other)):
             yield "the ends of the turn are half a turn apart"
 
     def twists_at_work(self) -> Iterator[str]:

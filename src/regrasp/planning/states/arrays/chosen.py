@@ -13,7 +13,7 @@ from regrasp.mechanics.margins import margins
 from regrasp.mechanics.orientation.tangents import tangents_of
 from regrasp.planning.states.arrays.many_grasps import SMALL, ManyGrasps
 from regrasp.planning.states.batch import best_squeezes
-from regrasp.planning.states.objectives import LevelObjective, Objective
+from regrasp.planning.states.objectives import ANGLE, LevelObjective, Objective
 
 _IDLE = 1e-5
 _CLOSE = 1e-8
@@ -94,7 +94,7 @@ def _with_idle(found: Chosen, given: ManyGrasps, objective: LevelObjective, kept
         return found
     levels = _levels(found.forces, given, objective, kept)
     sizes = np.abs(found.forces).max(axis=2)
-    tops = np.arctan(kept * given.frictions) if objective.name == "angle" else np.ones(sizes.shape)
+    tops = np.arctan(kept * given.frictions) if objective is ANGLE else np.ones(sizes.shape)
     forces = found.forces.copy()
     for i in range(n):
         gone = (sizes[:, i] <= _IDLE * sizes.max(axis=1)) | (tops[:, i] <= levels + _CLOSE)
@@ -114,6 +114,6 @@ def _with_idle(found: Chosen, given: ManyGrasps, objective: LevelObjective, kept
 def _levels(forces: Array, given: ManyGrasps, objective: LevelObjective, kept: float) -> Array:
     """(m,) the levels of forces over the fingers that push."""
     found = margins(forces, given.normals, kept * given.frictions)
-    if objective.name == "angle":
+    if objective is ANGLE:
         return np.asarray(np.where(np.isnan(found.angle), inf, found.angle).min(axis=1))
     return np.asarray(1 - np.where(np.isnan(found.friction_use), -inf, found.friction_use).max(axis=1))
