@@ -84,7 +84,7 @@ def speeds(rng: np.random.Generator, count: int) -> dict[str, str]:
     angles = rng.uniform(0, 2 * pi, (m, 1)) + 2 * pi * np.arange(3) / 3 + rng.uniform(-0.3, 0.3, (m, 3))
     arms = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     pushes, forces = -arms + 0.2 * rng.normal(size=arms.shape), rng.normal(size=(m, 2))
-    for objective in ("force", "effort"):
+    for objective in ("force", "effort", "angle", "friction_use"):
         many = partial(rg.choose_states, arms, pushes, 0.6, forces, objective=objective)
         rg.choose_states(arms[:9], pushes[:9], 0.6, forces[:9], objective=objective)
         for _ in range(5):
