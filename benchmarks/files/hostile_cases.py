@@ -238,7 +238,7 @@ def of_regions(name: str, regions: rg.ContactRegions) -> Case:
         except (KeyError, TypeError, ValueError, OverflowError):
             return "no regions"
         given = SimpleNamespace(
-            shape=SimpleNamespace(polygon=lambda: ring), grasp=rg.Grasp.from_dict(grasp),
+            shape=SimpleNamespace(polygon=lambda: ring, cubics=lambda: None), grasp=rg.Grasp.from_dict(grasp),
             arcs=arcs, places=places, alone=np.zeros((len(arcs), 2)), **numbers,
             corners=tuple(map(rg.GraspState.from_dict, corners)),
         )  # fmt: skip
