@@ -11,6 +11,7 @@ import regrasp as rg
 from places import ROOT
 from regrasp.files import parse_scenario, plan_scenario, read_plan
 from scenarios import PAPER, edited, regrasp
+from spoiling import Blank
 
 pytestmark = pytest.mark.end_to_end
 
@@ -97,20 +98,6 @@ def test_plan_over_an_older_one_keeps_other_files(tmp_path: Path, capsys: pytest
     assert read_plan(tmp_path / "plan.json").duration == 2.0
     assert (tmp_path / "setpoints.csv").read_text().count("\n") == 2002
     assert (tmp_path / "notes.txt").read_text() == "mine"
-
-
-class Blank:
-    """A figure that saves nothing, or fails half-way."""
-
-    def __init__(self, error: BaseException | None = None) -> None:
-        self.error = error
-
-    canvas = None
-
-    def savefig(self, path: Path, **_: str) -> None:
-        path.write_bytes(b"half a picture")
-        if self.error is not None:
-            raise self.error
 
 
 def test_progress_is_shown_on_a_terminal(

@@ -17,6 +17,7 @@ from places import ROOT
 from processes import hear_interrupts
 from regrasp.files import parse_scenario, plan_scenario
 from scenarios import PAPER, edited, regrasp
+from spoiling import Blank
 
 pytestmark = pytest.mark.end_to_end
 
@@ -85,20 +86,6 @@ def test_setpoint_outside_its_cone_is_not_written(
     assert err.splitlines()[-1].endswith("more")
     assert len(err.splitlines()) == 12
     assert names(tmp_path) == []
-
-
-class Blank:
-    """A figure that saves nothing, or fails half-way."""
-
-    def __init__(self, error: BaseException | None = None) -> None:
-        self.error = error
-
-    canvas = None
-
-    def savefig(self, path: Path, **_: str) -> None:
-        path.write_bytes(b"half a picture")
-        if self.error is not None:
-            raise self.error
 
 
 @pytest.mark.parametrize("error", [RuntimeError("no ink"), KeyboardInterrupt()])

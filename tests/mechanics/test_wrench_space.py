@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import regrasp as rg
+from cones import in_cone, wrench
 from regrasp.mechanics.wrench_space import IsoTorqueLine, WrenchCone, WrenchLoop, WrenchPlane, iso_torque_line
 from strategies import coordinates, directions, frictions, points
 
@@ -25,18 +26,6 @@ STATE = rg.GraspState(PAPER, LOAD, [[3.7897, 3.0034], [-3.0096, 4.4156], [0.7199
 SPACE = rg.Contact([1, 0, 0], [-1, 0, 0], 0.5)
 contacts = st.builds(rg.Contact, points, directions, frictions)
 shares = st.floats(-0.99, 0.99)
-
-
-def in_cone(contact: rg.Contact, share: float, size: float = 1.0) -> np.ndarray:
-    """The force whose tangential part is ``share`` of the friction available; within the cone up to +-1."""
-    n = contact.normal
-    return size * (n + share * contact.friction * np.array([-n[1], n[0]]))
-
-
-def wrench(contact: rg.Contact, f: np.ndarray) -> np.ndarray:
-    """(f, r x f), by hand."""
-    x, y = contact.position
-    return np.array([f[0], f[1], x * f[1] - y * f[0]])
 
 
 @given(contacts, points, coordinates)

@@ -168,7 +168,7 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 def places(question: Question, shape: Shape | None = None) -> dict[str, Any]:
-    """Where on the outline each finger that holds may be, alone, and on a polygon all at once, with proof.
+    """Where on the outline each finger that holds may be, alone, and all at once, with proof.
 
     Args:
         question: what is asked.

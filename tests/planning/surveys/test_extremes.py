@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 import regrasp as rg
+from cones import edges
 from invariance import Frame, frames
 from regrasp.planning.surveys.extremes import load_reach
 from space import random_grasp, random_rotation, rotated
@@ -26,15 +27,6 @@ def facing(mu: float = 0.5) -> rg.Grasp:
 def table(mu: float = 0.5) -> rg.Grasp:
     """Two feet on the ground."""
     return rg.Grasp([rg.Contact([-1, 0], [0, 1], mu), rg.Contact([1, 0], [0, 1], mu)])
-
-
-def edges(grasp: rg.Grasp) -> np.ndarray:
-    columns = []
-    for c in grasp:
-        t = np.array([-c.normal[1], c.normal[0]])
-        for f in (c.normal - c.friction * t, c.normal + c.friction * t):
-            columns.append([*f, c.position[0] * f[1] - c.position[1] * f[0]])
-    return np.array(columns).T
 
 
 def foot(mu: float = 0.5) -> rg.Grasp:
