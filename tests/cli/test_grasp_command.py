@@ -27,6 +27,24 @@ def test_a_grasp_is_chosen_written_and_verified(tmp_path: Path, capsys: pytest.C
     assert facts["plan"]["bound"] <= facts["plan"]["value"]
 
 
+def test_a_grasp_on_a_mesh_of_a_file_is_chosen_drawn_and_verified(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rg.Mesh.box(40, 30, 50).save_stl(tmp_path / "box.stl")
+    text = template("space-grasp").replace('part = "bracket"', 'mesh = "box.stl"\nscale = 0.001')
+    (tmp_path / "grasp.toml").write_text(text, encoding="utf-8")
+    status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
+    assert (status, err) == (0, "")
+    assert "no placement is below" in out
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png"}
+    status, out, err = regrasp(capsys, "verify", str(tmp_path / "out"), "--json")
+    assert (status, err) == (0, "")
+    assert json.loads(out)["plan"]["bound"] <= json.loads(out)["plan"]["value"]
+    for change in (("force = [0.5, 0.0, -1.8]", "force = [0.5, 0.0]"), ('"peak"', '"angle"')):
+        (tmp_path / "grasp.toml").write_text(text.replace(*change), encoding="utf-8")
+        assert regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))[0] == 2
+
+
 def test_a_file_comes_back_equal_and_one_that_was_touched_does_not_verify(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

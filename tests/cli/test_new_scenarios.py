@@ -56,16 +56,8 @@ def test_an_option_taken_up_plans(name: str, option: str) -> None:
     assert verify(plan_scenario(parse_scenario(text))).ok
 
 
-def test_a_grasp_is_chosen_in_the_plane(capsys: pytest.CaptureFixture[str]) -> None:
-    status, out, err = regrasp(capsys, "new", "grasp", "--space")
-    assert (status, out) == (2, "")
-    assert "in the plane" in err
-
-
-@pytest.mark.parametrize(
-    ("kind", "space"),
-    [(kind, space) for kind in KINDS for space in ((), ("--space",)) if not (kind == "grasp" and space)],
-)
+@pytest.mark.parametrize("space", [(), ("--space",)])
+@pytest.mark.parametrize("kind", KINDS)
 def test_new_writes_it(
     kind: str,
     space: tuple[str, ...],

@@ -20,6 +20,16 @@ def test_a_chosen_grasp_shows_fingers_others_and_both_numbers() -> None:
     assert ax.get_xlabel() == "$x$ [mm]"
 
 
+def test_a_chosen_grasp_on_a_mesh_shows_the_same() -> None:
+    box = rg.Mesh.box(0.04, 0.03, 0.05)
+    found = rg.choose_grasp(box, 3, rg.Wrench([0, 0, -2]), friction=0.5, objective="peak", tolerance=0.1)
+    ax = plots.plot_chosen_grasp(found)
+    ids = [artist.get_gid() for artist in ax.lines]
+    assert [name in ids for name in ("contact F1", "contact F2", "contact F3")] == [True] * 3
+    assert ids.count("other") == 3 * len(found.others)
+    assert ax.get_legend().get_texts()[0].get_text().startswith("peak ")
+
+
 def test_regions_are_drawn_where_they_are() -> None:
     regions = rg.contact_regions(SQUARE_OUTLINE, placed().grasp, WEIGHT_IN_PLANE)
     ax = plots.plot_contact_regions(regions)

@@ -7,10 +7,12 @@ from regrasp.cli.speech import say
 from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
 
 if TYPE_CHECKING:
-    from regrasp.files import GraspScenario
+    from regrasp.files import GraspScenario, SpaceGraspScenario
 
 
-def choose(scenario: "GraspScenario", name: str | Path, output: Path, *, draw: bool) -> dict[str, Any]:
+def choose(
+    scenario: "GraspScenario | SpaceGraspScenario", name: str | Path, output: Path, *, draw: bool
+) -> dict[str, Any]:
     """Write the chosen grasp with its proof as plan.json, and draw it."""
     from regrasp.disk.staging import whole_folder
     from regrasp.files import plan_scenario, write_plan

@@ -81,13 +81,13 @@ def plan(
     """
     from regrasp.cli.choosing import choose
     from regrasp.disk.staging import check_folder
-    from regrasp.files import GraspScenario, read_scenario
+    from regrasp.files import GraspScenario, SpaceGraspScenario, read_scenario
 
     check_folder(output)
     if mcap and find_spec("rosbags") is None:
         raise click.UsageError("--mcap needs rosbags: pip install 'regrasp[ros]'")
     asked = read_scenario(scenario)
-    if isinstance(asked, GraspScenario):
+    if isinstance(asked, GraspScenario | SpaceGraspScenario):
         if motions or html or mcap:
             raise click.UsageError("a grasp has nothing to play; leave --motions, --html and --mcap out")
         return choose(asked, scenario, output, draw=not no_figures)

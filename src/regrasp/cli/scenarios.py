@@ -19,13 +19,10 @@ def new(kind: str, file: Path | None, space: bool) -> dict[str, Any]:
     """Write a scenario with comments to start from.
 
     KIND is removal, addition, exchange, hold, rotation, regrasp or grasp. FILE is KIND.toml unless given; one
-    that is there is left alone. The scenario plans as it is. A grasp is chosen in the plane, so that
-    --space is an error there.
+    that is there is left alone. The scenario plans as it is.
     """
     from regrasp.files.scenarios.templates import template, write_new
 
-    if space and kind == "grasp":
-        raise click.UsageError("a grasp is chosen in the plane; leave --space out")
     name = f"space-{kind}" if space else kind
     file = Path(f"{name}.toml") if file is None else file
     write_new(file, template(name))

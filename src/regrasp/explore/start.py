@@ -87,11 +87,13 @@ def of_shape(shape: Shape, title: str = "object") -> Start:
 
 
 def _of_scenario(scenario: Any, title: str) -> Start:
-    from regrasp.files import GraspScenario, RegraspScenario, Scenario
+    from regrasp.files import GraspScenario, RegraspScenario, Scenario, SpaceGraspScenario
 
     title = scenario.title or title
     if isinstance(scenario, GraspScenario):
         return of_shape(scenario.outline.value, title)
+    if isinstance(scenario, SpaceGraspScenario):
+        return of_shape(scenario.object.value, title)
     if not isinstance(scenario, Scenario):  # a regrasp
         grasp, load = scenario.start_grasp, Wrench(scenario.load.force)
         given = scenario.outline if isinstance(scenario, RegraspScenario) else scenario.object

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         read_scenario,
         scenario_schema,
     )
+    from regrasp.files.scenarios.space_grasp import SpaceGraspScenario
     from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "MotionRows",
     "RegraspScenario",
     "Scenario",
+    "SpaceGraspScenario",
     "SpaceRegraspScenario",
     "Ways",
     "parse_scenario",
@@ -56,6 +58,7 @@ _WHERE = {
     "MotionRows": "plans.motion_rows",
     "RegraspScenario": "scenarios.regrasp",
     "Scenario": "scenarios.scenario",
+    "SpaceGraspScenario": "scenarios.space_grasp",
     "SpaceRegraspScenario": "scenarios.space_regrasp",
     "Ways": "plans.ways_file",
     "parse_scenario": "scenarios.scenario",

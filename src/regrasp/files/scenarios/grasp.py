@@ -18,6 +18,11 @@ from regrasp.planning.placement.chosen import ChosenGrasp
 _NotNegative = Annotated[float, Field(ge=0)]
 
 
+def loads_of(first: Load, also: list[Load]) -> Wrench | LoadSet:
+    """One load, or the hull of several."""
+    return LoadSet.hull([first.wrench, *(load.wrench for load in also)]) if also else first.wrench
+
+
 class Loads(Load):
     """What the grasp has to hold: one load, several, or one whose force turns."""
 
@@ -34,12 +39,12 @@ class Loads(Load):
         """The load, or the set of them."""
         if self.tilt_degrees is not None:
             return LoadSet.tilted(self.wrench, radians(self.tilt_degrees))
-        return LoadSet.hull([self.wrench, *(load.wrench for load in self.also)]) if self.also else self.wrench
+        return loads_of(self, self.also)
 
     @model_validator(mode="after")
     def _is_planar(self) -> "Loads":
         if any(len(load.force) != 2 for load in (self, *self.also)):
-            raise ValueError("grasps are chosen in the plane: expected forces of two numbers")
+            raise ValueError("the outline is in the plane: expected forces of two numbers")
         if self.also and self.tilt_degrees is not None:
             raise ValueError("expected also or tilt_degrees, found both")
         if self.disturbance is not None and self.disturbance.hull is None:
@@ -101,27 +106,26 @@ class GraspScenario(Strict):
     outline: OutlineEntry
     task: GraspTask
 
-
-def chosen_by(scenario: GraspScenario) -> ChosenGrasp:
-    """The grasp that a scenario asks for."""
-    task, disturbance = scenario.task, scenario.load.disturbance
-    return choose_grasp(
-        scenario.outline.value,
-        task.fingers,
-        scenario.load.value,
-        friction=scenario.friction,
-        objective=task.objective,
-        max_force=task.max_force,
-        length=task.length,
-        min_normal=task.min_normal,
-        removable=task.removable,
-        disturbance=None if disturbance is None else disturbance.around(scenario.load.wrench),
-        arcs=task.arcs,
-        tip_radius=task.tip_radius,
-        in_holes=task.in_holes,
-        load_offset=task.load_offset,
-        tolerance=task.tolerance,
-        min_distance=task.min_distance,
-        from_corners=task.from_corners,
-        most_boxes=task.most_boxes,
-    )
+    def chosen(self) -> ChosenGrasp:
+        """The grasp that is asked for."""
+        task, disturbance = self.task, self.load.disturbance
+        return choose_grasp(
+            self.outline.value,
+            task.fingers,
+            self.load.value,
+            friction=self.friction,
+            objective=task.objective,
+            max_force=task.max_force,
+            length=task.length,
+            min_normal=task.min_normal,
+            removable=task.removable,
+            disturbance=None if disturbance is None else disturbance.around(self.load.wrench),
+            arcs=task.arcs,
+            tip_radius=task.tip_radius,
+            in_holes=task.in_holes,
+            load_offset=task.load_offset,
+            tolerance=task.tolerance,
+            min_distance=task.min_distance,
+            from_corners=task.from_corners,
+            most_boxes=task.most_boxes,
+        )

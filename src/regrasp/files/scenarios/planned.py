@@ -5,9 +5,10 @@ from math import radians
 from typing import Any, Literal, TypeVar, overload
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.scenarios.grasp import GraspScenario, chosen_by
+from regrasp.files.scenarios.grasp import GraspScenario
 from regrasp.files.scenarios.regrasp import RegraspScenario, RegraspTask
 from regrasp.files.scenarios.scenario import AnyScenario, PlannedScenario, Scenario
+from regrasp.files.scenarios.space_grasp import SpaceGraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario, SpaceRegraspTask
 from regrasp.files.scenarios.tasks import Change, Exchange, Hold, OneFinger, Rotation
 from regrasp.mechanics.grasp import Grasp
@@ -52,7 +53,7 @@ _SPACE_REGRASP_OPTIONS = (*_REGRASP_OPTIONS, "goal_rotation", "facets", "seed")
 
 
 @overload
-def plan_scenario(scenario: GraspScenario) -> ChosenGrasp: ...
+def plan_scenario(scenario: GraspScenario | SpaceGraspScenario) -> ChosenGrasp: ...
 @overload
 def plan_scenario(scenario: PlannedScenario) -> Transition | RegraspPlan: ...
 def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan | ChosenGrasp:
@@ -67,8 +68,8 @@ def plan_scenario(scenario: AnyScenario) -> Transition | RegraspPlan | ChosenGra
     """
     if isinstance(scenario, RegraspScenario | SpaceRegraspScenario):
         return regrasp_by(scenario, plan_regrasp)
-    if isinstance(scenario, GraspScenario):
-        return chosen_by(scenario)
+    if isinstance(scenario, GraspScenario | SpaceGraspScenario):
+        return scenario.chosen()
     if not isinstance(scenario, Scenario):
         raise InvalidInput(f"a scenario comes from read_scenario or parse_scenario, got {shown(scenario)}")
     task, load = scenario.task, scenario.external

@@ -24,6 +24,7 @@ from regrasp.files.scenarios.limits_entry import LimitsEntry
 from regrasp.files.scenarios.motions_entry import MotionsEntry
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.scenarios.regrasp import RegraspScenario
+from regrasp.files.scenarios.space_grasp import SpaceGraspScenario
 from regrasp.files.scenarios.space_regrasp import SpaceRegraspScenario
 from regrasp.files.scenarios.tasks import Addition, Change, Exchange, Hold, Removal, Rotation
 from regrasp.files.source import text_of
@@ -264,7 +265,7 @@ class Scenario(Strict):
 
 PlannedScenario = Scenario | RegraspScenario | SpaceRegraspScenario
 """Of forces over time."""
-AnyScenario = PlannedScenario | GraspScenario
+AnyScenario = PlannedScenario | GraspScenario | SpaceGraspScenario
 
 
 def read_scenario(path: str | Path) -> AnyScenario:
@@ -313,6 +314,8 @@ def scenario_of(data: dict[str, Any], file: str | Path = "scenario") -> AnyScena
     """
     task = data.get("task")
     if isinstance(task, dict) and task.get("kind") == "grasp":
+        if "object" in data:
+            return validated(SpaceGraspScenario, data, file)
         return validated(GraspScenario, data, file)
     if isinstance(task, dict) and task.get("kind") == "regrasp":
         if "object" in data:

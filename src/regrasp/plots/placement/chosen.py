@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
-from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
@@ -16,8 +15,10 @@ from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.regions import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.png import png
+from regrasp.plots.look.space_axes import equal_scale
 from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.placement.on_meshes import draw_chosen
 from regrasp.plots.placement.values import unit_of
 
 _CONE = 0.16  # lengths, as fractions of the outline's size
@@ -25,30 +26,20 @@ _OTHERS = 0.04
 
 
 def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Units = SI) -> Axes:
-    """The outline, the fingers chosen with their friction cones, and grasps that were passed over in grey.
+    """The shape, the fingers chosen with their friction cones, and grasps that were passed over in grey.
 
     Above stand the value and the bound that no placement is better than; arc lengths are marked outside.
 
     Args:
-        chosen: what ``regrasp.choose_grasp`` found on an outline.
-        ax: the axes to draw on; new ones if not given.
+        chosen: what ``regrasp.choose_grasp`` found on an outline or a mesh.
+        ax: the axes to draw on, 3-D for a mesh; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(chosen, "chosen", ChosenGrasp)
-    if not isinstance(chosen.shape, Outline):
-        raise InvalidInput(
-            "chosen is a grasp on a mesh: draw one of its states, plot_state(chosen.states[0], chosen.shape)"
-        )
-    ax = plot_outline(chosen.shape, ax, units=units)
-    size = float(np.ptp(chosen.shape.polygon(), axis=0).max())
-    for other in chosen.others:
-        ax.plot(
-            *other.grasp.positions.T, "o", color="white", markeredgecolor=GREY, markersize=3.5, zorder=4,
-            gid="other",
-        )  # fmt: skip
-    colours = contact_colours(chosen.grasp)
-    for contact in chosen.grasp:
-        _cone(ax, contact, _CONE * size, colours[contact.name or ""])
+    if isinstance(chosen.shape, Outline):
+        ax = _on_outline(plot_outline(chosen.shape, ax, units=units), chosen, chosen.shape)
+    else:
+        ax = equal_scale(draw_chosen(ax, chosen, chosen.shape), units)
     unit = units.of(unit_of(chosen.objective)).removeprefix("-")
     words = f"{chosen.objective} {short(chosen.value)}, bound {short(chosen.bound)} {unit}".strip()
     handles = [Line2D([], [], marker="o", linestyle="none", color=INK, markersize=4, label=words)]
@@ -57,6 +48,19 @@ def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Uni
         passed.set_markeredgecolor(GREY)
         handles.append(passed)
     legend(ax, handles, ncols=2)
+    return ax
+
+
+def _on_outline(ax: Axes, chosen: ChosenGrasp, shape: Outline) -> Axes:
+    size = float(np.ptp(shape.polygon(), axis=0).max())
+    for other in chosen.others:
+        ax.plot(
+            *other.grasp.positions.T, "o", color="white", markeredgecolor=GREY, markersize=3.5, zorder=4,
+            gid="other",
+        )  # fmt: skip
+    colours = contact_colours(chosen.grasp)
+    for contact in chosen.grasp:
+        _cone(ax, contact, _CONE * size, colours[contact.name or ""])
     return ax
 
 

@@ -9,9 +9,8 @@ NAMES = (
     *(
         f"{where}{kind}"
         for where in ("", "space-")
-        for kind in ("removal", "addition", "rotation", "regrasp")
+        for kind in ("removal", "addition", "rotation", "regrasp", "grasp")
     ),
-    "grasp",
 )
 
 
