@@ -64,7 +64,15 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         ["planning/changes/path_search.py", "planning/changes/path_program.py"],
         [
             f"**/test_{name}.py"
-            for name in ("paths*", "limits_of_both_ends", "linear_limits", "min_normal", "exchange", "hold")
+            for name in (
+                "path*",
+                "*_paths",
+                "limits_of_both_ends",
+                "linear_limits",
+                "min_normal",
+                "exchange",
+                "hold*",
+            )
         ],
         0.85,
     ),

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from bench_rows import LIMIT, WRONG, row
+from bench_toys import LIMIT, WRONG, row
 from documents import executed
 from places import ROOT
 from regrasp.bench.families import FAMILIES

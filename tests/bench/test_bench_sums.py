@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench_rows import LIMIT, WRONG, row
+from bench_toys import LIMIT, WRONG, row
 from regrasp.bench.reporting.closeness import closeness
 from regrasp.bench.reporting.contests import contests
 from regrasp.bench.reporting.growth import growths

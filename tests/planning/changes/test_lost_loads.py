@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.planning.changes.lost_loads import refuse_lost, refuse_lost_load
+from regrasp.plans.record import Record
+from regrasp.plans.sampled import SampledPath
+from regrasp.plans.transition import Transition
 
 pytestmark = [pytest.mark.contract, pytest.mark.filterwarnings("error")]
 
@@ -124,3 +128,57 @@ def test_a_turn_whose_middle_is_lost_is_refused() -> None:
             continue
         assert rg.verify(plan).ok
     assert refused < 30
+
+
+ROUND = 2.0**-11
+"""What is lost at most, of a load of 1 N."""
+
+
+@pytest.mark.parametrize("size", [2.0**-20, 1.0, 2.0**20])
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("off", "good"), [(ROUND, True), (2 * ROUND, False)])
+@pytest.mark.parametrize("kind", ["force", "torque"])
+def test_what_is_lost_is_measured_by_the_load(size, way, sign, off, good, kind) -> None:
+    """Fingers a size apart from the centre squeeze by 2^40 N, and miss each other by ``off``."""
+    grasp = rg.Grasp([rg.Contact([-size, 0], [1, 0], 1.0), rg.Contact([size, 0], [-1, 0], 1.0)])
+    forces = np.array([[[2.0**40 + sign * off, 0.0], [-(2.0**40), 0.0]]])
+    if kind == "force":  # half of it by each finger, and the larger of two loads
+        forces[0, :, 1] = -way / 2
+        loads = np.array([[0.0, way, 0.0]])
+    else:
+        forces[0, :, 1] = way / 2, -way / 2
+        loads = np.array([[0.0, 0.0, size * way]])
+    state = rg.GraspState(grasp, rg.Wrench.from_vector(loads[0]), forces[0])
+    straight = Transition(state, state, rg.TimeScaling.spline(1.0), Record(0.0))
+    gentle = rg.GraspState(grasp, rg.Wrench([0, 0]), np.zeros((2, 2)))
+    course = SampledPath(
+        [0, 0.5, 1], [gentle.forces, forces[0], gentle.forces], [0 * loads[0], loads[0], 0 * loads[0]]
+    )
+    sampled = Transition(gentle, gentle, rg.TimeScaling.spline(1.0), Record(0.0), path=course)
+    for plan in (straight, sampled):
+        if good:
+            assert refuse_lost_load(plan) is plan
+        else:
+            with pytest.raises(rg.InvalidInput, match="times the load and round to"):
+                refuse_lost_load(plan)
+
+
+def test_of_what_is_lost_the_largest_counts() -> None:
+    """Of components and of instants."""
+    grasp = rg.Grasp([rg.Contact([-1, 0], [1, 0], 1.0), rg.Contact([1, 0], [-1, 0], 1.0)])
+    forces = np.array([[[2.0**40, -0.5], [-(2.0**40), -0.5]]] * 3)
+    loads = np.array([[0, 1.0, 0.0]] * 3)
+    refuse_lost(grasp, forces, loads)
+    for k, component in ((0, 0), (1, 1), (2, 0), (2, 1)):
+        spoilt = forces.copy()
+        spoilt[k, 0, component] += 2 * ROUND
+        with pytest.raises(rg.InvalidInput, match="round to"):
+            refuse_lost(grasp, spoilt, loads)
+
+
+def test_loads_that_pull_one_way_alone_are_measured_as_well() -> None:
+    load = rg.LoadSeries([0, 1], np.array([[-1.5, -3.5, 0], [-1.5, -3.5, -0.1]]))
+    assert rg.verify(rg.plan_removal(FLAT, "P3", load=load)).ok
+    with pytest.raises(rg.InvalidInput, match="times the load and round to"):
+        planned("removal", FLAT, rg.Wrench([-1.5e-16, -3.5e-16]), max_force=1.0)

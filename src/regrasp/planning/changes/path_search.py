@@ -105,8 +105,7 @@ def _best(task: PathTask, objective: str, criteria: Criteria, backend: str, face
         task = replace(task, limits=np.minimum(task.limits, ratio * float(least.value[-1]) * task.unit))
     if objective == "force":
         widest = _solved(task, "force", criteria, backend, facets)
-        margin = float(widest.value[-1]) * task.unit
-        margin -= 1e-7 * abs(margin)
+        margin = (1 - 1e-7) * float(widest.value[-1]) * task.unit
     # Many paths are as good; of these the one of least change is a matter of the problem alone.
     program = path_program(task, "change", least_margin=margin, facets=facets)
     answer = solve(program, backend)
@@ -237,7 +236,7 @@ def _exact(task: PathTask, answer: Solution) -> Array:
     forces[0], forces[-1] = task.start, task.end
     inner = forces[1:-1]
     inner[:] = task.reference[1:-1]
-    inner[task.active[1:-1]] += answer.value[: d * int(task.active[1:-1].sum())].reshape(-1, d) * task.unit
+    inner[task.active[1:-1]] += answer.value.reshape(-1, d) * task.unit
     wanted = forces.copy()
     for pattern in np.unique(task.active[1:-1], axis=0):
         rows = 1 + np.flatnonzero((task.active[1:-1] == pattern).all(axis=1))

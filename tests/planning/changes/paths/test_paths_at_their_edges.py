@@ -8,36 +8,14 @@ import pytest
 
 import regrasp as rg
 import regrasp.planning.changes.path_search as searched
+from feet import FEET, planned, task
 from paper import GRASP, STATE
 from regrasp.errors import SolverFailed
-from regrasp.planning.changes.path_program import PathTask, path_program
-from regrasp.planning.changes.path_search import _balanced, _breach, _kept, planned_path
-from regrasp.planning.states.criteria import Criteria
+from regrasp.planning.changes.path_program import path_program
+from regrasp.planning.changes.path_search import _balanced, _breach, _kept
 from regrasp.programs import solve
 
 pytestmark = pytest.mark.contract
-
-FEET = rg.Grasp([rg.Contact([-1, 0], [0, 1], 0.5), rg.Contact([1, 0], [0, 1], 0.5)])
-"""Two feet carry what stands on them; across they can squeeze."""
-
-
-def task(start=(1.0, 1.0), end=(1.0, 1.0), lean=0.0, count=5, **changes) -> PathTask:
-    """Normal forces at both ends; the load's place moves by ``lean`` and back, as a torque."""
-    times = np.linspace(0, 1, count)
-    loads = np.array([[0.0, -2.0, lean * np.sin(np.pi * t)] for t in times])
-    values = {
-        "grasp": FEET, "times": times, "loads": loads,
-        "start": np.array([[0.0, start[0]], [0.0, start[1]]]),
-        "end": np.array([[0.0, end[0]], [0.0, end[1]]]),
-        "active": np.ones((count, 2), dtype=bool), "phases": times, "frictions": np.full(2, 0.5),
-        "limits": np.full(2, inf), "rates": np.full(2, inf), "least_normals": np.zeros(2),
-        "stays": np.ones(2, dtype=bool), "unit": 1.0,
-    }  # fmt: skip
-    return PathTask(**values | changes)
-
-
-def planned(asked, objective="change", backend="clarabel"):
-    return planned_path(asked, objective, Criteria("angle"), backend).forces
 
 
 def test_the_reference_goes_straight_from_end_to_end() -> None:
@@ -117,6 +95,11 @@ def test_what_is_kept_back_is_a_share() -> None:
         kept = _kept(asked, 0.25)
         assert kept.rates == pytest.approx(1.5)
         assert kept.least_normals == pytest.approx(0.625)
+        shares = (
+            kept.frictions / 0.3,
+            kept.limits / 8,
+        )  # to a billionth, of the path and the states at its ends
+        assert [1 - share for share in np.ravel(shares)] == pytest.approx([1e-9] * 2 * n, rel=1e-6)
         assert kept.row_bounds is None if bounds is None else kept.row_bounds == pytest.approx([4.5])
 
 
@@ -208,7 +191,7 @@ def test_a_proof_stands_where_a_solver_fails(monkeypatch) -> None:
 
 
 def test_what_rounding_breaks_is_kept_back_twice(monkeypatch) -> None:
-    breaches, kept = [0.25, 0.125, -1.0], []
+    breaches, kept = [0.25, 0.125, 0.0], []
     monkeypatch.setattr(searched, "_breach", lambda *_: breaches[len(kept) - 1])
     monkeypatch.setattr(searched, "_kept", lambda asked, slack: kept.append(slack) or asked)
     planned(task(), "effort")
@@ -220,10 +203,12 @@ def test_what_rounding_breaks_is_kept_back_twice(monkeypatch) -> None:
     assert len(kept) == 4
 
 
-def test_one_foot_balances_no_torque_of_its_own() -> None:
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_one_foot_balances_no_torque_of_its_own(size) -> None:
     """Both forces are right and the torque is not."""
-    moved = _balanced(task(), np.array([[[0.0, 2.0]]]), np.array([[0.0, -2.0, 0.5]]), np.arange(1))
-    assert np.isinf(moved).all()
+    feet = rg.Grasp(rg.Contact(size * foot.position, foot.normal, foot.friction) for foot in FEET)
+    alone, load = np.array([[[0.0, 2.0]]]), np.array([[0.0, -2.0, 0.5 * size]])
+    assert np.isinf(_balanced(task(grasp=feet), alone, load, np.arange(1))).all()
     moved = _balanced(task(), np.array([[[0.0, 1.9]]]), np.array([[0.0, -2.0, 2.0]]), np.arange(1))
     assert moved == pytest.approx(np.array([[[0.0, 2.0]]]), abs=1e-15)
 
