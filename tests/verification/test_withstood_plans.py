@@ -114,6 +114,16 @@ def test_a_removal_withstands_its_set_at_every_instant(stiffness, early: bool) -
     assert worst_slack(plan.grasp, plan.start.forces, answers(plan.grasp, stiffness), members) >= 0
 
 
+def test_an_early_loss_alone_is_planned_for() -> None:
+    """Without a set, too: the option is no word that nothing listens to."""
+    plan = rg.plan_removal(GRASP, "P3", load=LOAD, early_loss=True)
+    assert rg.verify(plan, early_loss=True).ok
+    assert rg.verify(plan.reversed(), early_loss=True).ok
+    assert not rg.verify(rg.plan_removal(GRASP, "P3", load=LOAD), early_loss=True).ok
+    with pytest.raises(rg.Infeasible, match="the early loss of a finger"):
+        rg.plan_removal(GRASP, "P3", load=LOAD, early_loss=True, min_normal=2.5, max_force=4.2)
+
+
 def test_the_removal_of_the_paper_does_not_survive_an_early_loss() -> None:
     plan = rg.plan_removal(STATE, "P3")
     found = rg.verify(plan, early_loss=True)

@@ -20,13 +20,13 @@ class Measure:
     """A number that says how good a grasp is.
 
     Args:
-        name: how to address the contact.
+        name: how to address it in a table.
         value: the measure itself, in ``unit``.
         unit: ``-`` for none; N and m stand for the units of the input.
         range: of the values it can have.
         larger_is_better: which way.
-        formula: what it is, and who says so.
-        source: what it is, and who says so.
+        formula: what it is.
+        source: who says so.
         length_unit: what another unit of length does to it.
         how: ``closed form``, ``program`` or ``search``.
         bounds: (lower, upper), proven, of what was searched for; None where the value is exact but for

@@ -36,11 +36,10 @@ def carried_load(
         mass: of the object [kg], in units that fit those of force, length and time.
         gravity: (d,) acceleration in the world [m/s^2].
         position: of the centre of mass in the world over time, (d,) [m]; at rest if not given.
-        orientation: over time, the object's angle [rad], in space its (3, 3) rotation matrix from its frame
-        to
-            the world; not turning if not given.
-        inertia: about the centre of mass: a number in the plane, (3, 3) in the object's frame in space [kg
-            m^2]; needed where the object turns.
+        orientation: over time, the object's angle [rad], in space the (3, 3) rotation matrix from its frame
+            to the world; not turning if not given.
+        inertia: about the centre of mass: a number in the plane, (3, 3) in the object's frame in space
+            [kg m^2]; needed where the object turns.
         step: of the differences [s]; functions are asked up to two steps before and after each time.
 
     Raises:

@@ -238,6 +238,15 @@ def test_which_finger_fails_and_how_is_said() -> None:
     assert "P3 exceeds its limit" in str(found)
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_feet_without_friction_open_as_others_do(friction: float) -> None:
+    """Sliding a foot along the floor changes no tangential force, so that none slips by rounding alone."""
+    feet = rg.Grasp(rg.Contact([x, -1], [0, 1], friction) for x in (-1, 0, 1))
+    found = rg.tolerances(rg.GraspState(feet, rg.Wrench([0, -1]), [[0, 1 / 3]] * 3))
+    assert found.withstood.position[[0, 2]] == pytest.approx([1, 1], rel=1e-6)
+    assert found.first["position"].how == "opens"
+
+
 def test_what_is_outside_has_no_tolerance() -> None:
     state = rg.GraspState(GRASP, LOAD, [[3.7897, 3.0034], [-3.0096, 4.4156], [2.7199, -3.9190]])
     with pytest.raises(rg.InvalidInput, match="the force of P3 is outside its cone or limit by"):

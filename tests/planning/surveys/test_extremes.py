@@ -13,6 +13,7 @@ from scipy.optimize import linprog
 import regrasp as rg
 from cones import edges
 from invariance import Frame, frames
+from paper import GRASP, LOAD
 from regrasp.planning.surveys.extremes import load_reach
 from space import random_grasp, random_rotation, rotated
 from strategies import held_pairs
@@ -51,9 +52,10 @@ def test_yaw_of_a_foot() -> None:
 
 rough = st.sampled_from([0.1, 0.25, 0.5, 1.0, 2.0])
 """HiGHS drops entries below 1e-9 and is right to 1e-7: an oracle for friction that is not tiny."""
+hundredths = st.integers(-300, 300).map(lambda k: k / 100)
 
 
-@given(held_pairs(rough), st.floats(-3, 3), st.floats(-1, 1))
+@given(held_pairs(rough), hundredths, hundredths)
 @settings(max_examples=25, deadline=None)
 def test_largest_load_against_linear_programs(pair, angle: float, turn: float) -> None:
     direction = rg.Wrench([cos(angle), sin(angle)], turn)
@@ -237,6 +239,34 @@ def test_centres_in_another_frame() -> None:
     assert found.size == pytest.approx(1e6 * mine.size, rel=2e-3)
 
 
+@pytest.mark.parametrize("unit", [1e-13, 1e-6, 1e9, 1e13])
+def test_centres_and_loads_of_any_size(unit: float) -> None:
+    """A unit of length scales the region; one of force, and a limit far from the direction's size, nothing."""
+    other = rg.Grasp(rg.Contact(unit * c.position, c.normal, c.friction) for c in GRASP)
+    region = rg.held_centres(GRASP, LOAD, max_force=10)
+    assert rg.held_centres(other, LOAD, max_force=10).size == pytest.approx(unit * region.size, rel=1e-6)
+    forced = rg.held_centres(GRASP, unit * LOAD, max_force=10 * unit)
+    assert forced.size == pytest.approx(region.size, rel=1e-6)
+    factor = rg.largest_load(GRASP, LOAD, max_force=10).factor
+    assert rg.largest_load(GRASP, LOAD, max_force=10 * unit).factor == pytest.approx(unit * factor, rel=1e-6)
+    aside = rg.Wrench([1, 0], 5)
+    based = rg.largest_load(GRASP, aside, LOAD, max_force=1e3)
+    far = rg.largest_load(GRASP, aside, unit * LOAD, max_force=1e3 * unit)
+    assert far.factor == pytest.approx(unit * based.factor, rel=1e-6)
+    assert far.bounds[1] == pytest.approx(far.factor, rel=1e-5)
+
+
+def test_a_point_under_the_weight_is_decided() -> None:
+    one = rg.held_centres(rg.Grasp([rg.Contact([0, -1], [0, 1], 0.5)]), rg.Wrench([0, -1]), max_force=3)
+    assert one.gap == 0
+    assert one.size < 1e-12
+
+
+def test_soft_fingers_without_a_load_need_no_friction() -> None:
+    soft = rg.Grasp(rg.Contact([x, 0, 0], [-x, 0, 0], 0.4, torsion=0.1) for x in (-1, 1))
+    assert float(rg.least_friction(soft, rg.Wrench([0, 0, 0]))) == 0
+
+
 def test_centres_of_bad_input() -> None:
     with pytest.raises(rg.InvalidInput, match="weight must have a force"):
         rg.held_centres(table(), rg.Wrench([0, 0], 1.0))
@@ -249,4 +279,4 @@ def test_they_say_what_they_found() -> None:
         rg.least_friction(facing(), rg.Wrench([0, -1]), max_force=2)
     )
     assert "factors up to 1 of" in str(rg.largest_load(table(), rg.Wrench([1, 0]), rg.Wrench([0, -2])))
-    assert "a region of length 2, " in str(rg.held_centres(table(), rg.Wrench([0, -3])))
+    assert "a region of length 2 m, " in str(rg.held_centres(table(), rg.Wrench([0, -3])))

@@ -94,8 +94,8 @@ class RegraspProblem(ArrayValue):
             both.
         stiffness: of the fingers that answer [N/m]: a number, or an array with a row for each finger of
             ``start``, as in ``Criteria``; all alike if not given.
-        early_loss: whether the disturbance is withstood, too, when a finger that leaves or arrives loses
-            contact.
+        early_loss: whether forces, and the disturbance if any, are withstood, too, when a finger that leaves
+            or arrives loses contact early.
         weights: look for the least cost in place of the fewest moves and the widest margin.
         max_force: limit on every force besides the contacts' own [N], as for ``choose_state``.
         peak_ratio: as for ``choose_state`` [-].

@@ -98,7 +98,7 @@ def _kept_margin(problem: Asked, places: tuple[int, ...], o: int) -> float:
     """
     criteria = replace(problem.criteria, objective=FORCE)
     if not criteria.withstands or isinstance(criteria.stiffness, tuple):
-        criteria = replace(criteria, disturbance=None, stiffness=1.0)
+        criteria = replace(criteria, disturbance=None, stiffness=1.0, early_loss=False)
     return -1.0 if _forces(problem, places, o, criteria)[1] is None else inf
 
 

@@ -25,6 +25,7 @@ _SECTIONS, _ROUNDS = 12, 9
 _ZOOMS = 6
 _NEXT = 1e-4  # its square is the first length of all, so that a dip after it has three around it
 _DIRECTIONS = 8
+_ROUNDING = 1e-13  # of the largest force
 _TURN = 3.0  # of a normal, at most [rad]
 
 
@@ -141,6 +142,7 @@ class _Moving:
         self.along = float(normal @ inner @ normal)
         self.across = float((np.trace(inner) - self.along) / (grasp.dimension - 1))
         self.working = view.state.forces.any(axis=1)
+        self.rounding = _ROUNDING * float(np.abs(view.state.forces).max())
 
     def left(self, lengths: Array, ways: Array) -> Array:
         """(ways, lengths, n) what fingers have left for lengths (ways, lengths); negative where they fail."""
@@ -157,6 +159,8 @@ class _Moving:
 
     def _spares(self, offsets: Array) -> _Spares:
         found = self._alone(offsets) if self.base is None else self._besides(offsets)
+        for left in (found.slipping, found.exceeding):  # without friction rounding alone would slip
+            left += self.rounding
         out = ~self.working
         found.slipping[:, out] = inf
         found.exceeding[:, out] = inf
@@ -193,7 +197,8 @@ class _Moving:
         mu, within = grasp.frictions, self.view.limits - np.hypot(along, across)
         if grasp.limit_rows is not None:
             within = np.minimum(within, self._row_spares(forces + change, measured, normal))
-        return _Spares((mu * along - across) / np.sqrt(1 + mu**2), within, along)
+        edge = np.minimum((mu * along - across) / np.sqrt(1 + mu**2), along)  # pulls, without friction too
+        return _Spares(edge, within, along)
 
     def _row_spares(self, forces: Array, measured: Array, normal: Array) -> Array:
         """(m, n) what linear limits leave, where those of the contact that is off turn with its normal."""

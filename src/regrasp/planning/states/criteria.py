@@ -51,7 +51,8 @@ class Criteria:
         controlled: places of fingers whose force is controlled, as of those that leave or arrive: the others
             withstand the set without them, and all of them with them; or several such groups, as of one that
             has arrived and one that leaves next: the set is withstood without either.
-        early_loss: whether forces withstand the set, too, after a controlled finger lost contact early.
+        early_loss: whether forces withstand the set, too, after a controlled finger lost contact early;
+            without a set the loss alone.
 
     Raises:
         InvalidInput: For anything else.
@@ -148,13 +149,14 @@ class Criteria:
 
     @cached_property
     def withstands(self) -> bool:
-        """Whether forces must withstand a set, rather than the widest factor of it."""
-        return self.disturbance is not None and not isinstance(self.objective, WithstoodFactor)
+        """Whether forces must withstand a set or an early loss, rather than the widest factor of a set."""
+        asked = self.disturbance is not None or self.early_loss
+        return asked and not isinstance(self.objective, WithstoodFactor)
 
     @cached_property
     def demands(self) -> bool:
-        """Whether a set counts, as it is or by its factor."""
-        return self.disturbance is not None or isinstance(self.objective, WithstoodFactor)
+        """Whether a set or an early loss counts, as it is or by its factor."""
+        return self.withstands or isinstance(self.objective, WithstoodFactor)
 
     def of_some(self, grasp: Grasp, at_work: Sequence[int], controlled: Collection[int]) -> "Criteria":
         """The criteria for some contacts of a grasp, with their stiffness.
@@ -184,8 +186,10 @@ class Criteria:
         if isinstance(self.objective, WithstoodFactor):
             loads = self.objective.deviations(grasp)
             return Demand(grasp, loads, self.stiffness, self.controlled, self.early_loss, is_kept=False)
-        assert self.disturbance is not None
-        return Demand(grasp, self.disturbance, self.stiffness, self.controlled, self.early_loss)
+        loads = self.disturbance
+        if loads is None:  # no deviation, but the loss of a finger
+            loads = LoadSet.hull([Wrench.from_vector([0.0] * len(grasp.matrix))])
+        return Demand(grasp, loads, self.stiffness, self.controlled, self.early_loss)
 
     def least_normals(self, grasp: Grasp) -> list[float]:
         """Least normal force of each finger [N].

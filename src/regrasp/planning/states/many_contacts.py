@@ -159,17 +159,21 @@ def _of_least_peak(
 
 def _too_weak(grasp: Grasp, load: Wrench, criteria: Criteria) -> Infeasible:
     """Why no forces with these least normal forces exist."""
-    alone = replace(criteria, min_normal=0.0, disturbance=None)  # linear limits are the grasp's
+    alone = replace(
+        criteria, min_normal=0.0, disturbance=None, early_loss=False
+    )  # linear limits are the grasp's
     reason = verdict(grasp, load, alone) if any(load.plain) else None
     if reason is not None and reason.certificate is not None:
         return reason
     if criteria.withstands:
         pressing = " and push with their least normal forces" if criteria.presses else ""
+        what = f"deviations in the {criteria.disturbance}"
+        less = "a smaller disturbance, or objective 'wrench', says how much of it they withstand; "
+        if criteria.disturbance is None:
+            what, less = "the early loss of a finger that leaves or arrives", ""
         return Infeasible(
-            f"no forces of {', '.join(grasp.names)} that balance {load!r}{pressing} and withstand "
-            f"deviations in the {criteria.disturbance} were found, within cones and force limits; a smaller "
-            f"disturbance, or objective 'wrench', says how much of it they withstand; higher force limits "
-            "let them squeeze more"
+            f"no forces of {', '.join(grasp.names)} that balance {load!r}{pressing} and withstand {what} "
+            f"were found, within cones and force limits; {less}higher force limits let them squeeze more"
         )
     if not criteria.presses:
         who = ", ".join(str(c.name) for c in grasp if c.limits is not None)

@@ -139,7 +139,8 @@ class ChangeOptions(PlanOptions, total=False):
         bool,
         Option(
             False,
-            "whether the disturbance is withstood, too, when a finger that leaves or arrives loses contact",
+            "whether forces, and the disturbance if any, are withstood, too, when a finger that leaves or "
+            "arrives loses contact early",
         ),
     ]
     instants: Annotated[int, Option(INSTANTS, "instants of a path that is not straight, at least 3")]

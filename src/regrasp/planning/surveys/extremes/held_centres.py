@@ -69,9 +69,10 @@ class HeldCentres(ArrayValue):
 
     @property
     def gap(self) -> float:
-        """What is undecided, relative to what may be held."""
+        """What is undecided, relative to what may be held; 0 of a region that is a point but for rounding."""
         largest = regions.size(self.outer @ self.axes.T)
-        return (largest - self.size) / largest if largest > 0 else 0.0
+        point = (_NOTHING * (self.grasp.size or 1.0)) ** len(self.axes)
+        return (largest - self.size) / largest if largest > point else 0.0
 
     def contains(self, centre: ArrayLike) -> bool | None:
         """Whether a centre of mass (d,) is held; None where that is not decided, between inner and outer.
@@ -85,11 +86,11 @@ class HeldCentres(ArrayValue):
         return None if regions.contains(self.outer @ self.axes.T, at) else False
 
     def __str__(self) -> str:
-        what = "length" if self.grasp.dimension == 2 else "area"
+        what, unit = ("length", "m") if self.grasp.dimension == 2 else ("area", "m^2")
         edge = "" if self.is_bounded else ", as far as was sought"
         return (
             f"{', '.join(self.grasp.names)} hold {self.weight!r} with centres of mass over a region of "
-            f"{what} {self.size:.6g}{edge}, {100 * max(self.gap, _NOTHING):.2g} % undecided or less"
+            f"{what} {self.size:.6g} {unit}{edge}, {100 * max(self.gap, _NOTHING):.2g} % undecided or less"
         )
 
     def __repr__(self) -> str:
@@ -122,23 +123,22 @@ def held_centres(
     if not weight.force.any():
         raise InvalidInput("weight must have a force: a torque alone does not depend on the centre of mass")
     number(gap, "gap", above=0)
-    most = number(reach, "reach", above=0) * (grasp.size or 1.0)
+    most, size = number(reach, "reach", above=0), grasp.size or 1.0
     unit = hypot(*weight.force)  # of a force whose squares vanish, too
     axes = tangents_of((weight.force / unit)[None])[0]
     limits = [f / unit for f in Criteria("effort", max_force, reserve=0.0).limits(grasp)]
     base = weight.vector / unit
     directions = np.zeros((base.size, len(axes)))
-    directions[grasp.dimension :] = np.array([torque(a, weight.force / unit) for a in axes]).T
+    # places in sizes of the grasp: whatever the unit of length, the numbers are near 1
+    directions[grasp.dimension :] = size * np.array([torque(a, weight.force / unit) for a in axes]).T
     region = _Region(grasp, base, directions, limits, unit, most)
     region.search(gap)
     if not region.points:
         raise infeasible(grasp, weight, Criteria("effort", max_force, reserve=0.0))
     inner, outer = region.inner, region.outer
     bounded = bool(np.abs(outer).max() < most * (1 - 1e-9))
-    return HeldCentres(
-        grasp, weight, read_only(axes.copy()), read_only(inner @ axes), read_only(outer @ axes), bounded,
-        tuple(region.states),
-    )  # fmt: skip
+    corners = (read_only(size * places @ axes) for places in (inner, outer))
+    return HeldCentres(grasp, weight, read_only(axes.copy()), *corners, bounded, tuple(region.states))
 
 
 class _Region:

@@ -89,14 +89,16 @@ def largest_load(
     if base is not None:
         check_load(grasp, base)
     limits = Criteria("effort", max_force, reserve=0.0).limits(grasp)
-    unit = force_unit(grasp, direction)
+    one = force_unit(grasp, direction)  # of the factor
+    unit = _unit_of_forces(grasp, base, limits, one)
     start = (base.vector if base is not None else np.zeros_like(direction.vector)) / unit
-    along = direction.vector[:, None] / unit
+    along = direction.vector[:, None] / one
     scaled = [limit / unit for limit in limits]
     found = farthest(grasp, start, along, np.ones(1), scaled, unit=unit)
     if found.k is not None and found.is_unbounded and _is_held_somewhere(grasp, start, along, scaled, unit):
         ray = Reached(np.ones(1), found.forces / float(found.k[0]), found.twist)
-        if (held := held_state(grasp, 0 * start, along, ray, np.ones(1), scaled, unit)) is not None:
+        of_one = [limit / one for limit in limits]
+        if (held := held_state(grasp, 0 * start, along, ray, np.ones(1), of_one, one)) is not None:
             return LargestLoad(grasp, direction, base, inf, (inf, inf), held[1], None)
     k = found.k
     held = None
@@ -109,13 +111,25 @@ def largest_load(
             grasp, direction if base is None else base, Criteria("effort", max_force, reserve=0.0)
         )
         if reason.certificate is None and k is not None:
-            raise SolverFailed(f"no forces were found for the largest factor, about {float(k[0]):.6g}")
+            raise SolverFailed(
+                f"no forces were found for the largest factor, about {float(k[0]) * (unit / one):.6g}"
+            )
         raise reason
-    factor = float(held[0][0])
+    factor = float(held[0][0]) * (unit / one)
     normal, upper = half_plane(grasp, start, along, found.twist, scaled, found.row_duals, unit)
-    upper = max(upper, factor) if normal[0] > 0 else inf
+    upper = max(upper * (unit / one), factor) if normal[0] > 0 else inf
     escape = None if upper == inf else _escape(grasp, direction, base, found, limits, upper)
     return LargestLoad(grasp, direction, base, factor, (factor, upper), held[1], escape)
+
+
+def _unit_of_forces(grasp: Grasp, base: Wrench | None, limits: list[float], one: float) -> float:
+    """Of what the largest load will be [N]: of limits where all forces have one, of the base, or ``one``."""
+    finite = [limit for limit in limits if limit < inf]
+    if len(finite) == len(limits):
+        return max(finite)
+    if base is not None and base.vector.any():
+        return force_unit(grasp, base)
+    return max(finite, default=one)
 
 
 def _is_held_somewhere(grasp: Grasp, base: Array, along: Array, limits: list[float], unit: float) -> bool:
@@ -134,7 +148,7 @@ def _escape(
     """The proof that a load just above the upper bound is not balanced."""
     mu, twist = tuple(grasp.frictions.tolist()), found.twist
     for step in _ABOVE:
-        load = (upper + step * max(abs(upper), 1.0)) * direction
+        load = (upper * (1 + step) or step) * direction
         load = load if base is None else base + load
         if grasp.limit_rows is not None:
             by_rows = escape_by_rows(grasp, load, twist, found.row_duals, list(mu), limits)

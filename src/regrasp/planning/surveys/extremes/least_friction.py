@@ -103,7 +103,8 @@ def least_friction(
     if max_force is not None:
         number(max_force, "max_force", above=0)
     if not load.vector.any():
-        still = GraspState(_with(grasp, 0.0, rough), load, [[0.0] * grasp.width] * len(grasp))
+        smooth = _with(grasp, 0.0, rough)
+        still = GraspState(smooth, load, [[0.0] * smooth.width] * len(grasp))
         return LeastFriction(grasp, load, 0.0, (0.0, 0.0), still, None)
     general = SQUEEZE * force_unit(grasp, load)
     criteria = Criteria("effort", general if max_force is None else min(max_force, general), reserve=0.0)
