@@ -241,7 +241,7 @@ def test_centres_in_another_frame() -> None:
 
 @pytest.mark.parametrize("unit", [1e-13, 1e-6, 1e9, 1e13])
 def test_centres_and_loads_of_any_size(unit: float) -> None:
-    """A unit of length scales the region; one of force, and a limit far from the direction's size, nothing."""
+    """A unit of length scales the region, one of force nothing, a limit its factor."""
     other = rg.Grasp(rg.Contact(unit * c.position, c.normal, c.friction) for c in GRASP)
     region = rg.held_centres(GRASP, LOAD, max_force=10)
     assert rg.held_centres(other, LOAD, max_force=10).size == pytest.approx(unit * region.size, rel=1e-6)
