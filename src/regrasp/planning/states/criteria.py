@@ -184,8 +184,8 @@ class Criteria:
         from regrasp.planning.states.withstanding.demand import Demand
 
         if isinstance(self.objective, WithstoodFactor):
-            loads = self.objective.deviations(grasp)
-            return Demand(grasp, loads, self.stiffness, self.controlled, self.early_loss, is_kept=False)
+            factored = self.objective.deviations(grasp)
+            return Demand(grasp, factored, self.stiffness, self.controlled, self.early_loss, is_kept=False)
         loads = self.disturbance
         if loads is None:  # no deviation, but the loss of a finger
             loads = LoadSet.hull([Wrench.from_vector([0.0] * len(grasp.matrix))])

@@ -137,8 +137,8 @@ def held_centres(
         raise infeasible(grasp, weight, Criteria("effort", max_force, reserve=0.0))
     inner, outer = region.inner, region.outer
     bounded = bool(np.abs(outer).max() < most * (1 - 1e-9))
-    corners = (read_only(size * places @ axes) for places in (inner, outer))
-    return HeldCentres(grasp, weight, read_only(axes.copy()), *corners, bounded, tuple(region.states))
+    inner, outer = read_only(size * inner @ axes), read_only(size * outer @ axes)
+    return HeldCentres(grasp, weight, read_only(axes.copy()), inner, outer, bounded, tuple(region.states))
 
 
 class _Region:
