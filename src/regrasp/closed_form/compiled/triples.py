@@ -101,7 +101,10 @@ def _loop(digest: str) -> Any:
         start, stop, triples, allowed, points, normals, frictions, limits, loads, angles, cos_half,
         peak_ratio, with_margin, result,
     ):  # fmt: skip
-        """Margins (O, T) of triples (T, 3) under loads (O, 6); frictions and limits (2, N), usable last."""
+        """Margins (O, T) of triples (T, 3) under loads (O, 6); frictions and limits (2, N), usable last.
+
+        Where the result is ``NO_HOLD`` already it stays so.
+        """
         _ = digest
         for block in range(start, stop):
             work = _workspace(len(angles))
@@ -123,6 +126,8 @@ def _loop(digest: str) -> Any:
                 _write_triple(work, frame, fingers.normals, angles)
                 found = 0
                 for o in range(len(loads)):
+                    if result[o, p] == NO_HOLD:
+                        continue
                     force = (loads[o, 0], loads[o, 1], loads[o, 2])
                     torque = (loads[o, 3], loads[o, 4], loads[o, 5])
                     moment = _centroid_moment(frame, force, torque)

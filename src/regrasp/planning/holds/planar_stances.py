@@ -39,7 +39,7 @@ class Fingering(Stances):
         allowed: NDArray[np.bool_] | None = None,
         reach: float = REACH,
     ) -> None:
-        self.allowed = allowed
+        self.allowed, self.least = allowed, max(least, 0.0)
         self.margins = graph.margins.T.copy(order="C")
         if least > 0:
             self.margins[self.margins < least] = -1.0

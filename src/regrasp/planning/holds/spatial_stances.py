@@ -1,5 +1,6 @@
 """Stances of four fingers in space: every hold is a triple of contacts (docs/facts.md, 7)."""
 
+from copy import copy
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -41,8 +42,7 @@ class Quads(Stances):
     ) -> None:
         self.graph, self.allowed = graph, allowed
         self.least = max(least, 0.0)
-        self.margins = np.full((len(graph.triples), len(graph.loads)), -1.0, dtype=np.float32)
-        self._seen = np.zeros(len(graph.triples), dtype=np.bool_)
+        self._forget()
         if allowed is None:
             self.count = len(graph.contacts)
             self.rows = np.arange(len(graph.triples))
@@ -60,6 +60,27 @@ class Quads(Stances):
         self.apart = np.arctan2(sines, directions @ directions.T)
         self.turns(max_turn, reach)
 
+    def among(self, few: NDArray[np.int64], least: float) -> "Quads":
+        """The same in some directions, by their places, and with another least margin [rad]."""
+        some = copy(self)
+        some.graph = self.graph if few.size == len(self.apart) else self.graph.under(few)
+        some.least, some.apart = max(least, self.least), self.apart[np.ix_(few, few)]
+        some._forget()
+        some.turns(*self.largest)
+        return some
+
+    def bounded(self) -> "Quads":
+        """The same with bounds in the place of margins: 0 [rad] wherever these may not be below the least."""
+        bounds = copy(self)
+        bounds._forget()
+        bounds._bounds = True
+        return bounds
+
+    def _forget(self) -> None:
+        self._bounds = False
+        self.margins = np.full((len(self.graph.triples), len(self.graph.loads)), -1.0, dtype=np.float32)
+        self._seen = np.zeros(len(self.graph.triples), dtype=np.bool_)
+
     @property
     def moves(self) -> "Moves":
         """The compiled loops over stances."""
@@ -69,11 +90,22 @@ class Quads(Stances):
 
     def look_at(self, holds: Any) -> None:
         """Finds the margins of their triples, of those that were not looked at before."""
+        self._look_at_rows(self.rows[holds])
+
+    def lower(self, row: int, o: int, margin: float) -> None:
+        """Of a hold no more than a margin [rad] counts."""
+        self._look_at_rows(np.array([row]))
+        super().lower(row, o, margin)
+
+    def _look_at_rows(self, rows: NDArray[np.int64]) -> None:
         seen = self._seen.copy()
-        seen[self.rows[holds]] = True
+        seen[rows] = True
         new = np.flatnonzero(seen & ~self._seen)
-        margins = self.graph.margins_of(new)
-        self.margins[new] = np.where(margins < self.least, np.float32(-1.0), margins)
+        if self._bounds:
+            self.margins[new] = self.graph.bounds_of(new, self.least)
+        else:
+            margins = self.graph.margins_of(new, self.least)
+            self.margins[new] = np.where(margins < self.least, np.float32(-1.0), margins)
         self._seen = seen
 
     def look_around(self, frontier: NDArray[np.int64], wanted: NDArray[np.bool_]) -> None:

@@ -32,8 +32,9 @@ class Stances(ABC):
     hold. margins: (rows, O) [rad], -1 where it does not hold, or was not looked at. count: of contacts.
     near: (O, k) from where the object may turn to an orientation within a stance, the nearest first; turning:
     (O, k) these turns [rad]. apart: (O, O) angles between all orientations [rad]; further: (O, O) how many
-    steps such a turn takes beyond one, inf where it is too large. allowed: (fingers, V) which finger may
-    touch which contact; None where all may touch all.
+    steps such a turn takes beyond one, inf where it is too large. largest: turn in a step, and within a
+    stance [rad]. least: margin below which a hold is none [rad]. allowed: (fingers, V) which finger may touch
+    which contact; None where all may touch all.
     """
 
     fingers: ClassVar[int]
@@ -46,6 +47,8 @@ class Stances(ABC):
     apart: Array
     further: Array
     allowed: NDArray[np.bool_] | None
+    largest: tuple[float, float]
+    least: float
 
     def look_at(self, holds: Any) -> None:  # noqa: B027 - where all margins are known already
         """Holds (n,) by their numbers whose margins are about to be read."""
@@ -57,6 +60,11 @@ class Stances(ABC):
 
     def look_at_all(self) -> None:  # noqa: B027 - as above
         """The same for all holds."""
+
+    def lower(self, row: int, o: int, margin: float) -> None:
+        """Of a hold no more than a margin [rad] counts."""
+        now = min(float(self.margins[row, o]), margin)
+        self.margins[row, o] = now if now >= self.least else -1.0
 
     @property
     @abstractmethod
@@ -81,6 +89,7 @@ class Stances(ABC):
         Two holds of one stance, less than pi apart, hold everything between them together (docs/facts.md, 6):
         where that is more than a step may turn, all fingers of the stance take part on the way.
         """
+        self.largest = max_turn, reach
         self.near, self.turning = nearest_turns(self.apart, reach)
         steps = np.maximum(np.ceil(self.apart / max_turn - 1e-9), 1.0)
         self.further = np.where(self.apart <= reach + 1e-9, steps - 1, np.inf)

@@ -31,6 +31,7 @@ FACETS = 8
 """Default facets of the inner pyramids."""
 MOST_BYTES = 2 * 2**30
 """Default memory for the margins."""
+_SLACK = 1e-9  # [rad] by which cones are narrowed less than a margin, for rounding
 _TOGETHER = 64  # loads whose margins are held at a time where only verdicts are kept
 
 
@@ -119,21 +120,37 @@ class TripleGraph(ArrayValue):
         Raises ``InvalidInput`` where the table needs more than ``most_bytes``.
         """
         self._refuse_above(4)
-        result = np.empty((len(self.loads), len(self.triples)), dtype=np.float32)
+        result = np.zeros((len(self.loads), len(self.triples)), dtype=np.float32)
         self._judge(self.loads, True, result)
         return result
 
-    def margins_of(self, places: NDArray[np.int64]) -> NDArray[np.float32]:
-        """(n, O) the margins [rad] of some triples, by their places in ``triples``; each is found once."""
+    def margins_of(self, places: NDArray[np.int64], least: float = 0.0) -> NDArray[np.float32]:
+        """(n, O) the margins [rad] of some triples, by their places in ``triples``; each is found once.
+
+        least: a margin below it [rad] need not be known, and may come as -1.
+        """
         if "margins" in self.__dict__:
             return self.margins[:, places].T
         table, known = self._found
-        new = places[~known[places]]
+        new = places[known[places] > least]
         if new.size:
-            result = np.empty((len(self.loads), new.size), dtype=np.float32)
+            result = self._verdicts(new, least) if least > 0 else self._unknown(new.size)
             self._judge(self.loads, True, result, new)
-            table[new], known[new] = result.T, True
+            table[new], known[new] = result.T, least
         return table[places]
+
+    def bounds_of(self, places: NDArray[np.int64], least: float) -> NDArray[np.float32]:
+        """(n, O) for some triples 0 where margins may be ``least`` [rad] or more, -1 where they are not."""
+        verdicts = self._verdicts(places, least).T
+        return np.where((verdicts == -1.0) | (verdicts == -2.0), np.float32(-1.0), np.float32(0.0))
+
+    def under(self, few: NDArray[np.int64]) -> "TripleGraph":
+        """The same triples under some of the loads, by their places."""
+        graph = object.__new__(TripleGraph)  # a value is its own copy
+        known = ("margins", "holds", "_found")
+        graph.__dict__.update({name: each for name, each in self.__dict__.items() if name not in known})
+        object.__setattr__(graph, "loads", self.loads[few])
+        return graph
 
     @cached_property
     def holds(self) -> NDArray[np.bool_]:
@@ -145,6 +162,7 @@ class TripleGraph(ArrayValue):
         some = np.empty((min(_TOGETHER, len(self.loads)), len(self.triples)), dtype=np.float32)
         for o in range(0, len(self.loads), _TOGETHER):
             loads = self.loads[o : o + _TOGETHER]
+            some[:] = 0.0
             self._judge(loads, False, some[: len(loads)])
             result[o : o + len(loads)] = some[: len(loads)] >= 0
         return result
@@ -177,11 +195,20 @@ class TripleGraph(ArrayValue):
         return Fingers(points, normals, mu, limits, usable_mu, usable_limits)
 
     @cached_property
-    def _found(self) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-        """(T, O) margins of the triples that were asked for one by one, and (T,) which these are."""
+    def _found(self) -> tuple[NDArray[np.float32], Array]:
+        """(T, O) margins of triples that were asked for, and (T,) the least margin [rad] that was."""
         self._refuse_above(4)
         count = len(self.triples)
-        return np.empty((count, len(self.loads)), dtype=np.float32), np.zeros(count, dtype=np.bool_)
+        return np.empty((count, len(self.loads)), dtype=np.float32), np.full(count, inf)
+
+    def _unknown(self, count: int) -> NDArray[np.float32]:
+        return np.zeros((len(self.loads), count), dtype=np.float32)
+
+    def _verdicts(self, places: NDArray[np.int64], least: float) -> NDArray[np.float32]:
+        """(O, n) -1 where triples do not hold in cones narrowed by ``least`` [rad], whatever the forces."""
+        result = self._unknown(places.size)
+        self._judge(self.loads, False, result, places, max(least - _SLACK, 0.0))
+        return result
 
     def _judge(
         self,
@@ -189,15 +216,20 @@ class TripleGraph(ArrayValue):
         with_margin: bool,
         result: NDArray[np.float32],
         places: NDArray[np.int64] | None = None,
+        narrowed: float = 0.0,
     ) -> None:
+        """Writes to ``result`` what triples in narrowed cones [rad] hold, but where it is -1 already."""
         from regrasp.closed_form.compiled.triples import triple_margins
 
         triples, allowed = self.triples, self._allowed
         if places is not None:
             triples, allowed = triples[places], allowed[places]
             triples.setflags(write=False)  # as above
+        frictions = self._frictions
+        if narrowed > 0:
+            frictions = np.tan(np.maximum(np.arctan(frictions) - narrowed, 0.0))
         triple_margins(
-            triples, allowed, *self._frames, self._frictions, self._limits, loads,
+            triples, allowed, *self._frames, frictions, self._limits, loads,
             facet_angles(self.facets), cos(pi / self.facets), float(self.peak_ratio), with_margin, result,
         )  # fmt: skip
 

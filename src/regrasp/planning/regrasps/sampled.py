@@ -4,15 +4,18 @@ from dataclasses import replace
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regrasp.errors import Infeasible, SolverFailed
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.planning.holds.barred import Barred, BarredSearch
 from regrasp.planning.holds.cost_search import cheapest
-from regrasp.planning.holds.graphs import place_of
+from regrasp.planning.holds.few_directions import few_directions_first
+from regrasp.planning.holds.graphs import AnyGraph, place_of
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.sequences import Hold, Sequence, as_sequence, preferred
+from regrasp.planning.holds.spatial_stances import Quads
 from regrasp.planning.holds.stances import Stances
 from regrasp.planning.holds.triples import TripleGraph
 from regrasp.planning.regrasps.asked import Asked
@@ -40,24 +43,62 @@ def sampled_sequences(
     their margins without. known: margins [rad] of holds, below 0 of such as are not to be used; it grows.
     barred: what fingers may not do; without ``extra``.
     """
-    graph = problem.graph
-    stances = problem.setting.stances(graph, turn, reach, problem.allowed, problem.least_margin)
-    pressed = problem.judges_holds or (isinstance(graph, TripleGraph) and problem.criteria.presses)
     known = {} if known is None else known
+    start, goal, _ = problem.places
+    if isinstance(problem.graph, TripleGraph) and not (extra or problem.weights or barred):
+        both = len({*start, *goal})  # where each finger goes straight to its place no other contacts hold
+        direct = _among(problem, problem.graph_on(problem.contacts[:both]), 0, turn, reach, known)
+        if direct and direct[0].moves == len(set(goal) - set(start)):
+            return direct
+    return _among(problem, problem.graph, extra, turn, reach, known, barred)
+
+
+def _among(
+    problem: Asked,
+    graph: AnyGraph,
+    extra: int,
+    turn: float,
+    reach: float,
+    known: dict[Hold, float],
+    barred: Barred | None = None,
+) -> list[Sequence]:
+    """The best among the holds of a graph, on the first contacts of the problem or on all."""
+    allowed = None if problem.allowed is None else problem.allowed[:, : len(graph.contacts)]
+    stances = problem.setting.stances(graph, turn, reach, allowed, problem.least_margin)
+    every = np.arange(len(problem.setting.orientations))
+
+    def search(some: Stances, places: NDArray[np.int64]) -> list[Sequence]:
+        more = extra if places.size == every.size else 0
+        return _searched(problem, graph, some, places, more, known, barred)
+
+    if isinstance(stances, Quads) and not (problem.weights or barred or problem.judges_holds):
+        return few_directions_first(stances, *problem.places, search, every)
+    return search(stances, every)
+
+
+def _searched(
+    problem: Asked,
+    graph: AnyGraph,
+    stances: Stances,
+    places: NDArray[np.int64],
+    extra: int,
+    known: dict[Hold, float],
+    barred: Barred | None,
+) -> list[Sequence]:
+    """The best among stances, whose orientations have these places (O,) among all, as the holds found."""
+    pressed = problem.judges_holds or (isinstance(graph, TripleGraph) and problem.criteria.presses)
     if problem.judges_holds and isinstance(graph, HoldGraph):
         stances.margins[~problem.kept_pairs] = -1.0
+    here = {o: n for n, o in enumerate(places.tolist())}
 
     def note(hold: Hold) -> None:
-        row, o = place_of(graph, hold[:-1]), hold[-1]
-        margin = known[hold]
-        stances.margins[row, o] = (
-            -1.0 if margin < problem.least_margin else min(stances.margins[row, o], margin)
-        )
+        if hold[-1] in here and max(hold[:-1]) < len(graph.contacts):
+            stances.lower(place_of(graph, hold[:-1]), here[hold[-1]], known[hold])
 
     for hold in known:
         note(hold)
     while True:
-        found = _best(problem, stances, extra, barred)
+        found = [_placed(sequence, places) for sequence in _best(problem, stances, extra, barred)]
         new = {hold for sequence in found for hold in sequence.holds} - known.keys() if pressed else set()
         if not new:
             return found
@@ -70,6 +111,10 @@ def sampled_sequences(
             judge = _kept_margin if problem.judges_holds else _pressed_margin
             known[hold] = judge(problem, hold[:-1], hold[-1])
             note(hold)
+
+
+def _placed(sequence: Sequence, places: NDArray[np.int64]) -> Sequence:
+    return replace(sequence, holds=tuple((*hold[:-1], int(places[hold[-1]])) for hold in sequence.holds))
 
 
 def _best(problem: Asked, stances: Stances, extra: int, barred: Barred | None) -> list[Sequence]:
