@@ -115,11 +115,12 @@ def widest_by_cvxpy(
 def widest_of_ball_by_cvxpy(
     grasp: rg.Grasp, load: rg.Wrench, change: Array, axes: Array, limit: float
 ) -> float:
-    """The same for d = A z, |z| <= 1, an upper bound in space: edges at 720 angles; |f| + s |R A| <= "
-    "limit."""
+    """The same for d = A z, |z| <= 1, from above: edges at 720 angles, limits along some 2,000 directions."""
     n, d = len(grasp), grasp.dimension
     f, s = cp.Variable(n * d), cp.Variable()
     held = [grasp_matrix(grasp) @ f + load.vector == 0, s >= 0]
+    directions = np.random.default_rng(0).normal(size=(2000, d))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
     for i, c in enumerate(grasp):
         g, answer = f[d * i : d * i + d], change[d * i : d * i + d] @ axes
         if d == 2:
@@ -130,7 +131,7 @@ def widest_of_ball_by_cvxpy(
             across = np.cos(turns) * t1[0] + np.sin(turns) * t1[1]
         edges = c.friction * c.normal - across
         held += [edges @ g >= s * np.linalg.norm(edges @ answer, axis=1)]
-        held += [cp.norm(g) + s * np.linalg.norm(answer, 2) <= limit]
+        held += [directions @ g + s * np.linalg.norm(directions @ answer, axis=1) <= limit]
     problem = cp.Problem(cp.Maximize(s), held)
     problem.solve(solver="CLARABEL")
     return float(s.value)

@@ -305,7 +305,8 @@ class ChosenState(GraspState):
 
     For ``angle`` [rad] and ``friction_use`` mostly 1e-7, and never more than 1e-5 unless rounding hides what
     is between; infinite where a solver failed next to the edge and forces were found without one. With
-    ``min_normal`` it is a bound, too, and often far above what is left: no twist proves more.
+    ``min_normal`` it is a bound, too, and often far above what is left: no twist proves more. Of ``wrench``
+    with a ball or an ellipsoid it holds what polytopes in the place of these leave open.
     """
 
     def __init__(

@@ -18,6 +18,8 @@ from regrasp.planning.states.escape import escape_twist, limited_twist
 from regrasp.planning.states.objectives import FORCE, Bound, ConvexObjective, recorded
 from regrasp.planning.states.pressing import presses, pressing
 from regrasp.planning.states.program import state_program
+from regrasp.planning.states.withstanding.apexes import Apexes
+from regrasp.planning.states.withstanding.cutting import cut_corners, left_open
 from regrasp.programs import Program, Solution, Status, solve
 from regrasp.programs.backends import answered_quickly, asked, solved_quickly
 
@@ -91,7 +93,7 @@ class Chooser:
         least: Array | None = None,
         demand: "Demand | None" = None,
     ) -> None:
-        self.least, self.demand = least, demand
+        self.least, self.demand, self.apexes = least, demand, Apexes()
         self.grasp, self.load, self.backend, self.facets = grasp, load, backend, facets
         self.matrix, self.vector = grasp.scaled_matrix, load.vector / grasp.lengths
         self.unit = self.load_size = force_unit(grasp, load)
@@ -180,10 +182,11 @@ class Chooser:
         limits: list[float],
         weights: Array | None,
         slack: float,
+        inside: bool = True,
     ) -> Program:
         """The program of a convex objective, of which a part ``slack`` of frictions and limits is kept back.
 
-        weights: as ``state_program``.
+        weights: as ``state_program``. inside: as ``withstanding.rows``.
         """
         kept = 1 - slack
         program = state_program(
@@ -204,7 +207,7 @@ class Chooser:
 
             mu, bounds = [kept * mu for mu in frictions], [kept * limit for limit in limits]
             by_factor = objective.bound is Bound.FACTOR
-            program = with_rows(program, demand, mu, bounds, self.unit, by_factor)
+            program = with_rows(program, demand, mu, bounds, self.unit, by_factor, self.apexes, inside)
         ends = (limit for limit in limits if limit < inf) if self.loose == inf else ()
         return pressing(program, self.grasp, self.least, self.unit, max(ends, default=self.unit))
 
@@ -242,15 +245,30 @@ class Chooser:
             )
         if polish is not None:
             forces = polish.searched(self, objective, forces, frictions, limits)
-        return Found(forces, answer.absolute_gap * objective.scale(self.unit))
+        gap = answer.absolute_gap * objective.scale(self.unit)
+        if objective.bound is Bound.FACTOR and self.demand is not None and self.demand.is_round:
+            relaxed = self.program(objective, frictions, limits, None, 0.0, inside=False)
+            gap += left_open(relaxed, self.backend, float(answer.value[-1]))
+        return Found(forces, gap)
 
     def _claimed(
         self, objective: ConvexObjective, frictions: list[float], limits: list[float], quick: bool
     ) -> Solution | None:
         """The answer with forces; None where the back end says there are none."""
+        demand = self.demand if self.demand is not None and self.demand.is_round else None
+        by_factor = objective.bound is Bound.FACTOR
+
+        def laid_out() -> Program:
+            return self.program(objective, frictions, limits, None, SLACK)
+
+        if demand is not None and by_factor:
+            cut_corners(self.apexes, laid_out, self.backend, by_factor)
         answer = self.solved(objective, frictions, limits, quick=quick)
         if answer.status is Status.INFEASIBLE:  # at the limit of what can be held the slack may be missed
             answer = self.solved(objective, frictions, limits, slack=0.0)
+        if answer.status is Status.INFEASIBLE and demand is not None and demand.is_kept:
+            cut_corners(self.apexes, laid_out, self.backend, by_factor)
+            answer = self.solved(objective, frictions, limits, quick=quick)
         if answer.status is Status.INFEASIBLE:
             return None
         if answer.status is Status.UNBOUNDED:

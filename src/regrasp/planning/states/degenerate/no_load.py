@@ -47,6 +47,7 @@ class Squeezer(Chooser):
         limits: list[float],
         weights: Array | None,
         slack: float,
+        inside: bool = True,
     ) -> Program:
         """That of ``squeeze_program``; objective and limits are its own."""
         mu = (1 - slack) * np.array(frictions)

@@ -63,6 +63,11 @@ class Demand:
                 f"{self.disturbance.dimension}"
             )
 
+    @property
+    def is_round(self) -> bool:
+        """Whether the set is a ball or an ellipsoid, for which polytopes stand."""
+        return self.disturbance.half_axes is not None
+
     @cached_property
     def cases(self) -> tuple[Case, ...]:
         """The stiffness of those that stay; of all; and the loss of those that leave or arrive."""

@@ -3,25 +3,25 @@
 In the plane a cone has two edges g, and for any set g . f >= sigma(-R' g) says it all. In space polytopes by
 their vertices v: f + R v in the cone. Round sets: f = a + b with b in the cone and a in the intersection of
 the half-spaces h_k . a >= sigma(-R' h_k) of an outer pyramid h_k of the dual cone: since sigma is convex,
-a + R d is in the cone for every d (an apex of it), and so is f + R d. That holds in proportion: of the widest
-factor it reaches 0.99 or more (24 sides), where a pyramid in the place of the cone may lose all of it.
+a + R d is in the cone for every d (an apex of it), and so is f + R d. That
+holds in proportion, where a pyramid in the place of the cone may lose all of a factor.
 
-Limits: |f + R v| <= L by vertices; of a ball |f + R c| + |R A| <= L, sufficient. Linear ones like edges.
+Limits: |f + R v| <= L by vertices. Of a ball (L, f) is in a cone, too, and so the same way: (L, f) = (s, a) +
+b with b in that cone and s - u_k . a >= sigma(R' u_k). Of soft fingers |f + R c| + |R A| <= L: sufficient.
+Corners h_k and u_k that matter are cut off (``cutting``): 0.99 or more of the widest factor.
 """
 
-from functools import lru_cache
-from math import cos, inf, pi
+from math import inf
 
 import numpy as np
 from scipy import sparse
 
-from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
-from regrasp.planning.states.withstanding.demand import Case, Demand
+from regrasp.planning.states.withstanding.apexes import CONE, LIMIT, Apexes, Key
+from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Rows
 
-SIDES = 24
-_SPHERE = 60
 _NOTHING = 1e-12
 """Of a response: what of it a frictionless finger may make across its normal, for rounding."""
 _SPARE = 1e-8
@@ -35,38 +35,50 @@ def with_rows(
     limits: list[float],
     unit: float,
     by_factor: bool,
+    apexes: Apexes | None = None,
+    inside: bool = True,
 ) -> Program:
     """The program whose forces withstand the demand, as it is or by the factor that is its last unknown.
 
-    frictions, limits: (n,), infinite for none; forces come in units of ``unit`` [N].
+    frictions, limits: (n,), infinite for none; forces come in units of ``unit`` [N]. apexes: the polytopes of
+    round sets, those to begin with if not given. inside: whether forces are safe; otherwise polytopes inside
+    round sets ask for less than these do, and the factor is a bound.
     """
     n, w = len(demand.grasp), demand.grasp.width
-    apexes = w > 2 and demand.disturbance.half_axes is not None
-    more = sum(len(case.contacts) for case in demand.cases) * w if apexes else 0
+    is_round = inside and demand.disturbance.half_axes is not None
+    widths = [w * (w > 2) + (w + 1) * (w < 4 and limit < inf) if is_round else 0 for limit in limits]
+    more = sum(widths[i] for case in demand.cases for i in case.contacts)
     total = program.q.size + more
-    demands = _Demands(Rows(total), demand, np.array(frictions), np.array(limits), unit, total, by_factor)
+    apexes = Apexes() if apexes is None else apexes
+    apexes.forget()
+    numbers = np.array(frictions), np.array(limits), unit, total, by_factor
+    demands = _Demands(Rows(total), demand, *numbers, apexes, program.b.size, inside)
     place = n * w
-    for case in demand.cases:
+    for k, case in enumerate(demand.cases):
         for i in case.contacts:
-            demands.contact(case, i, place)
-            place += w if apexes else 0
+            demands.contact(k, i, place)
+            place += widths[i]
     if by_factor:
         demands.rows.at_least_zero(demands.last)
     added = demands.rows.program(np.zeros(total))
     at = n * w
-
-    def wider(matrix: sparse.csc_matrix) -> sparse.csc_matrix:
-        none = sparse.csc_matrix((matrix.shape[0], more))
-        return sparse.hstack([matrix[:, :at], none, matrix[:, at:]], format="csc")
-
+    P = _wider(program.P, at, more, more)
+    P.indices[P.indices >= at] += more
     return Program(
-        sparse.csc_matrix(wider(wider(program.P).T.tocsc())),
+        P,
         np.concatenate([program.q[:at], np.zeros(more), program.q[at:]]),
-        sparse.vstack([wider(program.A), added.A], format="csc"),
+        sparse.vstack([_wider(program.A, at, more, 0), added.A], format="csc"),
         np.append(program.b, added.b),
         (*program.blocks, *added.blocks),
         size=program.size,
     )
+
+
+def _wider(matrix: sparse.csc_matrix, at: int, columns: int, rows: int) -> sparse.csc_matrix:
+    """The matrix with empty columns before column ``at``, and with room for more rows."""
+    starts = np.concatenate([matrix.indptr[:at], np.repeat(matrix.indptr[at], columns), matrix.indptr[at:]])
+    m, n = matrix.shape
+    return sparse.csc_matrix((matrix.data, matrix.indices.copy(), starts), (m + rows, n + columns))
 
 
 class _Demands:
@@ -81,7 +93,11 @@ class _Demands:
         unit: float,
         total: int,
         by_factor: bool,
+        apexes: Apexes,
+        first_row: int,
+        inside: bool,
     ) -> None:
+        self.apexes, self.first_row, self.inside = apexes, first_row, inside
         self.rows, self.demand, self.by_factor = rows, demand, by_factor
         self.frictions, self.limits, self.unit, self.total = frictions, limits, unit, total
         self.last = np.zeros((1, total))
@@ -89,9 +105,9 @@ class _Demands:
         self.set: LoadSet = demand.disturbance
         self.center = self.set.center.vector
 
-    def contact(self, case: Case, i: int, place: int) -> None:
-        """The cone and the limit of one contact; ``place``: of the columns of its apex."""
-        cones = self.demand.grasp.cones
+    def contact(self, k: int, i: int, place: int) -> None:
+        """The cone and the limit of one contact in a case; ``place``: of the columns of its apexes."""
+        case, cones = self.demand.cases[k], self.demand.grasp.cones
         n, w = len(self.demand.grasp), self.demand.grasp.width
         pick = np.zeros((w, self.total))  # T f, by rows
         pick[:, : n * w] = (
@@ -109,18 +125,26 @@ class _Demands:
             cone = np.vstack([mu * normal, tangents])
             for vertex in self._vertices():
                 self._round(cone @ pick, cone @ answer @ vertex, cone @ answer @ self.center)
-        else:
+        elif self.inside:
             apex = np.zeros((w, self.total))
             apex[:, place : place + w] = np.eye(w)
-            self._faces(mu * normal - _outside(w) @ tangents, apex, answer)
+            self._faces(mu * normal - self._corners((k, i, CONE), w - 1) @ tangents, apex, answer)
             none = np.zeros(w)
             self._round(np.vstack([mu * normal, tangents]) @ (pick - apex), none, none)
+        else:
+            self._faces(mu * normal - self.apexes.points((k, i, CONE), w - 1) @ tangents, pick, answer)
         rows = self.demand.grasp.limit_rows
         if rows is not None and (rows.contacts == i).any():
             mine = rows.contacts == i
             self._faces(-rows.rows[mine], pick, answer, rows.bounds[mine] / self.unit)
         if self.limits[i] < inf:
-            self._limit(self.limits[i] / self.unit, pick, answer)
+            limit = self.limits[i] / self.unit
+            if self.set.half_axes is None or (w > 3 and self.inside):
+                self._limit(limit, pick, answer)
+            elif self.inside:
+                self._round_limit(limit, pick, answer, (k, i, LIMIT), place + w * (w > 2))
+            else:
+                self._faces(-self.apexes.points((k, i, LIMIT), w), pick, answer, limit)
 
     def _vertices(self) -> Array:
         found = self.set.cover
@@ -144,6 +168,21 @@ class _Demands:
             spare[0] = _SPARE * (1 + np.abs(change).max())
             self.rows.second_order(matrix, change - spare)
 
+    def _corners(self, key: Key, size: int) -> Array:
+        return self.apexes.corners(key, size, self.first_row + len(self.rows))
+
+    def _round_limit(self, limit: float, pick: Array, answer: Array, key: Key, place: int) -> None:
+        """Faces around an apex (s, a), and (L - s, f - a) in the cone of second order."""
+        size = len(pick)
+        apex = np.zeros((size + 1, self.total))
+        apex[:, place : place + size + 1] = np.eye(size + 1)
+        corners = self._corners(key, size)
+        faces = np.hstack([np.ones((len(corners), 1)), -corners])
+        self._faces(faces, apex, np.vstack([np.zeros(answer.shape[1]), answer]))
+        force = np.vstack([np.zeros(self.total), pick])
+        kept = limit if self.by_factor else (1 - _SPARE) * limit
+        self.rows.second_order(force - apex, np.append(kept, np.zeros(size)))
+
     def _limit(self, limit: float, pick: Array, answer: Array) -> None:
         axes, matrix = self.set.half_axes, np.vstack([np.zeros((1, self.total)), pick])
         constant = np.append(limit, answer @ self.center)
@@ -157,18 +196,3 @@ class _Demands:
                 self.rows.second_order(matrix + change[:, None] * self.last, constant)
             else:
                 self.rows.second_order(matrix, constant + change)
-
-
-@lru_cache
-def _outside(width: int) -> Array:
-    """(k, w - 1) corners of a polytope around the unit circle or sphere of tangents."""
-    if width == 3:
-        angles = 2 * pi * np.arange(SIDES) / SIDES
-        return read_only(np.column_stack([np.cos(angles), np.sin(angles)]) / cos(pi / SIDES))
-    from scipy.spatial import ConvexHull
-
-    z = 1 - (2 * np.arange(_SPHERE) + 1) / _SPHERE
-    turn = pi * (3 - 5**0.5) * np.arange(_SPHERE)
-    points = np.column_stack([np.sqrt(1 - z * z) * np.cos(turn), np.sqrt(1 - z * z) * np.sin(turn), z])
-    inside = float(-ConvexHull(points).equations[:, -1].max())
-    return read_only(points / inside * (1 + 1e-12))
