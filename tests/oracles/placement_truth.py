@@ -16,9 +16,9 @@ CLOSE = 3e-9
 NORMS = {
     "sum_normal": ("normal", "sum"), "peak_normal": ("normal", "largest"), "peak": ("force", "largest"),
     "effort": ("force", "squares"), "friction_use": ("force", "largest"), "angle": ("force", "largest"),
-    "answered": ("force", "largest"), "wrench_ball": ("normal", "largest"),
+    "answered": ("force", "largest"), "wrench": ("force", "largest"), "wrench_ball": ("normal", "largest"),
 }  # fmt: skip
-LEVELS = ("friction_use", "angle", "answered", "wrench_ball")
+LEVELS = ("friction_use", "angle", "answered", "wrench", "wrench_ball")
 
 
 def state_lies(state: dict) -> str:
@@ -59,7 +59,7 @@ def chosen_lies(data: dict) -> str:
             return "more friction is used than said"
         if word == "angle" and min(margins) < value - CLOSE:
             return "the margin is larger than a state's"
-    better = bound < value * (1 - CLOSE) if word in ("angle", "answered", "wrench_ball") else (
+    better = bound < value * (1 - CLOSE) if word in ("angle", "answered", "wrench", "wrench_ball") else (
         bound > value * (1 + CLOSE))  # fmt: skip
     if better:
         return "the bound is worse than the value"
@@ -119,7 +119,7 @@ def measure(sizes: list[tuple[float, float]], size: str, norm: str) -> float:
 
 def _loads_shown(data: dict, proof: dict, word: str) -> str:
     """Each load of the proof is that of a state, or between those of two."""
-    if word in ("answered", "wrench_ball"):
+    if word in ("answered", "wrench", "wrench_ball"):
         return ""
     shown = np.array([vector(state["load"]) for state in data["states"]])
     scale = np.abs(shown).max() or 1.0

@@ -239,6 +239,6 @@ def test_the_verdict_says_which_part_of_the_outline_the_proof_is_of() -> None:
     square = rg.Outline([[0, 0], [2, 0], [2, 2], [0, 2]])
     for options, part in ({"from_corners": 0.5}, "50.0%"), ({"from_corners": 0.25}, "75.0%"):
         chosen = rg.choose_grasp(square, 2, rg.Wrench([0, -1]), friction=0.5, objective="peak", **options)
-        words = f"no placement on the {part} of the outline that was asked about has a value below"
+        words = f"no placement on the {part} of the outline that was asked about is better than"
         assert words in str(rg.verify(chosen))
         assert words in str(rg.verify(chosen.certificate))

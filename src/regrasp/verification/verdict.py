@@ -88,7 +88,7 @@ class Verification(ArrayValue):
             if not isfinite(self.least_cone_slack):  # the proof alone
                 lines = []
             lines.append(
-                f"no placement{self.asked} has a value below {self.bound:.6g}: {self.excluded} boxes cover "
+                f"no placement{self.asked} is better than {self.bound:.6g}: {self.excluded} boxes cover "
                 f"all of them, each excluded by its twist"
             )
         return "\n".join(lines)

@@ -31,7 +31,7 @@ class Loads(Load):
         None, description="the load's force turns by up to this angle, any way; 180: every orientation"
     )
     disturbance: Disturbance | None = Field(
-        None, description="hull of deviations for objective 'answered', which scales it"
+        None, description="hull of deviations for objectives 'answered' and 'wrench', which scale it"
     )
 
     @cached_property
@@ -48,7 +48,7 @@ class Loads(Load):
         if self.also and self.tilt_degrees is not None:
             raise ValueError("expected also or tilt_degrees, found both")
         if self.disturbance is not None and self.disturbance.hull is None:
-            raise ValueError("disturbance: expected a hull, which 'answered' scales")
+            raise ValueError("disturbance: expected a hull, which 'answered' and 'wrench' scale")
         return self
 
 
@@ -66,12 +66,13 @@ class GraspTask(Strict):
         "angle",
         "force",
         "answered",
+        "wrench",
         "wrench_ball",
     ] = Field("sum_normal", description="what the grasp is chosen for; for wrench_ball the load is zero")
     max_force: Positive | None = Field(
         None,
         description="limit on every force [N], for wrench_ball on its normal part; friction_use, angle, "
-        "force, answered and wrench_ball need it",
+        "force, answered, wrench and wrench_ball need it",
     )
     length: Positive | None = Field(None, description="[m], by which wrench_ball divides torques")
     min_normal: _NotNegative = Field(0.0, description="[N], with which every finger pushes at the least")

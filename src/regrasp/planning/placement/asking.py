@@ -10,7 +10,11 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.placement.laws import LEVELS
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import AnsweredLevel, ForceLevel, FrictionLevel, Level
+from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import check_planar
+
+SCALED = ("answered", "wrench")
+"""Objectives that are a factor of a disturbance."""
 
 
 def level_of(
@@ -22,8 +26,10 @@ def level_of(
     length: float,
 ) -> Level | None:
     """The level that is sought, None for a norm. ``InvalidInput`` for limits that it does not go with."""
-    if (disturbance is not None) != (goal == "answered"):
-        raise InvalidInput("disturbance and objective 'answered' go together: give both, or neither")
+    if (disturbance is not None) != (goal in SCALED):
+        raise InvalidInput(
+            "disturbance and objective 'answered' or 'wrench' go together: give both, or neither"
+        )
     if goal not in LEVELS:
         return None
     if max_force is None:
@@ -49,9 +55,10 @@ def level_of(
         return FrictionLevel(limit, friction, angle=goal == "angle")
     if not isinstance(load, Wrench):
         raise InvalidInput(
-            "objective 'answered' takes one load, a Wrench, on top of which the disturbance comes"
+            f"objective {goal!r} takes one load, a Wrench, on top of which the disturbance comes"
         )
-    return AnsweredLevel(limit, load.vector, _deviations(disturbance))
+    level = WithstoodLevel if goal == "wrench" else AnsweredLevel
+    return level(limit, load.vector, _deviations(disturbance))
 
 
 def length_of(goal: str, length: float | None, shape: Outline) -> float:

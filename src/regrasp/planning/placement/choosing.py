@@ -18,6 +18,7 @@ from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraint
 from regrasp.planning.placement.laws import LEVELS, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
+from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
@@ -71,17 +72,18 @@ def choose_grasp(
         friction: coefficient of all fingers [-].
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
             ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor
-            of a ``disturbance`` for which forces exist; or ``wrench_ball``, Ferrari and Canny's measure,
-            the radius of the largest ball of loads that fingers of limited normal force hold, for which
-            ``load`` is zero.
-        max_force: limit on every force, of ``wrench_ball`` on its normal part; the last five need it [N].
+            of a ``disturbance`` for which forces exist; ``wrench``, that for which one set of forces does and
+            fingers of equal stiffness need not notice, bounded by ``answered``; or ``wrench_ball``, Ferrari
+            and Canny's measure, the radius of the largest ball of loads that fingers of limited normal force
+            hold, for which ``load`` is zero.
+        max_force: limit on every force, of ``wrench_ball`` on its normal part; the last six need it [N].
         min_normal: with which every finger pushes at the least, under every load [N].
         keep: which two fingers may hold together, as of ``plan_regrasp``: a function of points (k, 2) of the
             one and (k, 2) of the other, relative to the centre of mass [m], and the object's angle, here 0,
             that returns (k,) booleans; it is asked for every two fingers of a grasp.
         removable: whether one finger at least must be free to leave: the others hold all the loads, too, with
             forces of at most ``max_force``.
-        disturbance: a hull of deviations, added to the load, for ``answered``.
+        disturbance: a hull of deviations, added to the load, for ``answered`` and ``wrench``.
         length: by which torques are divided, for ``wrench_ball`` [m]; the farthest reach of the outline from
             its centre of mass if not given.
         arcs: the only stretches where fingers may be: pairs of arc lengths, counter-clockwise from the first
@@ -169,7 +171,10 @@ def choose_grasp(
     search = Search(sides, fingers, mu, inner, law, distance, _NARROW * tolerance)
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.any)
     if level is not None:
-        return chosen_at_level(search, asked, level, *run_level(search, level, tolerance, most, progress))
+        best, beyond = run_level(search, level, tolerance, most, progress)
+        if isinstance(level, WithstoodLevel) and best is not None:
+            level.improve(search, tolerance)
+        return chosen_at_level(search, asked, level, best, beyond)
     # half of the tolerance is for loads around a round set and for friction kept back
     half = 0.5 * tolerance / law.power
     if constraints.any:

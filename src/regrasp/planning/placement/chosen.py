@@ -43,7 +43,8 @@ class ChosenGrasp(ArrayValue):
         shape: the outline or mesh.
         objective: its word.
         grasp: the contacts, F1, F2, ... along the boundary, relative to the centre of mass.
-        states: the best forces for every load asked: of a round set for a polygon around it.
+        states: the best forces for every load asked: of a round set for a polygon around it; of ``wrench``
+            the set-points, then what they turn into under each deviation.
         value: of the worst load, in the unit of the objective.
         bound: no placement reaches less; of a margin or a factor, which are largest at best, more.
         places: (k,) arc lengths of the fingers, or (k, 3) their points in the mesh's coordinates [m].
@@ -53,7 +54,8 @@ class ChosenGrasp(ArrayValue):
         max_force: limit on every force that was given [N]; None where none was.
         min_normal: with which every finger pushes at the least [N].
         length: by which torques are divided, of ``wrench_ball`` [m].
-        deviations: (m, 3) of ``answered``, whose multiple by ``value`` is held on top of the load [N, N m].
+        deviations: (m, 3) of ``answered`` and ``wrench``, whose multiple by ``value`` is held on top of the
+            load [N, N m].
     """
 
     shape: Outline | Mesh

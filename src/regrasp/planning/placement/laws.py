@@ -35,10 +35,11 @@ LAWS: Mapping[str, Law] = MappingProxyType(
         "angle": Law("force", "largest"),
         "force": Law("margin", "largest"),
         "answered": Law("force", "largest"),
+        "wrench": Law("force", "largest"),
         "wrench_ball": Law("normal", "largest"),
     }
 )
-LEVELS = ("friction_use", "angle", "force", "answered", "wrench_ball")
+LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
 
 
 def law_of(objective: str | Objective) -> tuple[str, Law]:

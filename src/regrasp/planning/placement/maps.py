@@ -116,6 +116,8 @@ def placement_map(
     if comb(count, free) > MOST_PLACEMENTS:
         raise InvalidInput(f"count {count} makes more than {MOST_PLACEMENTS} placements; give fewer")
     word, law = goal
+    if word == "wrench":
+        raise InvalidInput("what is withstood has no map: take objective 'answered'; got 'wrench'")
     level = level_of(word, mu, load, max_force, disturbance, length_of(word, length, shape))
     if max_force is not None and word not in LEVELS:
         raise InvalidInput(f"max_force is for {', '.join(LEVELS)}; got objective {word!r}")

@@ -1,6 +1,6 @@
 """From what a search found to a grasp with forces, or to words why there is none."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TypeVar
@@ -116,8 +116,8 @@ def chosen_at_level(
 
 
 def _first(
-    search: Search, asked: Asked, judged: Callable[[Grasp, float], tuple[list[ChosenState], T] | None]
-) -> tuple[Grasp, np.ndarray, Array, tuple[list[ChosenState], T]] | None:
+    search: Search, asked: Asked, judged: Callable[[Grasp, float], tuple[Sequence[GraspState], T] | None]
+) -> tuple[Grasp, np.ndarray, Array, tuple[Sequence[GraspState], T]] | None:
     """The best placement tried whose forces come out as found, fingers in the order of the boundary."""
     for norm, places, u in search.placements()[:_ATTEMPTS]:
         order = np.argsort(u, kind="stable")
@@ -134,7 +134,7 @@ def _first(
     return None
 
 
-def _plain(state: ChosenState) -> GraspState:
+def _plain(state: GraspState) -> GraspState:
     return GraspState(state.grasp, state.load, state.forces)
 
 

@@ -132,6 +132,14 @@ class Search:
         self._kept.append((norm, places, u))
         self._found[0], self._found[1::2], self._found[2::2] = norm / self.unit, places, u
 
+    def take(self, placements: list[tuple[float, np.ndarray, Array]]) -> None:
+        """Take these for the placements found, whatever was."""
+        self._kept = placements
+
+    def anew(self) -> "Search":
+        """A search for the same from the beginning."""
+        return Search(self.sides, self.fingers, self.friction, self.loads, self.law, self.apart, self.narrow)
+
     def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None) -> float:
         """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
         k = len(u)

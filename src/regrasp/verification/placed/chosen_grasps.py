@@ -14,6 +14,7 @@ from regrasp.verification.placed.areas import share_of
 from regrasp.verification.placed.balls import makes_ball
 from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.protocol import Chosen, Proof
+from regrasp.verification.placed.stiff_answers import answer_alike
 from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.touching import Touching
 from regrasp.verification.verdict import Verification
@@ -29,11 +30,12 @@ _MEANINGS = {
     "angle": ("force", "largest", 1),
     "force": ("margin", "largest", 1),
     "answered": ("force", "largest", 1),
+    "wrench": ("force", "largest", 1),
     "wrench_ball": ("normal", "largest", 1),
 }
-_LEVELS = ("friction_use", "angle", "force", "answered", "wrench_ball")
-_LARGEST = ("angle", "force", "answered", "wrench_ball")  # what is best as large as can be
-_ANY_LOAD = ("answered", "wrench_ball")  # their proofs have loads that no state holds
+_LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
+_LARGEST = ("angle", "force", "answered", "wrench", "wrench_ball")  # what is best as large as can be
+_ANY_LOAD = ("answered", "wrench", "wrench_ball")  # their proofs have loads that no state holds
 _CLOSE = 1e-9  # of a value, the same in another order of the sums
 
 
@@ -176,6 +178,8 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         shown = np.array([state.load.vector for state in chosen.states])
         if chosen.deviations is None or not _scaled(chosen, shown, value):
             return ["the states do not hold the deviations times the value"]
+    if chosen.objective == "wrench" and chosen.states and (broken := _check_withstood(chosen)):
+        return broken
     if chosen.objective == "wrench_ball" and (broken := _check_ball(chosen)):
         return broken
     if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
@@ -189,7 +193,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         proven = bound >= (atan(mu) - atan(proof.friction)) * (1 - _CLOSE)
     elif chosen.objective == "force":
         proven = bound >= proof.margin and mu <= proof.friction
-    elif chosen.objective == "answered":
+    elif chosen.objective in ("answered", "wrench"):  # what is withstood is answered
         proven = _scaled_by_less(chosen, np.asarray(proof.loads), bound)
     else:  # no placement holds all loads of the proof, which are members of the ball
         sizes = np.linalg.norm(np.asarray(proof.loads) / [1.0, 1.0, chosen.length or 0.0], axis=1)
@@ -212,6 +216,22 @@ def _off_their_places(chosen: Chosen, given: Array) -> list[str]:
         return ["each contact needs a place"]
     off = np.abs(given - positions).max()
     return [] if off <= _CLOSE * np.abs(positions).max() else [f"a contact is {off:.3g} off its place"]
+
+
+def _check_withstood(chosen: Chosen) -> list[str]:
+    """That set-points turn into forces for the deviations times the value, with nobody taking notice."""
+    first, *others = chosen.states
+    shown = np.array([state.load.vector for state in others])
+    center = np.asarray(chosen.certificate.loads)[0]
+    if (
+        chosen.deviations is None
+        or not _scaled(chosen, shown, chosen.value)
+        or np.abs(first.load.vector - center).max() > _CLOSE * np.abs(shown).max()
+    ):
+        return ["the states do not hold the load, and the deviations times the value on top of it"]
+    if not answer_alike(chosen.states):
+        return ["the states are not what fingers of equal stiffness make of the first"]
+    return []
 
 
 def _check_ball(chosen: Chosen) -> list[str]:

@@ -6,6 +6,7 @@ placements that are found raise the level.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from contextlib import suppress
 from math import atan, inf, isnan, sqrt, tan
 
@@ -14,10 +15,10 @@ import numpy as np
 from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.placement.search import Search
 from regrasp.planning.states.choosing import choose_state
-from regrasp.planning.states.criteria import ChosenState
 
 _STEP = 1e-6  # of a level that is zero
 _SURE = 1e-6  # of the limit, more than norms are uncertain by
@@ -26,7 +27,7 @@ _EXACT = 1e-10  # relative, of the level of a placement
 AT_THE_EDGE = (1e-8, 1e-6, 1e-4)
 """Parts of a load given back so that forces for it exist for solvers, too."""
 
-Shown = tuple[list[ChosenState], float]
+Shown = tuple[Sequence[GraspState], float]
 """States and the value that they show."""
 
 

@@ -1,0 +1,86 @@
+"""What set-points withstand wherever fingers are: against sampled placements, and what ``verify`` catches."""
+
+import json
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from placements import BRACKET, DEVIATIONS
+from refusals import refusal
+
+pytestmark = pytest.mark.oracle
+
+WEIGHT = rg.Wrench([0, -1])
+ASKED = {"friction": 0.5, "objective": "wrench", "disturbance": DEVIATIONS, "max_force": 3.0}
+
+
+def withstood(grasp: rg.Grasp) -> float:
+    assert DEVIATIONS.vertices is not None
+    about = rg.LoadSet.hull(map(rg.Wrench.from_vector, DEVIATIONS.vertices), center=rg.Wrench([0, 0]))
+    try:
+        return rg.choose_state(grasp, WEIGHT, "wrench", disturbance=about, max_force=3.0).value
+    except rg.Infeasible:
+        return 0.0
+
+
+@pytest.mark.parametrize(
+    ("shape", "fingers", "count"),
+    [(BRACKET, 3, 8), (rg.Outline.ellipse(2, 1), 2, 7)],
+    ids=["three on the bracket", "ellipse"],
+)
+def test_no_sampled_placement_withstands_more(shape: rg.Outline, fingers: int, count: int) -> None:
+    chosen = rg.choose_grasp(shape, fingers, WEIGHT, tolerance=0.01, **ASKED)
+    contacts = [shape.contact_at(s, friction=0.5) for s in shape.sample(count)]
+    sampled = max(withstood(rg.Grasp(few)) for few in combinations(contacts, fingers))
+    assert 0 < sampled <= chosen.value <= chosen.bound
+    assert withstood(chosen.grasp) == pytest.approx(chosen.value, rel=1e-6)
+    answers = rg.choose_grasp(shape, fingers, WEIGHT, tolerance=0.01, **ASKED | {"objective": "answered"})
+    assert chosen.bound == pytest.approx(answers.bound, rel=0.02)  # what is withstood is answered
+    again = rg.ChosenGrasp.from_dict(json.loads(json.dumps(chosen.to_dict())))
+    assert again == chosen
+    assert rg.verify(again).ok
+
+
+def test_what_was_touched_is_seen() -> None:
+    chosen = rg.choose_grasp(BRACKET, 2, WEIGHT, tolerance=0.01, **ASKED)
+    assert chosen.deviations is not None
+    first, second, *rest = chosen.states
+    # as much of a squeeze keeps balance, and is no answer of springs
+    along = np.diff(first.grasp.positions, axis=0)[0]
+    squeezed = replace(second, forces=second.forces - 1e-4 * np.array([-along, along]))
+    for wrong in (
+        replace(chosen, value=1.001 * chosen.value),
+        replace(chosen, bound=chosen.value),
+        replace(chosen, states=(first, squeezed, *rest)),
+        replace(chosen, states=(second, first, *rest)),
+        replace(chosen, states=(first, *rest)),
+        replace(chosen, states=()),
+        replace(chosen, deviations=None),
+        replace(chosen, deviations=0.99 * chosen.deviations),
+    ):
+        assert not rg.verify(wrong).ok
+
+
+def test_a_set_without_zero_is_scaled_about_no_deviation() -> None:
+    pushes = rg.LoadSet.hull([rg.Wrench([0.1, -0.1]), rg.Wrench([-0.1, -0.1])])
+    chosen = rg.choose_grasp(BRACKET, 2, WEIGHT, tolerance=0.01, **ASKED | {"disturbance": pushes})
+    assert rg.verify(chosen).ok
+    assert chosen.states[1].load.vector == pytest.approx([0.1 * chosen.value, -1 - 0.1 * chosen.value, 0])
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"disturbance": None}, "go together"),
+        ({"max_force": None}, "needs max_force"),
+        ({"disturbance": rg.LoadSet.ball(rg.Wrench([0, 0]), force=1)}, r"LoadSet\.hull"),
+    ],
+)
+def test_what_it_needs_it_says(more: dict[str, object], words: str) -> None:
+    with pytest.raises(rg.InvalidInput, match=words):
+        rg.choose_grasp(BRACKET, 2, WEIGHT, **ASKED | more)  # type: ignore[arg-type]
+    said = str(refusal(lambda: rg.placement_map(BRACKET, WEIGHT, **ASKED)))
+    assert "no map" in said
