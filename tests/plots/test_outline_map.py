@@ -19,9 +19,14 @@ def test_regions_their_mirror_images_and_the_walk_are_drawn(friction, words):
         for polygon in (region, region[:, ::-1]):
             assert any(p.shape == polygon.shape and np.allclose(p, polygon) for p in drawn)
     assert ax.get_title(loc="left") == words
-    walks = [line for line in ax.lines if line.get_gid() == "walk"]
-    assert len(walks) == bool(found.exists)
-    for line in walks:
+    paths = [line for line in ax.lines if line.get_gid() == "path"]
+    assert len(paths) == bool(found.exists)
+    for line in paths:
         steps = np.diff(line.get_xydata(), axis=0)
         assert (abs(steps).min(axis=1) == 0).all()  # one finger stays on its axis
+    if found.exists:
+        ax = plots.plot_outline_map(found, plan=found.plan())
+        (planned,) = (line for line in ax.lines if line.get_gid() == "path")
+        assert np.allclose(np.sort(planned.get_xydata()), np.sort(paths[0].get_xydata()))
+        assert "a plan of" in ax.get_legend().get_texts()[-1].get_text()
     assert found._repr_png_()

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from regrasp.plots.pages.run_film import animate_execution
     from regrasp.plots.placement.chosen import plot_chosen_grasp, plot_contact_regions
     from regrasp.plots.placement.maps import plot_placement_map, plot_placement_outline
+    from regrasp.plots.regrasps.hold_arcs import plot_hold_arcs, plot_hold_margins
     from regrasp.plots.regrasps.hold_map import plot_hold_map
     from regrasp.plots.regrasps.outline_map import plot_outline_map
     from regrasp.plots.regrasps.steps import plot_regrasp
@@ -79,7 +80,9 @@ __all__ = [
     "plot_escape",
     "plot_force_components",
     "plot_friction_use",
+    "plot_hold_arcs",
     "plot_hold_map",
+    "plot_hold_margins",
     "plot_iso_torque",
     "plot_load",
     "plot_load_map",
@@ -135,7 +138,9 @@ _WHERE = {
     "plot_escape": "escapes.escape",
     "plot_force_components": "over_time.components",
     "plot_friction_use": "over_time.execution",
+    "plot_hold_arcs": "regrasps.hold_arcs",
     "plot_hold_map": "regrasps.hold_map",
+    "plot_hold_margins": "regrasps.hold_arcs",
     "plot_iso_torque": "wrench_space.iso_torque",
     "plot_load": "over_time.load",
     "plot_load_map": "surveys.held_sphere",

@@ -19,6 +19,7 @@ PICTURES = {
     "move_time": "not negative", "chosen": "value", "load_size": "positive", "force": "planar vector",
     "contact": "contact of", "mesh": "value", "outline": "value", "plan": "value", "shape": "value",
     "components": "two components", "rate_limit": "limits of three", "values": "row",
+    "graph": "value", "level": "not negative",
 }  # fmt: skip
 """Of parameters of pictures."""
 
@@ -33,7 +34,7 @@ def rows() -> dict[str, Row]:
     }  # fmt: skip
     more = {
         "load_size": 1.0, "outline": ellipse(), "values": [1.0] * 3, "contact": "P1", "shape": ellipse(),
-        "path": "none/film.gif",
+        "path": "none/film.gif", "graph": VALUES["HoldGraph"](),
     }  # fmt: skip
     found = {}
     for name in plots.__all__:

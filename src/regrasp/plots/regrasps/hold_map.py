@@ -8,18 +8,15 @@ from matplotlib.colors import ListedColormap
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance
-from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.graphs import widest_of_pairs
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.triples import TripleGraph
 from regrasp.plans.regrasp_plan import RegraspPlan
-from regrasp.plots.look.style import INK, NO_HOLD, PALETTE, SMALL, TEXT, axes_or_new, label_axis, note, short
+from regrasp.plots.look.style import INK, NO_HOLD, SMALL, TEXT, axes_or_new, label_axis, note, short
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.regrasps.path_on_map import PATH, draw_path, path_of, place_of
 
-PATH = PALETTE[1]
-# Contacts are on an outline within this fraction of its length.
-_ON = 1e-6
 # A place stands for the boundary around it up to this many times half the usual spacing.
 _SPREAD = 1.5
 
@@ -62,12 +59,12 @@ def plot_hold_map(
     if outline is None:
         raise InvalidInput("outline is missing; a hold map of the plane shows places along it")
     instance(outline, "outline", Outline)
-    places = np.array([_place(outline, contact) for contact in graph.contacts])
+    places = np.array([place_of(outline, contact) for contact in graph.contacts])
     edges, values = _cells(places, outline.length, widest_of_pairs(graph, o))
     ax = axes_or_new(ax, height=3.3, bar=True)
     _draw_margins(ax, edges, values)
     if plan is not None:
-        _draw_path(ax, np.array(_path(plan, outline)).reshape(-1, 2))
+        draw_path(ax, path_of(plan, outline))
     ax.set(xlim=(0, outline.length), ylim=(0, outline.length))
     ax.set_aspect("equal", adjustable="box")
     label_axis(ax.xaxis, "one finger at arc length", units.length, outline.length)
@@ -124,14 +121,6 @@ def _held(plan: RegraspPlan) -> list[tuple[str, ...]]:
     return list(dict.fromkeys(names for names in every if len(names) == 3))
 
 
-def _place(outline: Outline, contact: Contact) -> float:
-    """The arc length of a contact."""
-    s = outline.nearest(contact.position + outline.centre_of_mass)
-    if np.hypot(*(outline.points(s) - contact.position)) > _ON * outline.length:
-        raise InvalidInput(f"contact {shown(contact.name)} is not on the outline")
-    return s % outline.length
-
-
 def _cells(places: Array, length: float, values: Array) -> tuple[Array, Array]:
     """Edges (k + 1,) and values (k, k) of cells around places: half way to the next, or not that far."""
     order = np.argsort(places)
@@ -149,33 +138,3 @@ def _cells(places: Array, length: float, values: Array) -> tuple[Array, Array]:
     index = np.array(rows)
     cells = np.where((index < 0)[:, None] | (index < 0), np.nan, values[np.ix_(index, index)])
     return np.array(edges), cells
-
-
-def _path(plan: RegraspPlan, outline: Outline) -> list[tuple[float, float]]:
-    """Places of the two fingers of every hold; one that stays keeps its axis."""
-    path: list[tuple[float, float]] = []
-    for step in plan.steps[:-1]:
-        names = [name for name in step.grasp.names if name not in step.idle_at_end]
-        if len(names) != 2:  # all three hold between two steps
-            continue
-        at = [_place(outline, step.grasp[name]) for name in names]
-        if path:
-            before = path[-1]
-            swaps = min(abs(before[0] - at[0]), abs(before[1] - at[1]))
-            if min(abs(before[0] - at[1]), abs(before[1] - at[0])) < swaps:
-                at.reverse()
-        path.append((at[0], at[1]))
-    return path
-
-
-def _draw_path(ax: Axes, path: Array) -> None:
-    ax.plot(*path.T, color="white", linewidth=2.8, zorder=3, solid_joinstyle="round")
-    ax.plot(*path.T, color=PATH, linewidth=1.4, zorder=4, gid="path", solid_joinstyle="round")
-    ax.plot(*path[1:-1].T, "o", color=PATH, markersize=3, zorder=5)
-    for at, marker in (*((at, "s") for at in path[:1]), *((at, "o") for at in path[-1:])):
-        ax.plot(*at, marker, color=PATH, markeredgecolor="white", markersize=7, zorder=5)
-    seen: dict[tuple[float, float], list[str]] = {}
-    for k, (x, y) in enumerate(path.tolist(), 1):
-        seen.setdefault((x, y), []).append(str(k))
-    for at_place, numbers in seen.items():
-        note(ax, ", ".join(numbers), at_place, (1, 1), gap=5, color=INK)

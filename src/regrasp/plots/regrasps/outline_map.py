@@ -2,7 +2,6 @@
 
 from typing import cast
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
@@ -10,29 +9,40 @@ from matplotlib.lines import Line2D
 
 from regrasp.mechanics.checks import instance
 from regrasp.planning.anywhere.results import OutlineRegrasps
+from regrasp.plans.regrasp_plan import RegraspPlan
 from regrasp.plots.look.png import png
 from regrasp.plots.look.style import GREY, INK, PALETTE, TEXT, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
+from regrasp.plots.regrasps.path_on_map import PATH, by_fingers, draw_path, path_of
 
 _MOST_NAMED = 3
-_WALK = PALETTE[1]
 _COLOURS = (PALETTE[0], *PALETTE[2:])
 
 
-def plot_outline_map(found: OutlineRegrasps, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+def plot_outline_map(
+    found: OutlineRegrasps,
+    ax: Axes | None = None,
+    *,
+    plan: RegraspPlan | None = None,
+    units: Units = SI,
+) -> Axes:
     """All holds of two fingers: the arc length of the one against that of the other, in exact polygons.
 
     Polygons of one colour are one component: regrasps lead from each to all others of it. The walk, if there
-    is one, goes from the square to the disc, along one axis where one finger moves; that moves through the
-    air, so what the line crosses means nothing. Thin lines are corners of the outline.
+    is one, or the holds of a plan go from the square to the disc, along one axis where one finger moves; that
+    moves through the air, so what the line crosses means nothing. Thin lines are corners of the outline.
 
     Args:
         found: what ``regrasp.regrasps_on_outline`` found.
         ax: the axes to draw on; new ones if not given.
+        plan: a regrasp on this outline whose holds are drawn in the place of the walk, such as
+            ``found.plan()``.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(found, "found", OutlineRegrasps)
-    ax = axes_or_new(ax, height=3.6)
+    if plan is not None:
+        instance(plan, "plan", RegraspPlan)
+    ax = axes_or_new(ax, height=3.75)
     length = found.outline.length
     for corner in found.outline.boundary.corners:
         for line in (ax.axhline, ax.axvline):
@@ -50,13 +60,11 @@ def plot_outline_map(found: OutlineRegrasps, ax: Axes | None = None, *, units: U
             handles.append(_key(colour, f"component {component}"))
     if len(order) > _MOST_NAMED:
         handles.append(_key(_COLOURS[_MOST_NAMED % len(_COLOURS)], "others, each by itself"))
-    if len(found.walk):
-        walk = _by_fingers(found.walk)
-        ax.plot(*walk.T, color="white", linewidth=2.8, zorder=3)
-        ax.plot(*walk.T, color=_WALK, linewidth=1.4, zorder=4, gid="walk")
-        for at, marker in ((walk[0], "s"), (walk[-1], "o")):
-            ax.plot(*at, marker, color=_WALK, markeredgecolor="white", markersize=7, zorder=5)
-        handles.append(Line2D([], [], color=_WALK, label=f"a walk of {len(walk)} holds"))
+    path = by_fingers(found.walk) if plan is None else path_of(plan, found.outline)
+    if len(path):
+        draw_path(ax, path)
+        label = f"a walk of {len(path)} holds" if plan is None else f"a plan of {len(path)} holds"
+        handles.append(Line2D([], [], color=PATH, label=label))
     ax.set(xlim=(0, length), ylim=(0, length))
     ax.set_aspect("equal", adjustable="box")
     label_axis(ax.xaxis, "one finger at arc length", units.length, length)
@@ -70,15 +78,6 @@ def plot_outline_map(found: OutlineRegrasps, ax: Axes | None = None, *, units: U
 
 def _key(colour: str, label: str) -> Line2D:
     return Line2D([], [], color=colour, alpha=0.75, linewidth=5, label=label)
-
-
-def _by_fingers(walk: np.ndarray) -> np.ndarray:
-    """Holds with the finger that stays on its axis."""
-    rows = [walk[0]]
-    for hold in walk[1:]:
-        stays = (hold == rows[-1]).any()
-        rows.append(hold if stays or not (hold[::-1] == rows[-1]).any() else hold[::-1])
-    return np.array(rows)
 
 
 def outline_map_png(found: OutlineRegrasps) -> bytes:
