@@ -50,6 +50,7 @@ def end(
         try:
             if limits:
                 rg.choose_state(grasp.without("P3"), load, "peak", **limits)
+                rg.choose_state(grasp, load, "peak", **limits)  # all three push
         except rg.Infeasible:
             continue
         return grasp

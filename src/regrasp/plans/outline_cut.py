@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import atan2, degrees
 from typing import Any
 
 import numpy as np
@@ -54,7 +55,8 @@ class OutlineCut(ArrayValue):
         turned: (2,) the force where the object has turned as far as it may, less than half a turn from
             ``force``, which is then that at the other end [N]; the same if not given.
         forbidden: sides that no finger touches.
-        min_normal: with which both fingers of every hold push at the least [N].
+        min_normal: with which both fingers of every hold push at the least [N]; what all three do at
+            both ends is no matter of it.
         max_force: limit on the force of every finger [N]; None for none.
     """
 
@@ -134,10 +136,11 @@ class OutlineCut(ArrayValue):
         return f"OutlineCut({len(self.vertices)} sides, {len(self.reached)} arcs, {len(self.boxes)} boxes)"
 
     def __str__(self) -> str:
-        still = np.array_equal(self.turned, self.force)  # type: ignore[arg-type]
+        turned, (x, y) = np.asarray(self.turned), self.force
+        turn = degrees(abs(atan2(x * turned[1] - y * turned[0], self.force @ turned)))
         return (
             f"a cut of {len(self.vertices)} sides into {len(self.reached)} arcs on the start's side and "
             f"the rest, with {len(self.boxes)} boxes that no hold is in at "
-            f"{'this orientation' if still else 'any orientation between'}"
+            f"{f'any orientation within a turn of {turn:.4g} deg' if turn else 'this orientation'}"
             + limits_in_words(self.min_normal, self.max_force)
         )

@@ -27,8 +27,9 @@ class Verification(ArrayValue):
             others.
         bound: no placement has a smaller value than this, of a chosen grasp; None of others.
         crossing: pairs of contacts that cross a cut, of which none holds; None of others.
-        asked: what every hold of the regrasps that a cut excludes had to keep, or which part of its outline a
-            proof about places is of, in words; empty for nothing.
+        asked: what every hold of the regrasps that a cut excludes had to keep, of an ``OutlineCut`` at which
+            orientations, too; or which part of its outline a proof about places is of, in words; empty for
+            nothing.
     """
 
     violations: tuple[str, ...]
@@ -80,9 +81,9 @@ class Verification(ArrayValue):
             )
         if self.excluded is not None and self.bound is None:
             return (
-                f"no regrasp leads from the start to the goal on this outline, at this "
-                f"orientation{self.asked}: {self.excluded} boxes cover all pairs of places across the cut, "
-                f"each excluded by its twist, in exact arithmetic"
+                f"no regrasp leads from the start to the goal on this outline, at {self.asked}: "
+                f"{self.excluded} boxes cover all pairs of places across the cut, each excluded by its "
+                f"twist, in exact arithmetic"
             )
         if self.excluded is not None:
             if not isfinite(self.least_cone_slack):  # the proof alone

@@ -34,6 +34,7 @@ def rows() -> dict[str, Row]:
             },
             {"outline": "value", "turns": "table", "forbidden": "numbers"},
         ),
+        "OutlineRegrasps.plan": Row(on_outline(0.5).plan, {}),
         "OutlineCut.from_dict": Row(
             rg.OutlineCut.from_dict, {"data": on_outline(0.01).certificate.to_dict()}
         ),

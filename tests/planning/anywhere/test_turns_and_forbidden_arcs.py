@@ -119,7 +119,7 @@ def test_a_turn_joins_what_is_apart():
 def test_proofs_are_of_the_turn_and_the_arcs_they_name():
     cut = asked(turns=(-0.05, 0.05), forbidden=[(5.0, 6.0)]).certificate
     assert rg.verify(cut).ok
-    assert "at any orientation between" in str(cut)
+    assert "at any orientation within a turn of" in str(cut)
     assert rg.OutlineCut.from_dict(cut.to_dict()) == cut
     plain = asked().certificate
     old = {k: v for k, v in plain.to_dict().items() if k not in ("turned", "forbidden")}

@@ -148,6 +148,23 @@ def test_fingers_keep_to_their_arcs(where):
 
 
 @both
+def test_candidates_may_be_places(where):
+    shape, _, _, _ = ASKED[where][0]
+    usual = problem(where, candidates=10)
+    places = ELLIPSE.sample(10) if where == "plane" else shape.sample(10) - shape.centre_of_mass
+    asked = problem(where, candidates=places.tolist())
+    points = [np.array([c.position for c in each.contacts]) for each in (usual, asked)]
+    assert np.allclose(*(p[np.lexsort(p.T.round(9))] for p in points))
+    assert asked == problem(where, candidates=places)
+    assert asked.sequences()[0].moves == usual.sequences()[0].moves
+    if where == "space":
+        with pytest.raises(rg.InvalidInput, match="candidates must have shape"):
+            problem(where, candidates=[0.1, 0.2])
+        with pytest.raises(rg.InvalidInput, match="surface"):
+            problem(where, candidates=[[9.0, 0.0, 0.0]])
+
+
+@both
 def test_refusals_say_what_would_make_it_possible(where):
     ends, usual = ASKED[where]
     friction, force = (0.3, 40.0) if where == "plane" else (MU, 0.7)

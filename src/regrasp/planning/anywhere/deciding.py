@@ -4,7 +4,7 @@ from math import inf, pi
 
 import numpy as np
 
-from regrasp.errors import InvalidInput, shown
+from regrasp.errors import Infeasible, InvalidInput, shown
 from regrasp.mechanics.checks import Array, ArrayLike, array, instance, number, read_only
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.limits.limit_rows import refuse_limits
@@ -16,7 +16,6 @@ from regrasp.planning.anywhere.hold_map import flooded
 from regrasp.planning.anywhere.limits import Limits
 from regrasp.planning.anywhere.results import OutlineRegrasps
 from regrasp.planning.anywhere.search import Asked, End, Places, decided
-from regrasp.planning.states.choosing import choose_state
 
 MOST_SIDES = 500
 _LESS = 1e-9  # of two sides that meet one where fingers may touch is taken
@@ -57,12 +56,14 @@ def regrasps_on_outline(
         turns: (2,) the least and the largest angle of the object, less than pi apart, 0 between them [rad].
         forbidden: (k, 2) arc lengths where arcs begin and end within which no finger may touch,
             counter-clockwise [m].
-        min_normal: with which both fingers of every hold push at the least [N].
+        min_normal: with which both fingers of every hold push at the least, and all three at the start and in
+            the end [N].
         max_force: limit on the force of every finger [N]; none if not given.
 
     Raises:
         InvalidInput: For arguments that are not what they must be.
-        Infeasible: Where the object turns and all three fingers of an end cannot hold the load there.
+        Infeasible: Where all three fingers of an end cannot hold the load there, if the object turns; or with
+            ``min_normal``, where there is a walk between.
     """
     if not isinstance(outline, Outline) or not isinstance(outline.boundary, PolygonBoundary):
         raise InvalidInput(f"outline must be an Outline that is a polygon, got {shown(outline)}")
@@ -81,14 +82,12 @@ def regrasps_on_outline(
         _places(vertices, free, grasp, mu, max_force, name)
         for grasp, name in ((start, "start"), (goal, "goal"))
     )
+    whole = End(start, ends[0], 0.0), End(goal, ends[1], float(goal_orientation))
     if lo < hi:
-        for grasp, angle in ((start, 0.0), (goal, goal_orientation)):
-            choose_state(grasp, load.rotated(-angle), "force", max_force=max_force)
-    found = decided(
-        Asked(vertices, free, mu, load, limits, (lo, hi)),
-        End(start, ends[0], 0.0),
-        End(goal, ends[1], float(goal_orientation)),
-    )
+        _refuse_unheld(whole, load, limits.max_force)
+    found = decided(Asked(vertices, free, mu, load, limits, (lo, hi)), *whole)
+    if found.walk is not None and limits.min_normal > 0:
+        _refuse_unheld(whole, load, *limits[::-1])
     walk = found.walk or []
     lengths = np.hypot(*(np.roll(vertices, -1, axis=0) - vertices).T)
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -115,6 +114,7 @@ def regrasps_on_outline(
         (lo, hi),
         limits.min_normal,
         max_force,
+        float(goal_orientation),
     )
 
 
@@ -124,6 +124,16 @@ def _limits(min_normal: float, max_force: float | None) -> Limits:
     if least > most:
         raise InvalidInput(f"min_normal must be at most max_force, got {least:g} and {most:g}")
     return Limits(least, most)
+
+
+def _refuse_unheld(ends: tuple[End, End], load: Wrench, max_force: float, min_normal: float = 0.0) -> None:
+    """Raise ``Infeasible`` where all three fingers of an end do not hold the load."""
+    for name, end in zip(("start", "goal"), ends, strict=True):
+        reason = end.unheld(load, max_force, min_normal)
+        if reason is not None:
+            raise Infeasible(
+                f"the three fingers of the {name} cannot hold the load: {reason}", reason.certificate
+            )
 
 
 def _turns(turns: ArrayLike, goal_orientation: float) -> tuple[float, float]:

@@ -6,8 +6,10 @@ from math import atan, cos
 import numpy as np
 
 from regrasp.display import Pictured
+from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.reserve import RESERVE
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
@@ -15,7 +17,10 @@ from regrasp.planning.anywhere.cut import MOST_BOXES
 from regrasp.planning.anywhere.hold_map import MOST_LINKS, MOST_REGIONS, TIE
 from regrasp.planning.anywhere.limits import PARTS
 from regrasp.planning.anywhere.walk import MOST_HOLDS
+from regrasp.planning.states.criteria import PEAK_RATIO
+from regrasp.planning.states.objectives import Objective
 from regrasp.plans.outline_cut import OutlineCut, limits_in_words
+from regrasp.plans.regrasp_plan import RegraspPlan
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,9 +46,10 @@ class OutlineRegrasps(ArrayValue, Pictured):
         exchanges: the fewest exchanges of a finger that any walk has, but for near ties, and those of this
             one; None without a walk. Where the object turns, of walks at the orientations looked at.
         turns: the least and the largest angle of the object [rad].
-        min_normal: with which both fingers of every hold push at the least [N].
+        min_normal: with which both fingers of every hold push at the least, and all three at both ends [N].
         max_force: limit on the force of every finger [N]; None for none. With one the regions lie within all
             holds, by up to the fraction 1 - cos(atan(friction) / 16) of the limit.
+        goal_orientation: the object's angle in the end [rad].
     """
 
     outline: Outline
@@ -61,8 +67,63 @@ class OutlineRegrasps(ArrayValue, Pictured):
     turns: tuple[float, float]
     min_normal: float = 0.0
     max_force: float | None = None
+    goal_orientation: float = 0.0
 
     _drawn_by = "regrasp.plots.regrasps.outline_map:outline_map_png"
+
+    def plan(
+        self,
+        objective: str | Objective = "angle",
+        *,
+        states: str = "each",
+        max_turn: float | None = None,
+        peak_ratio: float = PEAK_RATIO,
+        reserve: float = RESERVE,
+        step_duration: float = 1.0,
+    ) -> RegraspPlan:
+        """The regrasp through the holds of the walk, which ``verify`` judges like any other.
+
+        Places sampled on the outline may all miss it. For a wider margin give ``plan_regrasp`` the places of
+        the walk among its ``candidates``.
+
+        Args:
+            objective: as of ``RegraspProblem``.
+            states: as of ``RegraspProblem``.
+            max_turn: of one step [rad]; what turns between two holds is one step if not given.
+            peak_ratio: as of ``RegraspProblem`` [-].
+            reserve: as of ``RegraspProblem`` [-].
+            step_duration: as of ``RegraspProblem`` [s].
+
+        Raises:
+            Infeasible: Without a walk, with the proof as ``certificate`` where there is one; or where what is
+                kept in reserve, or a smaller ``max_turn``, leaves a state on it no forces.
+        """
+        from regrasp.planning.anywhere.planned import plan_along
+        from regrasp.planning.regrasps.problem import RegraspProblem
+
+        if not self.exists:
+            raise Infeasible(f"there is no walk to plan along: {self}", self.certificate)
+        problem = RegraspProblem(
+            self.outline,
+            self.start,
+            self.goal,
+            self.load,
+            self.friction,
+            goal_orientation=self.goal_orientation,
+            candidates=self.walk.ravel() if len(self.walk) else 1,
+            objective=objective,
+            states=states,
+            max_turn=max_turn,
+            max_force=self.max_force,
+            min_normal=self.min_normal,
+            peak_ratio=peak_ratio,
+            reserve=reserve,
+            step_duration=step_duration,
+        )
+        turn = problem.largest_turn
+        if max_turn is None:  # forces were left room for turns as large as that
+            turn = max(turn, self.turns[1] - self.turns[0])
+        return plan_along(problem, self.outline, self.walk, self.angles, turn)
 
     def __repr__(self) -> str:
         return (

@@ -16,7 +16,7 @@ from regrasp.planning.anywhere.fewest import fewest_layers, fewest_walk
 from regrasp.planning.anywhere.hold_map import TIE, HoldMap, Place, TooLarge, flooded
 from regrasp.planning.anywhere.limits import PARTS, Limits, limited_intervals
 from regrasp.planning.anywhere.polygons import width
-from regrasp.planning.anywhere.walk import Hold, walk_through
+from regrasp.planning.anywhere.walk import Hold, least_turning, walk_through
 from regrasp.planning.states.choosing import choose_state
 from regrasp.plans.outline_cut import OutlineCut
 
@@ -36,6 +36,15 @@ class End(NamedTuple):
     grasp: Grasp
     places: Places
     angle: float
+
+    def unheld(self, load: Wrench, max_force: float, min_normal: float) -> Infeasible | None:
+        """Why all three fingers do not hold the load [N], seen at angle 0; None where they do."""
+        most, seen = max_force if max_force < inf else None, load.rotated(-self.angle)
+        try:
+            choose_state(self.grasp, seen, "peak", max_force=most, min_normal=min_normal)
+        except Infeasible as reason:
+            return reason
+        return None
 
 
 class Asked(NamedTuple):
@@ -102,26 +111,18 @@ def _at(asked: Asked, around: HoldMap, angles: Array, parts: int, start: End, go
         holds = replace(holds, limits=limits)
         neighbours = holds.neighbours(TIE, steps)
         result = Decided(holds, neighbours, angles)
-        if parts and lo < hi and not all(_leaves_room(end, asked.load, limits) for end in (start, goal)):
+        if parts and lo < hi and any(end.unheld(asked.load, *limits[::-1]) for end in (start, goal)):
             continue
         turns = [None if steps is None else int(np.argmin(abs(angles - e.angle))) for e in (start, goal)]
         walk = _walk(holds, neighbours, *ends, turns)
         if walk is not None:
             if steps is None:
                 walk, few = _fewest(holds, around, walk, *ends)
+                walk = least_turning(holds, walk, angles, start.angle, goal.angle)
             else:
                 few = _least(around, *ends), max(len(walk) - 1, 0)
             return result._replace(walk=walk, exchanges=few)
     return result._replace(certificate=_certificate(around, *ends))
-
-
-def _leaves_room(end: End, load: Wrench, limits: Limits) -> bool:
-    """Whether all three fingers hold the load with forces that leave room to turn."""
-    try:
-        choose_state(end.grasp, load.rotated(-end.angle), "peak", max_force=limits.max_force)
-    except Infeasible:
-        return False
-    return True
 
 
 def _least(holds: HoldMap, start: Places, goal: Places) -> int:

@@ -1,7 +1,9 @@
 """A sequence of holds from one place of the map to another, each an exchange of one finger."""
 
 from itertools import pairwise
+from math import inf
 
+from regrasp.mechanics.checks import Array
 from regrasp.planning.anywhere.hold_map import HoldMap, Place, Region
 
 MOST_HOLDS = 5_000
@@ -24,6 +26,29 @@ def walk_through(holds: HoldMap, path: list[int], start: At, goal: At) -> list[H
         at = enter
     found += _stairs(regions[-1], at, goal, MOST_HOLDS - len(found))
     return found if len(found) < MOST_HOLDS else None
+
+
+def least_turning(holds: HoldMap, walk: list[Hold], angles: Array, start: float, goal: float) -> list[Hold]:
+    """The same places, at those of the map's angles between which the object turns least [rad].
+
+    A hold is only moved to an angle where it is at least half as far inside its region.
+    """
+    by_sides: dict[tuple[int, int], list[Region]] = {}
+    for region in holds.regions:
+        by_sides.setdefault(region.sides, []).append(region)
+    ways: list[tuple[float, float, list[int]]] = [(0.0, start, [])]  # turned, now at, by the places of angles
+    for (i, f), (j, g), turn in walk:
+        rooms: dict[int, float] = {}
+        for sides, at in (((i, j), (f, g)), ((j, i), (g, f))):
+            for region in by_sides.get(sides, []):
+                rooms[region.turn] = max(rooms.get(region.turn, -inf), region.room(at))
+        ways = [
+            min((turned + abs(angle - before), angle, [*way, k]) for turned, before, way in ways)
+            for k, angle in enumerate(angles.tolist())
+            if rooms.get(k, -inf) >= 0.5 * rooms[turn]
+        ]
+    _, best = min((turned + abs(goal - at), way) for turned, at, way in ways)
+    return [(p, q, k) for (p, q, _), k in zip(walk, best, strict=True)]
 
 
 def _doors(here: Region, there: Region) -> tuple[At, At]:

@@ -52,8 +52,8 @@ class Asked(Protocol):
         """In space."""
 
     @property
-    def candidates(self) -> int | None:
-        """How many points are spread over the shape."""
+    def candidates(self) -> int | ArrayLike | None:
+        """How many points are spread over the shape, or where they are."""
 
     @property
     def facets(self) -> int | None:

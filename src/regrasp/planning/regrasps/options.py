@@ -3,8 +3,10 @@
 from math import pi
 from typing import Any, Required
 
+import numpy as np
+
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import ArrayLike, choice, number
+from regrasp.mechanics.checks import Array, ArrayLike, array, choice, number, whole
 from regrasp.mechanics.limits.force_limits import ForceLimits
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.planning.holds.pairs import Filter
@@ -28,7 +30,7 @@ class RegraspOptions(LimitOptions, total=False):
     friction: Required[float]
     orientations: int | None
     goal_orientation: float
-    candidates: int | None
+    candidates: int | ArrayLike | None
     objective: str | Objective | Criteria
     states: str
     max_turn: float | None
@@ -58,6 +60,16 @@ def check_steps(step_duration: float, states: str, max_turn: float, least_margin
     choice(states, "states", ("each", "joint"))
     turn_below_pi(max_turn)
     number(least_margin, "least_margin", least=0)
+
+
+def checked_candidates(candidates: Any, dimension: int) -> int | Array:
+    """How many, or where: arc lengths (k,) in the plane, points (k, 3) in space; or ``InvalidInput``."""
+    if not isinstance(candidates, (list, tuple, np.ndarray)):
+        return whole(candidates, "candidates", least=1, most=MOST_CANDIDATES)
+    places = array(candidates, "candidates", (None,) if dimension == 2 else (None, 3))
+    if not 1 <= len(places) <= MOST_CANDIDATES:
+        raise InvalidInput(f"candidates must be 1 to {MOST_CANDIDATES:,} places, got {len(places)}")
+    return places
 
 
 def settled(problem: Any) -> Criteria:

@@ -82,7 +82,7 @@ def _turning_plans(problem: Asked, found: list[TurningSequence]) -> Plans:
     if not found:
         raise _NoSequence
     try:
-        return [_plan(problem, each.sequence, problem.largest_turn, each.angles) for each in found]
+        return [plan_of(problem, each.sequence.holds, problem.largest_turn, each.angles) for each in found]
     except Infeasible:
         raise _NoSequence from None
 
@@ -100,7 +100,7 @@ def _sampled_plans(problem: Asked, extra: int, barred: Barred | None = None) -> 
         try:
             plans = []
             for sequence in found:
-                plans.append(_plan(problem, sequence, turn))
+                plans.append(plan_of(problem, sequence.holds, turn))
             return plans
         except Infeasible as error:
             if more and isinstance(error, Refused):  # a state between holds that hold: another way
@@ -140,12 +140,15 @@ def _asked_besides(problem: Asked) -> str:
     return " and ".join(kept) or "push with the least normal force"
 
 
-def _plan(problem: Asked, sequence: Sequence, max_turn: float, angles: Any = None) -> RegraspPlan:
-    """angles: orientations of the sequence's holds by their places; those of the problem if not given."""
+def plan_of(problem: Asked, holds: tuple[Hold, ...], max_turn: float, angles: Any = None) -> RegraspPlan:
+    """The plan of a sequence of holds, or ``Infeasible``.
+
+    angles: orientations of the holds by their places; those of the problem if not given.
+    """
     start, goal, _ = problem.places
     setting, each = problem.setting, problem.setting.orientations if angles is None else angles
-    way = setting.along([each[hold[-1]] for hold in sequence.holds])
-    contacts = [start, *(tuple(hold[:-1]) for hold in sequence.holds), goal]
+    way = setting.along([each[hold[-1]] for hold in holds])
+    contacts = [start, *(tuple(hold[:-1]) for hold in holds), goal]
     states, orientations = chosen_states(
         list(zip(contacts, way, strict=True)),
         problem.contacts,

@@ -30,9 +30,9 @@ from regrasp.planning.holds.weights import RegraspWeights
 from regrasp.planning.regrasps.ends import Ends
 from regrasp.planning.regrasps.kept_holds import kept_pairs
 from regrasp.planning.regrasps.options import (
-    MOST_CANDIDATES,
     MOST_EXTRA,
     check_steps,
+    checked_candidates,
     settled,
     turn_below_pi,
 )
@@ -71,7 +71,9 @@ class RegraspProblem(ArrayValue):
             with ``keep`` or ``weights``, and in hold maps, bottlenecks and remedies, 72; in space 42.
         goal_orientation: the object's angle in the end [rad], in the plane; tried besides if it is none of
             these.
-        candidates: how many points are spread over the shape; 120 if not given, in space 40.
+        candidates: how many points are spread over the shape, 120 if not given, in space 40; or where they
+            are: arc lengths (k,) on an outline, such as those of ``OutlineRegrasps.walk``, in space points
+            (k, 3) on the mesh, relative to the centre of mass [m].
         objective: what the state of every hold is chosen for, each by itself.
         states: ``each``, or ``joint``: all states in one program, for the widest worst force margin and then
             the least change of force.
@@ -120,7 +122,7 @@ class RegraspProblem(ArrayValue):
     friction: float
     orientations: int | None = None
     goal_orientation: float = 0.0
-    candidates: int | None = None
+    candidates: int | ArrayLike | None = None
     objective: str | Objective | Criteria = "angle"
     states: str = "each"
     max_turn: float | None = None
@@ -156,7 +158,8 @@ class RegraspProblem(ArrayValue):
         if self.orientations is not None:
             whole(self.orientations, "orientations", least=1, most=MOST_ORIENTATIONS)
         if self.candidates is not None:
-            whole(self.candidates, "candidates", least=1, most=MOST_CANDIDATES)
+            dimension = 2 if isinstance(self.outline, Outline) else 3
+            object.__setattr__(self, "candidates", checked_candidates(self.candidates, dimension))
         number(self.min_distance, "min_distance", least=0)
         if not isinstance(self.one_finger, bool):
             raise InvalidInput(f"one_finger must be True or False, got {shown(self.one_finger)}")

@@ -237,8 +237,9 @@ def spread_states(states: list[Chosen], criteria: Criteria, least: float = 0.0) 
 
 
 def least_margin(states: Sequence[Chosen]) -> float:
-    """The least angle margin [rad] of the holds, in which a finger is free."""
-    return min(state.margin for state in states if len(state.places) < len(states[0].places))
+    """The least angle margin [rad] of the holds, in which a finger is free; without any, of all states."""
+    holds = [state for state in states if len(state.places) < len(states[0].places)]
+    return min(state.margin for state in holds or states)
 
 
 def chosen_state(

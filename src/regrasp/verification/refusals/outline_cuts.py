@@ -14,7 +14,7 @@ meet.
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import combinations, pairwise
-from math import inf, isfinite
+from math import atan2, degrees, inf, isfinite
 from typing import Protocol
 
 import numpy as np
@@ -88,7 +88,7 @@ def verify_outline_cut(cut: OutlineCut) -> Verification:
     judged = _Cut(cut)
     broken = [] if judged.is_counter_clockwise() else ["the vertices do not run counter-clockwise"]
     broken += [*judged.turn(), *judged.twists_at_work(), *judged.ends(), *judged.gaps()]
-    asked = _in_words(cut.min_normal, cut.max_force)
+    asked = f"{judged.orientations()}{_in_words(cut.min_normal, cut.max_force)}"
     return Verification(tuple(broken), 0.0, inf, inf, excluded=len(cut.boxes), asked=asked)
 
 
@@ -163,6 +163,12 @@ class _Cut:
     def is_counter_clockwise(self) -> bool:
         after = [*self.points[1:], self.points[0]]
         return sum((cross(p, q)[0] for p, q in zip(self.points, after, strict=True)), Fraction(0)) > 0
+
+    def orientations(self) -> str:
+        """Which ones the cut is of, in words."""
+        one, other = self.forces
+        turn = atan2(abs(cross(one, other)[2]), dot(one, other))
+        return f"any orientation within a turn of {degrees(turn):.4g} deg" if turn else "this orientation"
 
     def turn(self) -> Iterator[str]:
         """Loads at the ends of a turn that is half a turn: between them it may be from either side."""

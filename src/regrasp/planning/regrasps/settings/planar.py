@@ -72,12 +72,13 @@ class PlanarSetting:
         return self._outline.points(self._outline.nearest(position + centre))
 
     def sampled(self) -> list[Contact]:
-        """Points spread over the outline."""
+        """Points spread over the outline, or those asked for."""
         problem = self._problem
-        count = CANDIDATES if problem.candidates is None else problem.candidates
+        asked = CANDIDATES if problem.candidates is None else problem.candidates
+        places = self._outline.sample(asked) if isinstance(asked, int) else np.unique(np.asarray(asked))
         return [
             self._outline.contact_at(float(s), friction=problem.friction, max_force=problem.max_force)
-            for s in self._outline.sample(count)
+            for s in places
         ]
 
     def reachable(self, contacts: Sequence[Contact]) -> NDArray[np.bool_]:

@@ -86,9 +86,13 @@ class SpatialSetting:
         return np.asarray(self._mesh.nearest(position + centre) - centre)
 
     def sampled(self) -> list[Contact]:
-        """Points spread over the mesh."""
+        """Points spread over the mesh, or those asked for."""
         problem = self._problem
         count = CANDIDATES if problem.candidates is None else problem.candidates
+        if not isinstance(count, int):
+            places = np.unique(np.asarray(count), axis=0) + self._mesh.centre_of_mass
+            mu, most = problem.friction, problem.max_force
+            return [self._mesh.contact_at(point, friction=mu, max_force=most) for point in places]
         return list(
             self._mesh.contacts(
                 count, friction=problem.friction, max_force=problem.max_force, seed=problem.seed
