@@ -52,6 +52,12 @@ def kept(words: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]
     return compiled
 
 
+def at_hand(dispatcher: Any) -> bool:
+    """Whether a function that is ``kept`` was compiled in this process, or in one before."""
+    files = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
+    return bool(getattr(dispatcher, "signatures", True)) or (files is not None and bool(files._load_index()))
+
+
 class _Saying(event.Listener):
     """Says what compiles for long: that it does while it does, and then how long it took.
 

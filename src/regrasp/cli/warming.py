@@ -82,6 +82,7 @@ def _regrasps_in_space() -> None:
         ((0.03, 0.006, -0.005), (-0.03, -0.006, 0.004), (0.01, -0.004, 0.025), (0.003, 0.004, -0.025)),
     )
     start, goal = (rg.Grasp(box.contact_at(point, friction=0.6) for point in points) for points in ends)
+    _ = rg.RegraspProblem(box, start, goal, load, friction=0.6, candidates=12).graph.margins  # many compile
     rg.plan_regrasp(box, start, goal, load, friction=0.6, candidates=12)
 
 

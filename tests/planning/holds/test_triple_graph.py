@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import regrasp as rg
+from regrasp.closed_form.compiled import triples
 from regrasp.closed_form.three_fingers import HOLDS, LINE, three_finger_hold
 from regrasp.planning.holds.triples import TripleGraph, directions
 from solids import Motion, motions
@@ -62,6 +63,20 @@ def test_holds_are_the_margins_that_are_not_negative() -> None:
     assert (full.holds == quick.holds).all()
     assert 0.05 < quick.holds.mean() < 0.95
     assert (margins[margins < 0] == -1).all()
+
+
+def test_margins_are_the_same_before_anything_is_compiled(monkeypatch) -> None:
+    """The first of a process are interpreted, as long as there is patience and no compiled code."""
+    graphs = [
+        TripleGraph(candidates(7, 7, limited=True), with_torques(7, 6), facets=6, min_distance=0.3)
+        for _ in range(2)
+    ]
+    expected = graphs[0].margins
+    monkeypatch.setattr("regrasp.closed_form.compiled.sharing.at_hand", lambda loop: False)  # none is kept
+    monkeypatch.setattr(triples, "_asked", 0)
+    assert (graphs[1].margins == expected).all()
+    assert triples._asked == expected.size
+    assert {-2.0, -1.0} <= set(expected[expected < 0].tolist())
 
 
 def test_the_order_of_loads_changes_no_verdict() -> None:

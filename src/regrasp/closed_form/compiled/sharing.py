@@ -13,7 +13,7 @@ from typing import Any
 
 from numba import config
 
-from regrasp.compilation import kept
+from regrasp.compilation import at_hand, kept
 
 _PARTS = 4  # for each thread, since parts differ in work
 
@@ -33,6 +33,17 @@ class Shared:
         ends = pairwise(items * k // parts for k in range(parts + 1))
         with ThreadPoolExecutor(threads()) as pool:
             return list(pool.map(lambda part: self._loop(*part, *arguments), ends))
+
+    @property
+    def is_at_hand(self) -> bool:
+        """Whether it need not be compiled."""
+        return at_hand(self._loop)
+
+    @property
+    def plain(self) -> Callable[..., Any]:
+        """The loop as it was written, which is not compiled."""
+        function: Callable[..., Any] = getattr(self._loop, "py_func", self._loop)
+        return function
 
     @property
     def signatures(self) -> list[Any]:
