@@ -51,6 +51,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
                     "turns_and_forbidden_arcs",
                     "tolerances",
                     "regrasps_that_withstand",
+                    "force_limits_on_outline",
                 )
             ),
             "files/test_ways_file.py",

@@ -177,6 +177,15 @@ def test_of_what_is_lost_the_largest_counts() -> None:
             refuse_lost(grasp, spoilt, loads)
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_the_largest_force_is_told_whichever_way_it_pushes(way) -> None:
+    """One finger against two."""
+    grasp = rg.Grasp(rg.Contact([-x * way, y], [x * way, 0], 1.0) for x, y in ((1, 0), (-1, 0.5), (-1, -0.5)))
+    forces = way * 2.0**40 * np.array([[[2.0, 0], [-1, 0], [-1, 0]]])
+    with pytest.raises(rg.InvalidInput, match=r"forces up to 2\.2e\+12 N are 2\.2e\+12 times the load"):
+        refuse_lost(grasp, forces, np.array([[0, 1.0, 0.0]]))
+
+
 def test_loads_that_pull_one_way_alone_are_measured_as_well() -> None:
     load = rg.LoadSeries([0, 1], np.array([[-1.5, -3.5, 0], [-1.5, -3.5, -0.1]]))
     assert rg.verify(rg.plan_removal(FLAT, "P3", load=load)).ok

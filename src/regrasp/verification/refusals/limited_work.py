@@ -59,7 +59,7 @@ def least_work(
         )
     else:
         corners = [force * edge / length for force in (least, most / root(over, up=edge >= 0))]
-        on_arc = aside <= -friction * normal
+        on_arc = normal < 0 and aside <= -friction * normal
     return min([*corners, -most * speed] if on_arc else corners)
 
 

@@ -126,6 +126,14 @@ def test_without_limits_of_all_a_peak_limits_the_squeeze(limits, largest) -> Non
     assert np.linalg.norm(path[1:-1], axis=-1).max() == pytest.approx(largest, rel=1e-5)
 
 
+def test_a_margin_of_none_is_a_margin() -> None:
+    """Two newtons of squeeze at both ends are just enough for 1 N each."""
+    path = planned(squeezed(2.0, limits=np.full(2, 50.0)), "force")
+    assert (0.5 * path[:, 0, 0] - path[:, 0, 1] >= -1e-6).all()
+    with asking_only():
+        assert planned(squeezed(2.0, limits=np.full(2, 50.0)), "force").shape == (5, 2, 2)
+
+
 def test_what_no_solver_finds_a_second_time_is_said(monkeypatch) -> None:
     by_kind(monkeypatch, change=says(Status.STOPPED))
     with pytest.raises(SolverFailed, match="no path of least change among the best for peak"):
