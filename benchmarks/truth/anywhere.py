@@ -6,7 +6,8 @@
 
 Exact polygons say that a regrasp exists, by a walk, or boxes that none does, by a proof that ``verify``
 judges. A sampled sequence where none is said to exist would be a contradiction. Half of the tasks have little
-friction, so that some are impossible.
+friction, so that some are impossible. The walk is planned, and so is the task with free turning and no
+limits, through the contacts of both ends alone, which is always possible.
 """
 
 import argparse
@@ -90,6 +91,13 @@ def compared(number: int, limited: bool) -> dict[str, Any]:
         begun = process_time()
         row["proven"] = rg.verify(found.certificate).ok
         row["judged"], row["boxes"] = process_time() - begun, len(found.certificate.boxes)
+    if found.exists:
+        begun = process_time()
+        plan = found.plan()
+        row["planning"], row["planned"] = process_time() - begun, rg.verify(plan).ok
+        row["margin"] = plan.margin
+    free = rg.RegraspProblem(outline, start, goal, load, friction, candidates=1, min_normal=0.0)
+    row["free"] = rg.verify(free.plans()[0]).ok
     for count in CANDIDATES:
         problem = rg.RegraspProblem(
             outline,
@@ -124,10 +132,20 @@ def table(rows: list[dict[str, Any]]) -> str:
         lines.append(f"| {count} | {found} | {missed} | {sum(row[count] >= 0 for row in none)} |")
     apart = sum(row["exchanges"][0] != row["exchanges"][1] for row in rows if row["exchanges"])
     lines += ["", f"Fewest exchanges: bounds differ in {apart} tasks."]
+    possible = [row for row in rows if row["exists"]]
+    missed = [row for row in possible if row[str(CANDIDATES[0])] < 0]
+    for words, those in (("All", possible), (f"Missed by {CANDIDATES[0]}", missed)):
+        margins = np.degrees([row["margin"] for row in those] or [0.0])
+        lines.append(
+            f"{words}: {sum(row['planned'] for row in those)} of {len(those)} walks are planned and "
+            f"verified, by {margins.min():.2g} deg or more, {np.median(margins):.2g} in the median."
+        )
+    lines.append(f"With free turning {sum(row['free'] for row in rows)} of {len(rows)} are possible.")
     timed = (
         ("Impossible tasks are decided, with the proof,", none, "seconds"),
         ("Proofs are judged by verify", none, "judged"),
-        ("Possible tasks are decided", [row for row in rows if row["exists"]], "seconds"),
+        ("Possible tasks are decided", possible, "seconds"),
+        ("Walks are planned", possible, "planning"),
     )
     for words, those, key in timed:
         spent = 1e3 * np.array([row[key] for row in those] or [0.0])
