@@ -132,6 +132,7 @@ def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
         {"friction", "load", "outline", "start", "goal", "task"},
         {"friction", "load", "object", "start", "goal", "task"},
         {"friction", "load", "outline", "task"},
+        {"friction", "load", "object", "task"},
     ]
 
 

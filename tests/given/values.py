@@ -174,5 +174,6 @@ VALUES: dict[str, Callable[[], Any]] = {
     "LoadSet": lambda: rg.LoadSet.ball(LOAD, force=1.0, torque=0.1),
     "LoadSet, hull": lambda: rg.LoadSet.hull([LOAD, rg.Wrench([0, -1.0])]),
     "LoadSet, tilted": lambda: rg.LoadSet.tilted(LOAD, 0.3).scaled(2.0),
+    "LoadSet, tilts": lambda: rg.LoadSet.tilted(LOAD, 0.3).deviations,
     "Sensitivity": lambda: rg.sensitivity(PAIR, LOAD),
 }

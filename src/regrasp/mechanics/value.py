@@ -86,7 +86,7 @@ def _read_only(value: Any) -> Any:
 
 def numbers(values: Any) -> str:
     """A short text of a vector for printing: (1, -0.5)."""
-    return "(" + ", ".join(f"{value:.6g}" for value in np.atleast_1d(values)) + ")"
+    return "(" + ", ".join(f"{value:.6g}" for value in np.atleast_1d(values) + 0.0) + ")"  # no -0
 
 
 def one_line(text: str) -> str:

@@ -148,5 +148,5 @@ class Wrench(ArrayValue):
         return cls(**entries(data, "a wrench", ("force",), ("torque",)))
 
     def __repr__(self) -> str:
-        shown = numbers(self.torque) if self.dimension == 3 else f"{self.torque[0]:.6g}"
+        shown = numbers(self.torque) if self.dimension == 3 else f"{self.torque[0] + 0.0:.6g}"
         return f"Wrench(force={numbers(self.force)}, torque={shown})"

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from regrasp.mechanics.robust.withstood import Withstood
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -26,6 +28,7 @@ class Record:
     balancing: largest change of a given force to reach exact equilibrium [N].
     path: ``closed-form`` for Eq. 1-3, or what planned the instants: a back end, or ``time-banded``.
     path_objective: what for. rate_limits [N/s], least_normals [N]: one for each contact; empty for none.
+    withstands: deviations of the load, and early losses, at every instant; None for none.
     """
 
     reserve: float
@@ -35,6 +38,7 @@ class Record:
     path_objective: str | None = None
     rate_limits: tuple[float, ...] = ()
     least_normals: tuple[float, ...] = ()
+    withstands: Withstood | None = None
 
     def reversed(self) -> "Record":
         """That of the same plan run backwards."""

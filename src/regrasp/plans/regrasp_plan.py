@@ -162,6 +162,8 @@ class RegraspPlan(ArrayValue, Documented, Pictured):
             turn = self._turn_in_words(step, a, b)
             held = ", ".join(step.grasp.names)
             lines.append(f"{k:2}. {step.in_words} with {held}{turn}")
+        said = dict.fromkeys(str(s.record.withstands) for s in self.steps if s.record.withstands is not None)
+        lines += [f"withstands {words}" for words in said]
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
 
     __repr__ = __str__

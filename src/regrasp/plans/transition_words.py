@@ -27,6 +27,8 @@ def told(plan: Any) -> str:
     lines += plan.path.in_words(plan.start, plan.end, record.path, record.path_objective)
     if record.rate_limits:
         lines.append(f"rates below {', '.join(f'{r:.4g}' for r in record.rate_limits)}")
+    if record.withstands is not None:
+        lines.append(f"withstands {record.withstands}")
     if record.balancing:
         lines.append(f"given forces were balanced; largest change {record.balancing:.2g}")
     return "\n".join(lines)

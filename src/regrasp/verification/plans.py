@@ -33,7 +33,7 @@ from regrasp.verification.refusals.outline_cuts import OutlineCut, verify_outlin
 from regrasp.verification.regrasps import Regrasp, check_joints, of_steps
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
-from regrasp.verification.withstood.plans import Asked, check_withstood
+from regrasp.verification.withstood.plans import Asked, check_promised, check_withstood
 
 _NO_FORM = inf, 0.0, -inf  # residual, angle and slack of what cannot be judged
 _NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "record")
@@ -137,13 +137,16 @@ def verify(
     if found.worst_residual == inf:  # not of the form that the checks below take for granted
         return Verification(tuple(violations), *found[1:])
     violations += [] if untimed else check_record(plan)
+    promises, promised = check_promised(plan, asked)
+    violations += promises
     if asked is not None:
         violations += check_withstood(plan, asked)
+    withstood = "; ".join(words for words in (promised, asked.words if asked else "") if words)
     gap, proven = None, False
     if load is not None:
         gap, proven, broken = check_load(plan, load, curvature)
         violations += broken
-    return Verification(tuple(violations), *found[1:], gap, proven)
+    return Verification(tuple(violations), *found[1:], gap, proven, withstood=withstood)
 
 
 def _verify_regrasp(plan: Regrasp, more: dict[str, Any], stiffness: ArrayLike | None) -> Verification:
@@ -157,6 +160,7 @@ def _verify_regrasp(plan: Regrasp, more: dict[str, Any], stiffness: ArrayLike | 
         max(verdict.worst_residual for verdict in verdicts),
         min(verdict.least_angle for verdict in verdicts),
         min(verdict.least_cone_slack for verdict in verdicts),
+        withstood="; ".join(dict.fromkeys(v.withstood for v in verdicts if v.withstood)),
     )
 
 

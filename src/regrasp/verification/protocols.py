@@ -3,6 +3,8 @@
 from typing import Protocol
 
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.robust.stiffness import Stiffness
 from regrasp.mechanics.state import GraspState
 
 
@@ -66,8 +68,24 @@ class Choice(Protocol):
         """[N], infinite for none."""
 
 
+class Withstood(Protocol):
+    """What a plan says that it withstands at every instant."""
+
+    @property
+    def disturbance(self) -> LoadSet | None:
+        """Deviations of the load; None for none."""
+
+    @property
+    def stiffness(self) -> Stiffness:
+        """Of the fingers, one number or rows by contact [N/m]."""
+
+    @property
+    def early_loss(self) -> bool:
+        """Whether a finger that leaves or arrives may lose contact early."""
+
+
 class Record(Protocol):
-    """What a plan says it keeps to."""
+    """What a plan says it keeps to; ``withstands``, a ``Withstood`` or None, besides if it says that."""
 
     @property
     def reserve(self) -> float:

@@ -30,6 +30,8 @@ class Verification(ArrayValue):
         asked: what every hold of the regrasps that a cut excludes had to keep, of an ``OutlineCut`` at which
             orientations, too; or which part of its outline a proof about places is of, in words; empty for
             nothing.
+        withstood: what every instant withstands besides the load, asked for or on the plan's record, in
+            words; empty for nothing.
     """
 
     violations: tuple[str, ...]
@@ -42,6 +44,7 @@ class Verification(ArrayValue):
     bound: float | None = None
     crossing: int | None = None
     asked: str = ""
+    withstood: str = ""
 
     @property
     def ok(self) -> bool:
@@ -73,6 +76,8 @@ class Verification(ArrayValue):
             f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
             f"every force inside its cone{by}"
         ]
+        if self.withstood:
+            lines.append(f"every instant withstands {self.withstood}")
         if self.load_gap is not None:
             how = "proven" if self.load_gap_is_proven else "measured between instants, not proven"
             lines.append(

@@ -2,6 +2,7 @@
 "wrong."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -48,11 +49,22 @@ REMOVAL = 'kind = "removal"\ncontact = "P3"\nstiffness = [1000, 800, 600]\nearly
             "hull = [{force = [0.1, 0.0]}, {force = [0.0, 0.0], torque = 0.5}]",
             rg.LoadSet.hull([rg.Wrench([0.1, 0]), rg.Wrench([0, 0], 0.5)]),
         ),
+        (
+            "axes = [{force = [0.1, 0.1]}, {force = [0.0, 0.05], torque = 0.5}]",
+            rg.LoadSet.ellipsoid(rg.Wrench([0, 0]), [[0.1, 0.0], [0.1, 0.05], [0.0, 0.5]]),
+        ),
     ],
 )
-def test_a_plan_of_a_scenario_withstands_its_set(words: str, loads: rg.LoadSet) -> None:
+def test_a_plan_of_a_scenario_withstands_its_set(words: str, loads: rg.LoadSet, tmp_path: Path) -> None:
     scenario = parse_scenario(TEXT.format(set=words, task=REMOVAL))
     plan = plan_scenario(scenario)
+    write_plan(plan, tmp_path / "plan.json")
+    again = read_plan(tmp_path / "plan.json")
+    assert again == plan
+    assert "every instant withstands every deviation of the" in str(rg.verify(again))
+    more = replace(plan.record.withstands, disturbance=loads.scaled(30))
+    lying = replace(plan, record=replace(plan.record, withstands=more))
+    assert any(v.startswith("record: start: force of") for v in rg.verify(lying).violations)
     assert rg.verify(plan, disturbance=loads, stiffness=[1000, 800, 600], early_loss=True).ok
     calm = TEXT.format(set=words, task=REMOVAL).replace("[load.disturbance]\n" + words, "")
     without = plan_scenario(parse_scenario(calm))
@@ -72,6 +84,8 @@ def test_regrasps_of_scenarios_withstand_their_set(kind: str) -> None:
     plan = plan_scenario(parse_scenario(text.replace("TASK", task)))
     loads = rg.LoadSet.ball(rg.Wrench([0.0] * (wide - 1)), force=0.01, torque=0.0001)
     assert rg.verify(plan, disturbance=loads, stiffness=springs).ok
+    assert "withstands every deviation" in str(rg.verify(rg.RegraspPlan.from_dict(plan.to_dict())))
+    assert {step.record.withstands.disturbance for step in plan.steps} == {loads}
     assert plan.steps[0].grasp[0].limits == rg.ForceLimits(rows, [200.0])
     with pytest.raises(rg.InvalidInput, match="task: limits: expected rows and bounds; a jacobian"):
         parse_scenario(text.replace("TASK", "limits = {jacobian = [[1.0], [0.0]], torques = 1.0}"))
@@ -90,10 +104,11 @@ def test_arriving_fingers_bring_their_stiffness_and_objects_turn() -> None:
 @pytest.mark.parametrize(
     ("words", "task", "said"),
     [
-        ("", REMOVAL, "load.disturbance: expected force or torque above 0, tilt_degrees or hull"),
-        ("force = 0.1\ntilt_degrees = 3.0", REMOVAL, "one of these three"),
+        ("", REMOVAL, "load.disturbance: expected force or torque above 0, tilt_degrees, axes or hull"),
+        ("force = 0.1\ntilt_degrees = 3.0", REMOVAL, "one of these four"),
         ("force = -0.1", REMOVAL, "load.disturbance.force"),
         ("hull = [{force = [0.1, 0.0, 0.0]}]", REMOVAL, "disturbance.hull: expected forces of 2 numbers"),
+        ("axes = [{force = [0.1, 0.0, 0.0]}]", REMOVAL, "disturbance.axes: expected forces of 2 numbers"),
         ("force = 0.1", REMOVAL.replace("[1000, 800, 600]", "[1, 2]"), "task.stiffness: expected a number"),
     ],
 )

@@ -90,6 +90,7 @@ def rows() -> dict[str, Row]:
         ),
         "LoadSet.tilted": Row(rg.LoadSet.tilted, {"load": LOAD, "angle": 0.1}, {"angle": "angle to pi"}),
         "LoadSet.turned": Row(rg.LoadSet.turned, {"load": LOAD}),
+        "LoadSet.from_dict": Row(rg.LoadSet.from_dict, {"data": loads.to_dict()}),
         "LoadSet.scaled": Row(loads.scaled, {"factor": 2.0}, {"factor": "not negative"}),
         "LoadSet.support": Row(loads.support, {"twist": [0, 0, 1]}, {"twist": "twists"}),
         "LoadSet.extreme": Row(loads.extreme, {"twist": [0, 0, 1]}, {"twist": "space vector"}),

@@ -18,6 +18,7 @@ from regrasp.files.strict import validated
 from regrasp.mechanics.checks import array, file_path
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.robust.withstood import Withstood
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.placement.chosen import ChosenGrasp
@@ -181,6 +182,8 @@ def _document(plan: Transition) -> dict[str, Any]:
             "least_normals": list(record.least_normals),
         },
     }
+    if record.withstands is not None:
+        document["record"]["withstands"] = record.withstands.to_dict()
     if plan.arrival is not None:
         document["arrival"] = plan.arrival
     if max(len(plan.leaving), len(plan.arriving)) > 1:
@@ -249,6 +252,7 @@ def _read_record(record: StoredRecord) -> Record:
         record.path_objective,
         tuple(_unlimited(limit) for limit in record.rate_limits),
         tuple(record.least_normals),
+        None if record.withstands is None else Withstood.from_dict(record.withstands),
     )
 
 

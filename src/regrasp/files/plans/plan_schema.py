@@ -1,6 +1,6 @@
 """What stands in a plan file: keys, types and ranges."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -49,6 +49,7 @@ class StoredRecord(Strict):
     path_objective: PathObjective | None = None
     rate_limits: list[Positive | None] = Field(default_factory=list)
     least_normals: list[NotNegative] = Field(default_factory=list)
+    withstands: dict[str, Any] | None = None  # of a ``Withstood``, which reads it
 
 
 class _Course(Strict):

@@ -4,6 +4,7 @@ from functools import cached_property
 from math import radians
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from regrasp.files.scenarios.keys import Load
@@ -15,12 +16,15 @@ _NotNegative = Annotated[float, Field(ge=0)]
 
 
 class Disturbance(Strict):
-    """Deviations of the load that states withstand: a ball, a tilt of the load, or the hull of some."""
+    """Deviations of the load that states withstand: a ball or an ellipsoid, a tilt of the load, or a hull."""
 
     force: _NotNegative = Field(0.0, description="radius of a ball of deviations of the force [N]")
     torque: _NotNegative = Field(0.0, description="radius of its deviations of the torque [N m]")
     tilt_degrees: Annotated[float, Field(gt=0, le=180)] | None = Field(
         None, description="in the place of a ball: the load's force turns by up to this angle, any way"
+    )
+    axes: Annotated[list[Load], Field(min_length=1)] | None = Field(
+        None, description="in the place of a ball: half axes of an ellipsoid, each with force and torque"
     )
     hull: Annotated[list[Load], Field(min_length=1)] | None = Field(
         None, description="in the place of a ball: deviations, each with force and torque, and all between"
@@ -33,13 +37,17 @@ class Disturbance(Strict):
         none = 0.0 * load
         if self.hull is not None:
             return LoadSet.hull([entry.wrench for entry in self.hull], center=none)
+        if self.axes is not None:
+            return LoadSet.ellipsoid(none, np.column_stack([entry.wrench.vector for entry in self.axes]))
         return LoadSet.ball(none, force=self.force, torque=self.torque)
 
     @model_validator(mode="after")
     def _is_one_set(self) -> "Disturbance":
-        ways = [bool(self.force or self.torque), self.tilt_degrees is not None, self.hull is not None]
-        if sum(ways) != 1:
-            raise ValueError("expected force or torque above 0, tilt_degrees or hull, one of these three")
+        others = (self.tilt_degrees, self.axes, self.hull)
+        if bool(self.force or self.torque) + sum(way is not None for way in others) != 1:
+            raise ValueError(
+                "expected force or torque above 0, tilt_degrees, axes or hull, one of these four"
+            )
         return self
 
 
@@ -57,7 +65,10 @@ class DisturbedLoad(Load):
 
     @model_validator(mode="after")
     def _is_of_one_dimension(self) -> "DisturbedLoad":
-        hull = None if self.disturbance is None else self.disturbance.hull
-        if hull is not None and any(len(entry.force) != len(self.force) for entry in hull):
-            raise ValueError(f"disturbance.hull: expected forces of {len(self.force)} numbers, as the load's")
+        for key in ("hull", "axes"):
+            entries = getattr(self.disturbance, key, None) or ()
+            if any(len(entry.force) != len(self.force) for entry in entries):
+                raise ValueError(
+                    f"disturbance.{key}: expected forces of {len(self.force)} numbers, as the load's"
+                )
         return self

@@ -1,8 +1,9 @@
 """Convex sets of loads: what a grasp may meet, instead of one wrench."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import pi
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from regrasp.mechanics.checks import (
     read_only,
 )
 from regrasp.mechanics.loads.bodies import ROUNDING, Body, Cap, Ellipsoid, Hull
+from regrasp.mechanics.loads.plain_bodies import body_of, plain_body
+from regrasp.mechanics.plain import entries
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 
@@ -212,6 +215,25 @@ class LoadSet(ArrayValue):
                 f"twist must have {self.center.vector.size} finite numbers, got {shown(twist)}"
             )
         return not_huge(y, "twist", _FASTEST)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The set as plain data, which JSON can hold; ``from_dict`` gives back the equal set."""
+        return {"center": self.center.vector.tolist(), "factor": self.factor, "body": plain_body(self.body)}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "LoadSet":
+        """The set of plain data.
+
+        Args:
+            data: what ``to_dict`` returned, or JSON made of it.
+
+        Raises:
+            InvalidInput: For other keys, shapes and numbers.
+        """
+        given = entries(data, "a load set", ("center", "factor", "body"))
+        center = _wrench(Wrench.from_vector(given["center"]), "center")
+        body = body_of(given["body"], center.vector.size)
+        return cls(center, 1.0, body).scaled(given["factor"])
 
     def __str__(self) -> str:
         times = "" if self.factor == 1 else f", deviations times {self.factor:.6g}"

@@ -1,5 +1,6 @@
 """What a change of fingers starts from, as asked: grasp, loads at both ends, criteria and demands."""
 
+from dataclasses import replace
 from typing import NamedTuple, Self, cast
 
 from regrasp.mechanics.grasp import Grasp
@@ -56,4 +57,7 @@ class Asked(NamedTuple):
         """The transition between two ends of all contacts in play."""
         criteria = shared(self.criteria, start, end)
         change = Change.between(limited(grasp, criteria.max_force), start, end, self.options)
+        if criteria.withstands:
+            record = replace(change.record, withstands=criteria.withstood)
+            change = change._replace(record=record)
         return joined(change, self.clock, self.series, criteria, self.demands)

@@ -137,6 +137,7 @@ def plan_rotation(
             tuple(choices),
             change,
             least_normals=tuple(criteria.least_normals(grasp)) if criteria.presses else (),
+            withstands=criteria.withstood,
         ),
         path=halved(chooser, states, between),
     )

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan, ceil, cos, tan
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, cast
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.robust.stiffness import Stiffness
+from regrasp.mechanics.robust.withstood import Withstood
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.changes.given_ends import eased
@@ -289,9 +291,21 @@ def step_between(
     stay = [i in before.places and i in after.places for i in places]
     least = [criteria.least_normal * stays for stays in stay] if criteria.presses else []
     choices = (_choice("start", before), _choice("end", after))
-    record = Record(criteria.reserve, choices, least_normals=tuple(least))
+    promised = _withstood(before, after, places) if criteria.withstands else None
+    record = Record(criteria.reserve, choices, least_normals=tuple(least), withstands=promised)
     path = STRAIGHT if turn == 0 else TurningPath([0.0, turn], [start.forces, end.forces], axis)
     return refuse_lost_load(Transition(start, end, scaling, record, leaving, arriving, path))
+
+
+def _withstood(before: Chosen, after: Chosen, places: tuple[int, ...]) -> Withstood | None:
+    """What a step withstands, stiffness by its contacts."""
+    said = before.criteria.withstood
+    if said is None or not isinstance(said.stiffness, tuple):
+        return said
+    rows: dict[int, Stiffness] = {}
+    for state in (after, before):
+        rows |= zip(state.places, cast(tuple[Stiffness, ...], state.criteria.stiffness), strict=True)
+    return replace(said, stiffness=tuple(rows[place] for place in places))
 
 
 def _in_use(forces: Array) -> tuple[bool, ...]:

@@ -14,6 +14,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import RESERVE, kept_force, kept_friction, reserve_fraction
 from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness, stiffness_matrices
+from regrasp.mechanics.robust.withstood import Withstood
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.objectives import ANGLE, Objective, WithstoodFactor, objective_of
@@ -157,6 +158,11 @@ class Criteria:
     def demands(self) -> bool:
         """Whether a set or an early loss counts, as it is or by its factor."""
         return self.withstands or isinstance(self.objective, WithstoodFactor)
+
+    @property
+    def withstood(self) -> Withstood | None:
+        """What a plan by these criteria says of itself: the set and the early loss it withstands, or None."""
+        return Withstood(self.disturbance, self.stiffness, self.early_loss) if self.withstands else None
 
     def of_some(self, grasp: Grasp, at_work: Sequence[int], controlled: Collection[int]) -> "Criteria":
         """The criteria for some contacts of a grasp, with their stiffness.

@@ -27,7 +27,7 @@ from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness, sti
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import Vector, exact
-from regrasp.verification.protocols import Plan
+from regrasp.verification.protocols import Plan, Withstood
 from regrasp.verification.records import deciding_forces
 from regrasp.verification.withstood.contacts import Body, Touch
 from regrasp.verification.withstood.matrices import (
@@ -98,6 +98,42 @@ class Asked:
                 )
             return None
         return cls(disturbance, springs, factor, offsets, np.broadcast_to(curved, n), early_loss)
+
+    @property
+    def words(self) -> str:
+        """What must be withstood."""
+        said = [] if self.disturbance is None else [f"every deviation of the {self.disturbance}"]
+        said += [f"{self.friction:.6g} times the friction"] if self.friction != 1 else []
+        if self.positions is not None:
+            said.append(f"contacts off along their tangents, in {len(self.positions)} ways")
+        said += ["the early loss of a finger that leaves or arrives"] if self.early_loss else []
+        return ", with ".join(said)
+
+    def covers(self, other: "Asked") -> bool:
+        """Whether what another asks of a plan's own contacts is asked here, too."""
+        return (
+            (self.disturbance, self.stiffness) == (other.disturbance, other.stiffness)
+            and self.positions is None
+            and self.friction <= other.friction
+            and self.early_loss >= other.early_loss
+        )
+
+
+def check_promised(plan: Plan, asked: Asked | None) -> tuple[list[str], str]:
+    """What a plan does not withstand of what its record says, unless ``asked`` covers that; and in words."""
+    said: Withstood | None = getattr(plan.record, "withstands", None)
+    if said is None:
+        return [], ""
+    try:
+        promised = Asked.of(
+            plan.start.grasp, said.disturbance, said.stiffness, 1.0, None, None, said.early_loss
+        )
+        assert promised is not None
+        if asked is not None and asked.covers(promised):
+            return [], ""
+        return [f"record: {violation}" for violation in check_withstood(plan, promised)], promised.words
+    except InvalidInput as error:
+        return [f"record: {error}"], ""
 
 
 def check_withstood(plan: Plan, asked: Asked) -> list[str]:
