@@ -79,6 +79,53 @@ def test_on_curves_no_force_does_more_than_the_bound_of_a_stretch(size) -> None:
         assert rough == pytest.approx(most, rel=1e-9, abs=1e-12), k
 
 
+@pytest.mark.parametrize("size", ["normal", "force", "margin"])
+def test_doubles_say_what_rationals_say_of_any_stretch(size) -> None:
+    """Long ones and rough fingers too, whose cones together are more than half a turn."""
+    rng, seen = np.random.default_rng(7), set()
+    node = ([(0, 0, 0, 1)], (0, 0), 0, (0, 0, 1))
+    for k in range(80):
+        friction = float(rng.choice([0.3, 1.5, 6.0]))
+        margin = float(rng.uniform(0.05, 0.9)) * friction / np.hypot(1, friction) if size == "margin" else 0.0
+        proof = planar(CURVE[:, 0], [[0, -1, 0]], [node], control=CURVE, size=size, friction=friction)
+        proof.margin, proof.bound = margin, 1.0
+        edges, edge, y = CubicEdges(proof), int(rng.integers(3)), rng.normal(size=3)
+        lo, hi = np.sort(rng.random(2))
+        hi = min(hi, lo + float(rng.choice([1e-3, 0.25, 0.5])))
+        if not edges.turns_little(edge, Fraction(lo), Fraction(hi)):
+            continue
+        exact = float(edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y]))
+        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
+        best = (
+            [most_work(proof, y, *on_curve(edge, t)) for t in np.linspace(lo, hi, 9)] if not margin else [-9]
+        )
+        assert max(best) <= exact * (1 + 1e-9) + 1e-12, k
+        if np.isfinite(rough) and (size != "margin" or exact > 0):
+            assert rough == pytest.approx(exact, rel=1e-7, abs=1e-12), k
+        seen.add((bool(np.isfinite(rough)), friction, exact > 0))
+    assert (True, 6.0, True) in seen
+    assert ((False, 6.0, True) in seen) == (size == "margin")
+
+
+def test_a_stretch_that_hardly_moves_is_judged_in_rationals() -> None:
+    """Tangents of less than a fiftieth of the longest leg are lost in rounding."""
+    for short, fine in ((0.021, True), (0.019, False)):
+        control = np.array([[[0, 0], [short, 0], [1, 0.1], [2, 0.1]], [[2, 0.1], [2, 2], [0, 2], [0, 0]]])
+        proof = planar(
+            control[:, 0],
+            [[0, -1, 0]],
+            [([(0, 0, 0, 1)], (0, 0), 0, (0, 0, 1))],
+            control=control,
+            size="force",
+        )
+        longest = np.hypot(*(control[0, 2] - control[0, 1]))
+        control[0, 1, 0] = short * longest
+        rough = CubicEdges(proof).roughly(
+            np.array([0]), np.array([0.0]), np.array([1e-9]), np.array([1.0, 2, 0])
+        )
+        assert np.isfinite(rough) == fine
+
+
 def test_stretches_of_curves_that_turn_too_far_prove_nothing() -> None:
     """A hairpin, whose tangents at both ends are opposite."""
     hairpin = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]], [[0, 1], [-1, 1], [-1, 0], [0, 0]]], dtype=float)

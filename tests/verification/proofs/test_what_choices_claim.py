@@ -232,12 +232,16 @@ def test_a_share_of_a_surface_counts_every_place_once() -> None:
     assert share([small, small + 0.1 * (t[0, 1] - t[0, 0])], inward[[0, 0]]) == -1  # over one another
     apart = [t[0, k] + 0.25 * (t[0] - t[0, k]) for k in range(3)]
     assert share(apart, inward[[0, 0, 0]]) == pytest.approx(3 * first / 16, rel=1e-9)
-    assert share([t[0, 0] + 2.5 * (t[0] - t[0, 0])]) == -1  # beyond the face
+    for factor in (2.5, 1.5, 1.001):
+        assert share([t[0, 0] + factor * (t[0] - t[0, 0])]) == -1  # beyond the face
     assert share([small + 1e-6 * inward[0]]) == -1  # beside its plane
     assert share([small], -inward[:1]) == -1
     tilted = small.copy()
     tilted[0] += 1e-8 * inward[0]
     assert share([tilted]) == -1
+    tilted[1] -= 1e-8 * inward[0]  # about its centre, which stays
+    assert share([tilted]) == -1
+    assert share([0.5 * (tilted + small)]) == -1
     mate = next(j for j in range(1, len(t)) if np.allclose(inward[j], inward[0]))
     both = np.concatenate([t[0], t[mate]])
     u = np.unique(both.round(9), axis=0)

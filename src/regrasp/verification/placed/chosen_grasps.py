@@ -180,10 +180,10 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
             return ["the states do not hold the deviations times the value"]
     if chosen.objective == "wrench" and chosen.states and (broken := _check_withstood(chosen)):
         return broken
-    if chosen.objective == "wrench_ball" and (broken := _check_ball(chosen)):
+    if chosen.objective == "wrench_ball" and (broken := _check_ball(chosen, chosen.max_force)):
         return broken
     if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
-        return _check_trivial(chosen, proof)
+        return _check_trivial(chosen, proof, chosen.max_force)
     mu = min(c.friction for c in chosen.grasp)
     if chosen.objective not in _ANY_LOAD and mu != max(c.friction for c in chosen.grasp):
         return ["a level of friction is that of one coefficient, the contacts have several"]
@@ -234,17 +234,17 @@ def _check_withstood(chosen: Chosen) -> list[str]:
     return []
 
 
-def _check_ball(chosen: Chosen) -> list[str]:
+def _check_ball(chosen: Chosen, limit: float) -> list[str]:
     """That the fingers make every wrench of the ball."""
-    length, limit = chosen.length, chosen.max_force
-    if length is None or limit is None or not 0 < length < inf:
-        return ["a ball of loads needs a length that torques are divided by, and a limit"]
+    length = chosen.length
+    if length is None or not 0 < length < inf:
+        return ["a ball of loads needs a length that torques are divided by"]
     if chosen.value < 0 or not makes_ball(chosen.grasp, limit, length, Fraction(chosen.value)):
         return [f"wrench_ball: the fingers do not make all wrenches up to the value {chosen.value:.12g}"]
     return []
 
 
-def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
+def _check_trivial(chosen: Chosen, proof: Proof, limit: float) -> list[str]:
     """A bound that needs no proof: friction is used by 0 or more, margins are at most the half-angle."""
     mu = max(c.friction for c in chosen.grasp)
     if chosen.objective == "friction_use":
@@ -252,12 +252,12 @@ def _check_trivial(chosen: Chosen, proof: Proof) -> list[str]:
     elif chosen.objective == "angle":
         proven = chosen.bound >= atan(mu)
     elif chosen.objective == "force":
-        proven = chosen.bound >= float(chosen.max_force or 0.0) * sin(atan(mu)) * (1 - _CLOSE)
+        proven = chosen.bound >= limit * sin(atan(mu)) * (1 - _CLOSE)
     elif chosen.objective == "wrench_ball":
-        proven = chosen.bound >= len(chosen.grasp) * float(chosen.max_force or 0.0) * hypot(1.0, mu)
+        proven = chosen.bound >= len(chosen.grasp) * limit * hypot(1.0, mu)
     else:  # k forces make no larger wrench than k times the limit, at the largest lever
         levers = np.array([1.0, 1.0, Touching(proof).reach])
-        most = len(chosen.grasp) * float(chosen.max_force or 0.0) * levers
+        most = len(chosen.grasp) * limit * levers
         center, deviations = np.asarray(proof.loads)[0], np.asarray(chosen.deviations)
         proven = bool((np.abs(center + deviations * chosen.bound) >= most).any())
     return [] if proven else ["the proof proves no bound"]

@@ -148,7 +148,7 @@ def _along(a: Point, v: Point) -> Fraction:
 
 def _on_arc(a: Point, b: Point, v: Point) -> Fraction:
     """The most of v . f over f of length 1 from a to b, less than half a turn counter-clockwise; or 0."""
-    if _cross(a, v) >= 0 and _cross(v, b) >= 0 and _dot(a, v) + _dot(b, v) > 0:
+    if _cross(a, v) >= 0 and _cross(v, b) >= 0 and max(_dot(a, v), _dot(b, v)) > 0:
         return root_above(_dot(v, v))
     return max(_along(a, v), _along(b, v))
 

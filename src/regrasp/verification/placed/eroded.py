@@ -39,12 +39,11 @@ def most_eroded(a: Point, b: Point, limit: Fraction, margin: Fraction, v: Point)
     s, t = _cross(mb, v) / det, _cross(v, ma) / det
     if s >= 0 and t >= 0:
         best = min(best, -s * da - t * db)
+    across = float(margin)
+    along = sqrt(max(float(limit) ** 2 - across**2, 0.0))
     for m, edge, least in ((ma, a, da), (mb, b, db)):
         # at the corner of an edge and the circle v + s m is along it
-        size = sqrt(float(edge[0] * edge[0] + edge[1] * edge[1]))
-        across = float(margin)
-        along = sqrt(max(float(limit) ** 2 - across**2, 0.0))
-        fx, fy = (along * float(e) / size + across * float(c) / size for e, c in zip(edge, m, strict=True))
+        fx, fy = (along * float(e) + across * float(c) for e, c in zip(edge, m, strict=True))
         turning = float(m[0]) * fy - float(m[1]) * fx
         if turning != 0.0:
             s = Fraction(max(-(float(v[0]) * fy - float(v[1]) * fx) / turning, 0.0))
