@@ -213,6 +213,19 @@ def test_the_disturbance_named_is_the_limit() -> None:
         assert (answer.status == 0) == held
 
 
+def test_the_search_ends_where_two_edges_of_a_cone_were_halved_for_ever() -> None:
+    """A cone once became flat between two of its edges, and no gap below a half was proven in millions."""
+    points = [[59, 79, -36], [43, 123, 31], [7, -20, -104], [82, -12, -74], [-110, -1, -26], [-94, -4, -98]]
+    normals = [[-56, -74, 38], [-28, -94, -16], [15, 19, 97], [-69, 20, 70], [81, -6, 59], [89, 17, 42]]
+    frictions = [0.91, 0.47, 0.49, 0.83, 0.5, 0.88]
+    grasp = rg.Grasp(
+        rg.Contact(np.array(p) / 100, n, mu, torsion=0.1)
+        for p, n, mu in zip(points, normals, frictions, strict=True)
+    )
+    found = rg.wrench_ball(grasp, limit=1.0)
+    assert 0 < found.gap <= 0.01 + 1e-9
+
+
 def test_an_upper_bound_at_once() -> None:
     grasp = random_grasp(np.random.default_rng(11), 5, 0.6)
     quick, proven = rg.wrench_ball(grasp, limit=1.0, gap=inf), rg.wrench_ball(grasp, limit=1.0)

@@ -23,7 +23,8 @@ GAP = 0.01
 
 _STARTS, _STEPS = 60, 200
 _CONES = 4_000_000  # some seconds
-_FEW = 20_000  # more than all but one in a hundred grasps with closure need
+_FEW = 20_000  # where the radius is next to none: then whether there is closure is asked first
+_LITTLE = 1e-3  # of the fingers' wrenches
 _LOOSER = (0.05, 0.2, 0.5)
 _ROUNDING = 1e-12
 _FARTHEST = 1e50  # facets have normals of products, whose squares are numbers
@@ -132,7 +133,7 @@ def radius(
     d = np.ones(m) if metric is None else metric
     if m == 6 and metric is None:
         # a lower bound above 0 proves closure, too; without closure no search ends
-        found = _searched(wrenches, d, gap, _FEW)
+        found = _searched(wrenches, d, gap, few=True)
         if found[0] > 0 or (gap >= 1 and found[1] > _SURELY * np.abs(wrenches.axes).max()):
             return found
     if (twist := closure(grasp).escape) is not None:
@@ -153,9 +154,9 @@ def radius(
 
 
 def _searched(
-    wrenches: WrenchSet, metric: Array, gap: float, most: int | None = None
+    wrenches: WrenchSet, metric: Array, gap: float, few: bool = False
 ) -> tuple[float, float, Array]:
-    """``most``: cones, of which no wider gap is tried where they do not suffice."""
+    """``few``: of a radius next to none, few cones, and no wider gap where they do not suffice."""
     from regrasp.closed_form.compiled.direction_search import descend, prove
 
     # torques beside forces as large as they are, so that the cones start with the same shape in all
@@ -165,9 +166,10 @@ def _searched(
     starts = np.vstack([np.eye(6), -np.eye(6), np.random.default_rng(0).normal(size=(_STARTS, 6))])
     upper, u = descend(*parts, metric, starts, _STEPS)
     lower = 0.0
-    looser = () if most is not None else tuple(g for g in _LOOSER if g > gap)
+    few = few and upper < _LITTLE
+    looser = () if few else tuple(g for g in _LOOSER if g > gap)
     for asked in (gap, *looser) if gap < 1 else ():
-        upper, u, _, done = prove(*parts, metric, u, asked, _CONES if most is None else most)
+        upper, u, _, done = prove(*parts, metric, u, asked, _FEW if few else _CONES)
         if done:
             lower = upper * (1 - asked) * (1 - _ROUNDING)
             break

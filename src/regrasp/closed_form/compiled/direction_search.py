@@ -6,7 +6,8 @@ and zeros. Sought is min h(u) / |D u|: with D = 1 the radius of the largest ball
 Directions are covered by simplicial cones of unit vectors v_0 ... v_5. For any w in W and any u = sum c_k
 v_k, c >= 0, h(u) >= w . u = sum c_k w . v_k, and |D u| <= sum c_k |D v_k|; so w . v_k >= b |D v_k| at the
 six corners proves h >= b |D u| on the whole cone. The best w for a cone is a game between w and weights of
-the corners, played a few rounds; a cone that stays open is split between the two corners that matter most.
+the corners, played a few rounds; a cone that stays open is split between the two corners that matter most,
+now and then along its longest edge, so that all become small.
 
 W is given by parts: fingers i of h_i(u) = max(0, a_i . u + |T_i u|), a circular cone cut off at its normal
 limit; their sum (each finger limited) or their largest (the total limited).
@@ -23,19 +24,23 @@ from regrasp.compilation import kept
 _ROUNDS = 5
 _STACK = 4000
 _FLOOR = 0.02  # weight of a corner that the game does not need, for the choice of a split
+_LONGEST = 16
+"""Each so many splits the longest edge is halved: else a cone may become flat between two edges for ever."""
 SETTLED = 1e-9
 
 
 @njit(**INNER)
-def _split(corners, weights):  # type: ignore[no-untyped-def]
-    """The edge to halve: long, and between corners that the game needed."""
+def _split(corners, weights, longest):  # type: ignore[no-untyped-def]
+    """The edge to halve: long, and between corners that the game needed; or the longest of all."""
     a, b, most = 0, 1, -1.0
     for i in range(6):
         for j in range(i):
             square = 0.0
             for k in range(6):
                 square += (corners[i, k] - corners[j, k]) ** 2
-            matters = square * sqrt(square) * max(weights[i], _FLOOR) * max(weights[j], _FLOOR)
+            matters = square
+            if not longest:
+                matters *= sqrt(square) * max(weights[i], _FLOOR) * max(weights[j], _FLOOR)
             if matters > most:
                 a, b, most = i, j, matters
     return a, b
@@ -156,6 +161,7 @@ def prove(axes, tangents, total, metric, start, gap, most):  # type: ignore[no-u
     weights, used, lengths = np.zeros(6), np.zeros(6), np.zeros(6)
     found = start.copy()
     best = support(axes, tangents, total, found, w, across) / _length(metric, found)
+    depths = np.zeros(_STACK, dtype=np.int64)
     top, looked = 64, 0
     for signs in range(64):
         for k in range(6):
@@ -210,7 +216,7 @@ def prove(axes, tangents, total, metric, start, gap, most):  # type: ignore[no-u
             weights[worst] += 0.5
         if closed:
             continue
-        a, b = _split(corners, used)
+        a, b = _split(corners, used, depths[top] % _LONGEST == _LONGEST - 1)
         square = 0.0
         for k in range(6):
             c[k] = corners[a, k] + corners[b, k]
@@ -222,5 +228,7 @@ def prove(axes, tangents, total, metric, start, gap, most):  # type: ignore[no-u
             cones[top + 1, b, k] = corners[a, k]
         _copy(kept, given[top])
         _copy(kept, given[top + 1])
+        depths[top] += 1
+        depths[top + 1] = depths[top]
         top += 2
     return best, found, looked, True
