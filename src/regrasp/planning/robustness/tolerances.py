@@ -246,7 +246,7 @@ def tolerances(
 def _in_closed_form(
     asked: "Asked", names: tuple[str, ...], forces: Sequence[PlanarForces], tip_radius: float
 ) -> Tolerances:
-    """The same of planar fingers without force limits, on flat surfaces."""
+    """The same of planar fingers on flat surfaces."""
     friction, others = (0.0, "", "", ""), dict.fromkeys(("load", "tilt", "centre"), (inf, "", "", ""))
     position, off = [inf] * len(names), (inf, "", "", "")
     for view, each in zip(asked.views, forces, strict=True):
