@@ -15,19 +15,20 @@ _SHRINK = {2: 0.125, 3: 0.45, 4: 0.5}
 
 
 def least_over(
-    value: Callable[[Array], Array], count: int, size: int, starts: int = 1
+    value: Callable[[Array], Array], count: int, size: int, starts: int = 1, own: Array | None = None
 ) -> tuple[Array, Array]:
     """Least values (count,) of ``count`` functions over unit vectors (size,), and where, (count, size).
 
     value: from (count, m, size) unit vectors to (count, m). Functions are smooth around their minima. starts:
-    where they have several, the best points of so many parts of the grid are refined.
+    where they have several, the best points of so many parts of the grid are refined. own: (count, size) each
+    function's own start besides, where there are several.
     """
     if size == 1:
         at = np.broadcast_to(np.array([[1.0], [-1.0]]), (count, 2, 1))
         return _best(value(at), at)
     start = np.broadcast_to(_grid(size), (count, *_grid(size).shape))
     if starts > 1:
-        return _from_several(value, start, starts)
+        return _from_several(value, start, starts, own)
     least, where = _best(value(start), start)
     step, pattern = _FIRST[size], _pattern(size)
     for _ in range(_ROUNDS[size]):
@@ -40,7 +41,9 @@ def least_over(
     return least, where
 
 
-def _from_several(value: Callable[[Array], Array], start: Array, starts: int) -> tuple[Array, Array]:
+def _from_several(
+    value: Callable[[Array], Array], start: Array, starts: int, own: Array | None
+) -> tuple[Array, Array]:
     """The same from the best point of each part of the grid, all refined side by side."""
     count, _, size = start.shape
     values = np.where(np.isnan(found := value(start)), np.inf, found)
@@ -48,6 +51,10 @@ def _from_several(value: Callable[[Array], Array], start: Array, starts: int) ->
     best = np.stack([part[values[:, part].argmin(axis=1)] for part in parts], axis=1)  # (count, starts)
     rows = np.arange(count)[:, None]
     least, where = values[rows, best], start[rows, best]
+    if own is not None:
+        found = value(own[:, None])
+        least = np.hstack([least, np.where(np.isnan(found), np.inf, found)])
+        where, starts = np.concatenate([where, own[:, None]], axis=1), starts + 1
     step, pattern = _FIRST[size], _pattern(size)
     for _ in range(_ROUNDS[size]):
         near = where.reshape(-1, 1, size) + step * _across(where.reshape(-1, size), pattern)

@@ -90,7 +90,9 @@ class Withstanding:
         member: the deviation (q,) that reaches a measure along a twist. starts: as of ``least_over``.
         """
         n, w = self.forces.shape
-        least, where = least_over(lambda u: self._slipping(u, measure), n, w - 1, starts)
+        across = np.einsum("nkw,nw->nk", self.cones.tangents, self.forces)
+        own = _directions(across)  # where a force at its cone's edge is, which a grid misses
+        least, where = least_over(lambda u: self._slipping(u, measure), n, w - 1, starts, own)
         gs = self._edges(where[:, None])[:, 0]
         twists = [-self.responses[i].T @ gs[i] for i in range(n)]
         hows = [SLIPS] * n
@@ -103,7 +105,9 @@ class Withstanding:
                 limits=self.limits[limited],
                 rows=None,
             )
-            reached, us = least_over(lambda u: some._exceeding(u, measure), limited.size, w, starts)
+            reached, us = least_over(
+                lambda u: some._exceeding(u, measure), limited.size, w, starts, _directions(some.forces)
+            )
             for k, i in enumerate(limited.tolist()):
                 if reached[k] < least[i]:
                     least[i], hows[i] = reached[k], EXCEEDS
@@ -195,6 +199,14 @@ def measured_response(grasp: Grasp, response: Array) -> Array:
     """R (n w, q) as (n, w, q), as the cones measure forces."""
     columns = response.T.reshape(-1, len(grasp), grasp.width)
     return np.moveaxis(grasp.cones.measured(columns), 0, -1)
+
+
+def _directions(vectors: Array) -> Array:
+    """(n, k) of length 1; of vectors that vanish any."""
+    lengths = np.sqrt((vectors * vectors).sum(axis=1, keepdims=True))
+    some = np.eye(vectors.shape[1])[:1]
+    result: Array = np.divide(vectors, lengths, out=np.repeat(some, len(vectors), axis=0), where=lengths > 0)
+    return result
 
 
 def _reach(loads: LoadSet) -> Array:
