@@ -42,6 +42,7 @@ def test_refusals_at_any_orientation_are_proven(options):
     verdict = rg.verify(proof)
     assert verdict.ok
     assert str(verdict).startswith("no regrasp leads from the start to the goal on these contacts")
+    assert "not covered: contacts elsewhere, fingers that slide or roll" in str(verdict)
     asked = (
         f"with angle margins of {options['least_margin']:g} rad"
         if "least_margin" in options

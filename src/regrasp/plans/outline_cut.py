@@ -26,7 +26,7 @@ def limits_in_words(min_normal: float, max_force: float | None) -> str:
     """
     parts = [f"normal forces of at least {min_normal:g} N"] if min_normal > 0 else []
     parts += [f"forces of at most {max_force:g} N"] if max_force is not None else []
-    return f", with {' and '.join(parts)}" if parts else ""
+    return f", with {' and '.join(parts)} in every hold" if parts else ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,8 @@ from regrasp.display import table
 from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.exact import RESOLUTION
 
+_NOT_COVERED = "not covered: {}, fingers that slide or roll, loads with a torque about the centre of mass"
+
 
 @dataclass(frozen=True, eq=False)
 class Verification(ArrayValue):
@@ -69,7 +71,7 @@ class Verification(ArrayValue):
             return (
                 f"no regrasp leads from the start to the goal on these contacts{self.asked}, at any "
                 f"orientation: none of {self.crossing} pairs across the cut holds a load{self.asked}, "
-                f"in exact arithmetic"
+                f"in exact arithmetic\n{_NOT_COVERED.format('contacts elsewhere')}"
             )
         by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
         lines = [
@@ -88,7 +90,7 @@ class Verification(ArrayValue):
             return (
                 f"no regrasp leads from the start to the goal on this outline, at {self.asked}: "
                 f"{self.excluded} boxes cover all pairs of places across the cut, each excluded by its "
-                f"twist, in exact arithmetic"
+                f"twist, in exact arithmetic\n{_NOT_COVERED.format('other orientations, fingers on holes')}"
             )
         if self.excluded is not None:
             if not isfinite(self.least_cone_slack):  # the proof alone

@@ -158,6 +158,7 @@ def test_every_part_of_a_proof_is_needed():
     verdict = rg.verify(cut)
     assert verdict.ok
     assert str(verdict).startswith("no regrasp leads from the start to the goal on this outline")
+    assert "not covered: other orientations, fingers on holes, fingers that slide or roll" in str(verdict)
     assert verdict.excluded == len(cut.boxes) > 5
     for k in range(len(cut.boxes)):
         without = replace(cut, boxes=np.delete(cut.boxes, k, 0), twists=np.delete(cut.twists, k, 0))

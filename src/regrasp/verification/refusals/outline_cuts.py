@@ -95,7 +95,7 @@ def verify_outline_cut(cut: OutlineCut) -> Verification:
 def _in_words(min_normal: float, max_force: float | None) -> str:
     least = [f"normal forces of at least {min_normal:g} N"] if min_normal > 0 else []
     most = [] if max_force is None else [f"forces of at most {max_force:g} N"]
-    return f", with {' and '.join(least + most)}" if least or most else ""
+    return f", with {' and '.join(least + most)} in every hold" if least or most else ""
 
 
 def _is_formed(cut: OutlineCut) -> bool:
