@@ -25,8 +25,12 @@ def test_regions_their_mirror_images_and_the_walk_are_drawn(friction, words):
         steps = np.diff(line.get_xydata(), axis=0)
         assert (abs(steps).min(axis=1) == 0).all()  # one finger stays on its axis
     if found.exists:
-        ax = plots.plot_outline_map(found, plan=found.plan())
+        plan = found.plan()
+        ax = plots.plot_outline_map(found, plan=plan)
         (planned,) = (line for line in ax.lines if line.get_gid() == "path")
-        assert np.allclose(np.sort(planned.get_xydata()), np.sort(paths[0].get_xydata()))
+        held = [set(s.grasp.names) - set(s.idle_at_end) for s in plan.steps[:-1]]
+        for at, names, step in zip(planned.get_xydata(), held, plan.steps[:-1], strict=True):
+            points = {tuple(step.grasp[name].position.round(6)) for name in names}
+            assert {tuple(p) for p in found.outline.points(at).round(6)} == points
         assert "a plan of" in ax.get_legend().get_texts()[-1].get_text()
     assert found._repr_png_()

@@ -1,5 +1,7 @@
 """Walks of holds anywhere on an outline are regrasps: planned, verified, written and read."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -29,44 +31,61 @@ def holds_of(plan):
         yield {round(BOWL.nearest(step.grasp[n].position + BOWL.centre_of_mass), 6) for n in names}
 
 
+def random_task(rng):
+    """What is found between two random grasps of which two fingers hold a load; None for others."""
+    friction, angle = float(rng.uniform(0.05, 0.2)), rng.uniform(0, 2 * np.pi)
+    load = rg.Wrench([np.cos(angle), np.sin(angle)])
+    s, t = rng.uniform(0, BOWL.length, (2, 2000))
+    lo, hi = rg.locus_intervals(
+        BOWL.points(s), BOWL.normals(s), friction, BOWL.points(t), BOWL.normals(t), friction, load.force
+    )
+    k = np.flatnonzero(lo < hi)[:2]
+    if len(k) < 2:
+        return None
+    found = asked(friction, *[(s[i], t[i], rng.uniform(0, BOWL.length)) for i in k.tolist()], load)
+    return found if found.exists else None
+
+
+def sampled(found, count, **options):
+    """The best sequence among so many places; None without any."""
+    problem = rg.RegraspProblem(
+        BOWL, found.start, found.goal, found.load, found.friction, orientations=1, candidates=count,
+        min_normal=0.0, **options,
+    )  # fmt: skip
+    return next(iter(problem.sequences()), None)
+
+
 def test_plans_are_found_where_sampled_places_miss_them(tmp_path):
     rng = np.random.default_rng(5)
     missed = 0
     while missed < 4:
-        friction, angle = float(rng.uniform(0.05, 0.2)), rng.uniform(0, 2 * np.pi)
-        load = rg.Wrench([np.cos(angle), np.sin(angle)])
-        s, t = rng.uniform(0, BOWL.length, (2, 2000))
-        lo, hi = rg.locus_intervals(
-            BOWL.points(s), BOWL.normals(s), friction, BOWL.points(t), BOWL.normals(t), friction, load.force
-        )
-        k = np.flatnonzero(lo < hi)[:2]
-        if len(k) < 2:
-            continue
-        ends = [(s[i], t[i], rng.uniform(0, BOWL.length)) for i in k.tolist()]
-        found = asked(friction, *ends, load)
-        problem = rg.RegraspProblem(
-            BOWL, found.start, found.goal, load, friction, orientations=1, candidates=60, min_normal=0.0
-        )
-        if not found.exists or problem.sequences():
+        found = random_task(rng)
+        if found is None or sampled(found, 60):
             continue
         missed += 1
         plan = found.plan()
         assert rg.verify(plan).ok
         assert plan.margin > 0
-        assert [set(hold) for hold in found.walk.round(6).tolist()] == list(holds_of(plan))
+        held = list(holds_of(plan))
+        assert len(held) == len(found.walk)
+        assert all(one & other for one, other in pairwise(held))
         write_plan(plan, tmp_path / "plan.json")
         assert read_plan(tmp_path / "plan.json") == plan
-        again = rg.plan_regrasp(
-            BOWL,
-            found.start,
-            found.goal,
-            load,
-            friction=friction,
-            orientations=1,
-            candidates=found.walk.ravel(),
-        )
-        assert rg.verify(again).ok
-        assert len(again.moves) <= len(plan.moves)
+        again = sampled(found, found.walk.ravel())
+        assert again.moves <= len(plan.moves)
+
+
+def test_no_samples_are_wider_with_as_many_exchanges():
+    rng, compared = np.random.default_rng(7), 0
+    while compared < 8:
+        found = random_task(rng)
+        best = None if found is None else sampled(found, 150, peak_ratio=1e4)
+        if best is None or best.exchanges > found.exchanges[1]:
+            continue
+        compared += 1
+        assert best.exchanges == found.exchanges[0]
+        plan = found.plan(peak_ratio=1e4)
+        assert plan.margin >= best.margin - 2e-3 * np.arctan(found.friction)
 
 
 @pytest.mark.parametrize(

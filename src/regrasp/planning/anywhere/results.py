@@ -50,6 +50,7 @@ class OutlineRegrasps(ArrayValue, Pictured):
         max_force: limit on the force of every finger [N]; None for none. With one the regions lie within all
             holds, by up to the fraction 1 - cos(atan(friction) / 16) of the limit.
         goal_orientation: the object's angle in the end [rad].
+        forbidden: (k, 2) arc lengths where arcs begin and end within which no finger may touch [m].
     """
 
     outline: Outline
@@ -68,6 +69,7 @@ class OutlineRegrasps(ArrayValue, Pictured):
     min_normal: float = 0.0
     max_force: float | None = None
     goal_orientation: float = 0.0
+    forbidden: Array = ()  # type: ignore[assignment]
 
     _drawn_by = "regrasp.plots.regrasps.outline_map:outline_map_png"
 
@@ -81,10 +83,12 @@ class OutlineRegrasps(ArrayValue, Pictured):
         reserve: float = RESERVE,
         step_duration: float = 1.0,
     ) -> RegraspPlan:
-        """The regrasp through the holds of the walk, which ``verify`` judges like any other.
+        """The regrasp of as few exchanges as the walk, and of these of the widest margin, anywhere.
 
-        Places sampled on the outline may all miss it. For a wider margin give ``plan_regrasp`` the places of
-        the walk among its ``candidates``.
+        ``verify`` judges it like any other; places sampled on the outline may all miss it. Its holds are
+        those of the walk, or of one of as many exchanges at places where friction cones may be narrowed by
+        the most, to a thousandth of them, without regard to ``peak_ratio``. With a force limit and turns they
+        are those of the walk.
 
         Args:
             objective: as of ``RegraspProblem``.
@@ -98,32 +102,19 @@ class OutlineRegrasps(ArrayValue, Pictured):
             Infeasible: Without a walk, with the proof as ``certificate`` where there is one; or where what is
                 kept in reserve, or a smaller ``max_turn``, leaves a state on it no forces.
         """
-        from regrasp.planning.anywhere.planned import plan_along
-        from regrasp.planning.regrasps.problem import RegraspProblem
+        from regrasp.planning.anywhere.planned import planned_anywhere
 
         if not self.exists:
             raise Infeasible(f"there is no walk to plan along: {self}", self.certificate)
-        problem = RegraspProblem(
-            self.outline,
-            self.start,
-            self.goal,
-            self.load,
-            self.friction,
-            goal_orientation=self.goal_orientation,
-            candidates=self.walk.ravel() if len(self.walk) else 1,
-            objective=objective,
-            states=states,
-            max_turn=max_turn,
-            max_force=self.max_force,
-            min_normal=self.min_normal,
-            peak_ratio=peak_ratio,
-            reserve=reserve,
-            step_duration=step_duration,
-        )
-        turn = problem.largest_turn
-        if max_turn is None:  # forces were left room for turns as large as that
-            turn = max(turn, self.turns[1] - self.turns[0])
-        return plan_along(problem, self.outline, self.walk, self.angles, turn)
+        options = {
+            "objective": objective,
+            "states": states,
+            "max_turn": max_turn,
+            "peak_ratio": peak_ratio,
+            "reserve": reserve,
+            "step_duration": step_duration,
+        }
+        return planned_anywhere(self, options)
 
     def __repr__(self) -> str:
         return (

@@ -20,7 +20,8 @@ from regrasp.planning.anywhere.walk import Hold, least_turning, walk_through
 from regrasp.planning.states.choosing import choose_state
 from regrasp.plans.outline_cut import OutlineCut
 
-_ORIENTATIONS = 3, 9, 33
+ORIENTATIONS = 3, 9, 33
+"""That are looked at between the ends of a turn, one after the other until there is a walk or a proof."""
 _ROOMS = 3e-2, 3e-3, 1e-4, 1e-6, TIE
 
 # Regions that a walk prefers are wider than the first of these fractions, then than the next: narrow ones
@@ -83,7 +84,7 @@ def decided(asked: Asked, start: End, goal: End) -> Decided:
     """Finer and finer in angles, and in tangents of a force limit, until there is a walk or a proof."""
     limited, turning = asked.limits.max_force < inf, asked.turns[0] < asked.turns[1]
     found = Decided(None, [], np.empty(0))
-    for count in _ORIENTATIONS if turning else (1,):
+    for count in ORIENTATIONS if turning else (1,):
         angles = asked.angles(count, goal.angle)
         for parts in PARTS if limited else (0,):
             try:
@@ -139,7 +140,7 @@ def _fewest(
     for room in _ROOMS:  # well inside regions, if that takes no more
         layers = fewest_layers(holds, start, goal, room)
         few = None if layers is None else fewest_walk(holds, start, goal, layers, room)
-        if few is not None and len(few) < len(walk) and _held(holds, few):
+        if few is not None and len(few) < len(walk) and held(holds, few):
             walk = few
         if len(walk) - 1 <= least:
             break
@@ -176,12 +177,12 @@ def _walk(
             path.append(previous)
         path.reverse()
         walk = walk_through(holds, path, leave[path[0]], arrive[last])
-        if walk is not None and _held(holds, walk):
+        if walk is not None and held(holds, walk):
             return walk
     return None
 
 
-def _held(holds: HoldMap, walk: list[Hold]) -> bool:
+def held(holds: HoldMap, walk: list[Hold]) -> bool:
     """Whether the closed form of two contacts says so, too, hold by hold."""
     vertices = holds.vertices
     along = np.roll(vertices, -1, axis=0) - vertices
