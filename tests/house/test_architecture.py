@@ -20,11 +20,12 @@ FLOORS: dict[str, Set[str]] = {
     "errors": set(),
     "display": {"errors"},
     "compilation": set(),
+    "threads": set(),
     "later": set(),
     "disk": {"errors", "mechanics", "disk"},  # output written whole or not at all
-    "closed_form": {"closed_form", "compilation"},
+    "closed_form": {"closed_form", "compilation", "threads"},
     "programs": {"errors", "compilation", "later", "programs"},
-    "mechanics": {"errors", "display", "mechanics"},
+    "mechanics": {"errors", "display", "mechanics", "threads"},
     "plans": {"errors", "display", "mechanics", "closed_form", "plans"},  # values: nothing here plans
     "planning": {
         "errors",

@@ -1,11 +1,14 @@
 """Arrays of grasps say what one grasp after the other says."""
 
+import os
 from math import inf
 
 import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.mechanics.arrays.planar import BLOCK
+from regrasp.threads import threads
 from strategies import comfortable_pair, comfortable_triple
 
 pytestmark = pytest.mark.oracle
@@ -202,3 +205,15 @@ def test_states_of_arrays_take_any_leading_shape_and_say_what_they_leave_open() 
     open_ = rg.choose_states(line, [[[0, 0, 1.0]] * 3], 0.5, [[0, 0, -1.0]], objective="effort")
     assert not open_.held[0]
     assert not open_.refused[0]
+
+
+def test_blocks_of_threads_are_parts_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many threads as Numba is told to use, for NumPy's arrays, too."""
+    rng = np.random.default_rng(4)
+    places = rng.normal(size=(BLOCK + 50, 3, 2))
+    whole = rg.wrench_balls(places, -places, 0.5)
+    np.testing.assert_array_equal(whole[-60:], rg.wrench_balls(places[-60:], -places[-60:], 0.5))
+    monkeypatch.setattr("sys.modules", {})
+    for given, count in (("3", 3), ("0", None), ("", None)):
+        monkeypatch.setenv("NUMBA_NUM_THREADS", given)
+        assert threads() == (count or len(os.sched_getaffinity(0)))

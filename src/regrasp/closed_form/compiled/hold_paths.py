@@ -16,8 +16,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from regrasp.closed_form.compiled.sharing import shared, threads
+from regrasp.closed_form.compiled.sharing import shared
 from regrasp.compilation import kept
+from regrasp.threads import threads
 
 _NONE = -1.0
 

@@ -5,15 +5,13 @@ each on one part after the other. Numba's own ``prange`` takes seconds more to c
 has started do not survive a fork; these live for one call only.
 """
 
-import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from typing import Any
 
-from numba import config
-
 from regrasp.compilation import at_hand, kept
+from regrasp.threads import threads
 
 _PARTS = 4  # for each thread, since parts differ in work
 
@@ -54,11 +52,3 @@ class Shared:
 def shared(words: str, **options: Any) -> Callable[[Callable[..., Any]], Shared]:
     """The decorator: words as for ``kept``, options as for ``numba.njit``."""
     return lambda function: Shared(function, words, options)
-
-
-def threads() -> int:
-    """How many threads share a loop: as many as Numba would use."""
-    parallel = sys.modules.get("numba.np.ufunc.parallel")
-    if parallel is not None and getattr(parallel, "_is_initialized", False):
-        return int(parallel.get_num_threads())
-    return int(vars(config)["NUMBA_NUM_THREADS"])

@@ -1,6 +1,5 @@
 """Arrays of planar grasps, checked: positions, normals and frictions of n fingers, many grasps at once."""
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
@@ -9,6 +8,7 @@ import numpy as np
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, ArrayLike, finite
+from regrasp.threads import threads
 
 BLOCK = 4096
 """Grasps that are worked on at a time: more would leave the processor's cache."""
@@ -73,7 +73,7 @@ class PlanarGrasps(NamedTuple):
             for rows in blocks:
                 work(rows)
             return
-        with ThreadPoolExecutor(min(len(blocks), _cores())) as pool:
+        with ThreadPoolExecutor(min(len(blocks), threads())) as pool:
             list(pool.map(work, blocks))
 
     def wrenches(self, rows: slice, directions: Array, lengths: Array) -> Array:
@@ -82,9 +82,3 @@ class PlanarGrasps(NamedTuple):
         torques = r[..., 0] * directions[..., 1] - r[..., 1] * directions[..., 0]
         torques = torques / lengths.reshape(-1, *[1] * (torques.ndim - 1))
         return np.concatenate([directions, torques[..., None]], axis=-1)
-
-
-def _cores() -> int:
-    """That this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
