@@ -28,6 +28,7 @@ from changes import Change, changes
 SLOW = float(os.environ.get("SLOW", "1"))
 # Tests of a change end after this time [s]; what was not noticed by then counts as not noticed.
 BUDGET = float(os.environ.get("BUDGET", "60"))
+_PRINT = 8  # letters of a file's
 _CACHED = type(functools.cache(lambda: None))
 NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
 
@@ -100,15 +101,16 @@ class Engine:
         sources = "".join(_print(path) for path in self.modules)
         rows = [json.loads(line) for line in self.kept.read_text().splitlines()] if self.kept.exists() else []
         kept = {(row["test"], row["print"]): row for row in rows}
+        took = {(row["test"], row["print"][:_PRINT]): row["seconds"] for row in rows}
         found = []
         for path in self.modules:
             swap(path, _instrumented(path))
         remembering = [function for path in self.modules for function in _caches(path)]
         for item in items:
-            if SLOW <= 1 and item.get_closest_marker("slow"):
-                continue
             key = item.nodeid, _print(item.path) + sources
             if key not in kept:
+                if took.get((item.nodeid, key[1][:_PRINT]), 0.0) > 2 * SLOW:
+                    continue  # what modules change makes it no quick one
                 entered: set[str] = set()
                 for function in remembering:
                     function.cache_clear()
@@ -129,7 +131,7 @@ class Engine:
 
 @functools.cache
 def _print(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:8]
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:_PRINT]
 
 
 def _instrumented(path: Path) -> ast.Module:
