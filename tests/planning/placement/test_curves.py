@@ -121,7 +121,7 @@ def test_what_bounds_a_part_is_reached_by_no_force_and_nearly_by_some(size: str)
         bound = edges.most(0, Fraction(lo), Fraction(hi), given)
         made = max(_made(control, t, mu, size, y) for t in np.linspace(lo, hi, 101))
         assert float(bound) >= made * (1 - 1e-12)
-        rough = edges.roughly(np.zeros(1, int), np.array([lo]), np.array([hi]), y)
+        rough = edges.roughly(np.zeros(1, int), np.array([lo]), np.array([hi]), np.array([y], float))[0]
         assert rough == pytest.approx(float(bound), rel=1e-9, abs=1e-12)
         short = edges.most(0, Fraction(lo), Fraction(lo) + Fraction(1, 10**9), given)
         assert float(short) == pytest.approx(_made(control, lo, mu, size, y), rel=1e-6, abs=1e-7)

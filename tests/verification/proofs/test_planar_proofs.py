@@ -254,7 +254,7 @@ def test_straight_edges_in_doubles_are_those_in_rationals() -> None:
         y = rng.normal(size=3)
         lo, hi = np.sort(rng.random(2))
         exact = edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y])
-        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
+        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), np.array([y], float))[0]
         assert rough == pytest.approx(float(exact), rel=1e-12, abs=1e-12)
         most = max(most_work(proof, y, *_place(proof, edge, t)) for t in (lo, hi))
         assert float(exact) == pytest.approx(most, rel=1e-5, abs=1e-9)

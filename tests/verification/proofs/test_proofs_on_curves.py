@@ -75,7 +75,7 @@ def test_on_curves_no_force_does_more_than_the_bound_of_a_stretch(size) -> None:
         assert best <= most * (1 + 1e-9) + 1e-12, k
         if width == 1e-3:
             assert most <= best + 0.02 * np.linalg.norm(y), k
-        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
+        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), np.array([y], float))[0]
         assert rough == pytest.approx(most, rel=1e-9, abs=1e-12), k
 
 

@@ -88,13 +88,12 @@ class CubicEdges:
         legs = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(control)]
         return [_polar(legs, at) for at in ((lo, lo), (lo, hi), (hi, hi))]
 
-    def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> float:
-        """The same for stretches (m,), in doubles; infinite where they may be off by more than rounding."""
+    def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
+        """(m,) the same, of twists (m, 3), in doubles; infinite where rounding may be more."""
         legs = np.moveaxis(self._legs[edges], 1, 0)
         d = np.stack([_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
         size = np.hypot(d[..., 0], d[..., 1])
-        if not (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all():
-            return float("inf")
+        plain = (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all(axis=0)
         unit = d / size[..., None]
         middle = unit.sum(axis=0)
         angle = np.arctan2(_cross_of(middle, unit), (middle * unit).sum(axis=-1))
@@ -102,10 +101,10 @@ class CubicEdges:
         first, last = unit[angle.argmin(axis=0), rows], unit[angle.argmax(axis=0), rows]
         (a, c), (e, b) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
         control = np.moveaxis(self._control[edges], 1, 0)
-        most = -float("inf") if self.eroded else 0.0
+        most = np.full(len(lo), -np.inf if self.eroded else 0.0)
         for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
             p = _at(control, at)
-            v = np.stack([y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]], axis=1)
+            v = np.stack([y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]], axis=1)
             if self.eroded:
                 value = roughly_eroded(a, b, self.limit, self.margin, v)
             elif self.force:
@@ -113,8 +112,8 @@ class CubicEdges:
             else:
                 slant = np.sqrt(1 + self._friction**2)
                 value = slant * np.maximum(_roughly_on_arc(a, e, v), _roughly_on_arc(c, b, v))
-            most = max(most, float(value.max()))
-        return most
+            most = np.maximum(most, value)
+        return np.where(plain, most, np.inf)
 
 
 def _polar(points: list[Point], at: tuple[Fraction, ...]) -> Point:

@@ -22,16 +22,13 @@ from typing import Any
 
 import numpy as np
 
+from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
 
-_ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
-_SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them
-
-
-Arc = tuple[int, int, Fraction, Fraction]
+Arc = tuple[int, int, float, float]
 
 
 def check_proof(proof: Proof) -> list[str]:
@@ -85,6 +82,7 @@ class _Checked:
     def __init__(self, proof: Proof) -> None:
         self.proof = proof
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
+        self.clear: np.ndarray = np.zeros(0, bool)  # boxes that doubles decide
         self.sides = [(int(e), Fraction(lo), Fraction(hi)) for e, lo, hi in proof.sides.tolist()]
 
     def violations(self) -> list[str]:
@@ -102,9 +100,11 @@ class _Checked:
         ]
         if broken:
             return broken
-        everything = (0, len(self.sides) - 1, self.sides[0][1], self.sides[-1][2])
+        ends = float(self.proof.sides[0, 1]), float(self.proof.sides[-1, 2])
+        everything = (0, len(self.sides) - 1, *ends)
         if self._arcs(0) != [everything] * self.proof.fingers:
             return ["proof: box 0 must give every finger the whole boundary"]
+        self.clear = clear_boxes(self.proof, self.boundary)
         seen, waiting = {0}, [0]
         while waiting:
             box = waiting.pop()
@@ -125,7 +125,7 @@ class _Checked:
 
     def _arcs(self, box: int) -> list[Arc]:
         pairs = zip(self.proof.arcs[box].tolist(), self.proof.ends[box].tolist(), strict=True)
-        return [(a, b, Fraction(lo), Fraction(hi)) for (a, b), (lo, hi) in pairs]
+        return [(a, b, lo, hi) for (a, b), (lo, hi) in pairs]  # numbers as they are given compare exactly
 
     def _covered(self, box: int, inside: range) -> list[str]:
         """That the boxes inside are all ways to share out the fingers on one arc to its two parts."""
@@ -170,7 +170,7 @@ class _Checked:
         y = [Fraction(c) for c in self.proof.twists[box].tolist()]
         work = -sum(Fraction(w) * c for w, c in zip(self.proof.loads[number].tolist(), y, strict=True))
         bound = Fraction(self.proof.bound)
-        if bound <= 0 or self._is_clear(box, number):
+        if bound <= 0 or self.clear[box]:
             return []
         most = [self._most(arc, y) for arc in arcs]
         if self.proof.size == "margin":  # forces below the limit do no more than these together
@@ -186,37 +186,9 @@ class _Checked:
             return [f"proof: the twist of box {box} does not exclude it"]
         return []
 
-    def _is_clear(self, box: int, number: int) -> bool:
-        """Whether doubles show that a box is excluded, by more than all of their rounding together."""
-        proof = self.proof
-        y = proof.twists[box]
-        terms = -proof.loads[number] * y
-        most, room = (
-            [],
-            _ROUNDING * (abs(y[0]) + abs(y[1]) + abs(y[2]) * self.boundary.reach) * (1 + proof.friction),
-        )
-        if proof.size == "margin":
-            room *= 4 * proof.bound
-        if not min(room, _ROUNDING * np.abs(terms).sum()) > _SMALL:
-            return False
-        for (first, last), (lo, hi) in zip(proof.arcs[box].tolist(), proof.ends[box].tolist(), strict=True):
-            least, largest = proof.sides[first : last + 1, 1].copy(), proof.sides[first : last + 1, 2].copy()
-            least[0], largest[-1] = lo, hi
-            edges = proof.sides[first : last + 1, 0]
-            found = self.boundary.roughly(edges.astype(int), least - edges, largest - edges, y)
-            most.append(found + room)
-        if proof.size == "margin":
-            return bool(terms.sum() - _ROUNDING * np.abs(terms).sum() > sum(most))
-        if proof.norm == "sum":
-            dual = max(most)
-        else:
-            dual = sum(most) if proof.norm == "largest" else float(np.sqrt(np.square(most).sum()))
-        work = float(terms.sum() - _ROUNDING * np.abs(terms).sum())
-        return bool(work > proof.bound * dual * (1 + _ROUNDING))
-
     def _most(self, arc: Arc, y: list[Fraction]) -> Fraction:
         """An upper bound of sigma over an arc, 0 or more."""
-        first, last, lo, hi = arc
+        first, last, lo, hi = arc[0], arc[1], Fraction(arc[2]), Fraction(arc[3])
         most = Fraction(0)
         for j in range(first, last + 1):
             edge, least, largest = self.sides[j]
@@ -235,6 +207,6 @@ class _Checked:
                     return True
         return False
 
-    def _hull(self, side: int, _: int, lo: Fraction, hi: Fraction) -> list[Point]:
+    def _hull(self, side: int, _: int, lo: float, hi: float) -> list[Point]:
         edge = self.sides[side][0]
-        return self.boundary.hull(edge, lo - edge, hi - edge)
+        return self.boundary.hull(edge, Fraction(lo) - edge, Fraction(hi) - edge)

@@ -71,26 +71,24 @@ class StraightEdges:
             return Fraction(0)
         return value * self.per[edge] * (self.slant if self.force else 1)
 
-    def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> float:
-        """The largest sigma on stretches (m,), in doubles."""
-        most = -float("inf") if self.eroded else 0.0
+    def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
+        """(m,) the largest sigma on stretches along twists (m, 3), 0 or more, in doubles."""
+        most = np.full(len(lo), -np.inf if self.eroded else 0.0)
         unit = self._unit[edges]
         tx, ty = unit.T
         slant, mu = np.sqrt(1 + self._friction**2), self._friction
         inward = np.stack([-ty, tx], axis=1)
         for t in (lo, hi):
             p = self._start[edges] + t[:, None] * self._along[edges]
-            vx, vy = y[0] - y[2] * p[:, 1], y[1] + y[2] * p[:, 0]
+            vx, vy = y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]
             if self.eroded:
                 a, b = (inward + mu * unit) / slant, (inward - mu * unit) / slant
                 value = roughly_eroded(a, b, self.limit, self.margin, np.stack([vx, vy], axis=1))
-                most = max(most, float(value.max()))
-                continue
-            ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
-            value = ahead + self._friction * aside
-            if self.force:
-                value = value / slant
-                # inside the cone, and a little around it, the whole of v
-                value = np.where(aside <= self._friction * ahead, np.hypot(vx, vy), value)
-            most = max(most, float(value.max(initial=0.0)))
+            else:
+                ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
+                value = ahead + self._friction * aside
+                if self.force:
+                    # inside the cone, and a little around it, the whole of v
+                    value = np.where(aside <= self._friction * ahead, np.hypot(vx, vy), value / slant)
+            most = np.maximum(most, value)
         return most

@@ -1,0 +1,181 @@
+"""Fingers on fifty outlines: is the gap reached, does the proof stand, is a random placement better?
+
+    python benchmarks/truth/placement_outlines.py [--count 50] [--objectives peak force] [--fingers 2]
+                                                  [--random 100000 2000] [--seconds 200] [-o FILE]
+    python benchmarks/truth/placement_outlines.py --table
+
+Twelve loads: unit forces in six directions, beside the centre of mass by a twentieth of the reach, to either
+side; for ``answered`` twelve such deviations of a tenth of the weight. Friction 0.4, forces of at most 4 N
+where a limit is needed, corners allowed, a gap of 1e-4 asked for. Proofs are written, read and verified.
+Random placements share no code with the search: pairs are judged by the interval of their squeeze
+(``random_pairs``), triples by ``choose_states``, whose forces are checked one by one; those within a tenth of
+the value show that the judges see good ones. A row is kept when it is done, so that a run goes on where it
+was ended; ``--table`` prints the rows.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+import regrasp as rg
+from fifty_outlines import outlines
+from random_pairs import pairs_hold
+
+OBJECTIVES = ("sum_normal", "peak_normal", "peak", "friction_use", "force", "answered")
+LIMITED = ("friction_use", "force", "answered")
+FRICTION, LIMIT, TOLERANCE, BESIDE = 0.4, 4.0, 1e-4, 0.05
+AT_ONCE = 20_000  # placements
+RESULTS = Path(__file__).parents[1] / "results" / "outlines.json"
+SLACK = 1e-6  # of a value, by which solvers may be off
+
+
+def loads(outline: rg.Outline) -> np.ndarray:
+    """(12, 3) about the centre of mass."""
+    around = outline.points(outline.sample(200)) - outline.centre_of_mass
+    beside = BESIDE * float(np.linalg.norm(around, axis=1).max())
+    angle = np.repeat(np.arange(6) * np.pi / 3, 2)
+    return np.column_stack([np.cos(angle), np.sin(angle), beside * np.tile([1.0, -1.0], 6)])
+
+
+def asked(outline: rg.Outline, objective: str) -> dict[str, Any]:
+    each = [rg.Wrench.from_vector(w) for w in loads(outline)]
+    more: dict[str, Any] = {"max_force": LIMIT} if objective in LIMITED else {}
+    if objective == "answered":
+        more["disturbance"] = rg.LoadSet.hull([rg.Wrench.from_vector(0.1 * w.vector) for w in each])
+        return {"load": rg.Wrench([0, -1])} | more
+    return {"load": rg.LoadSet.hull(each)} | more
+
+
+def row(outline: rg.Outline, objective: str, fingers: int, count: int) -> dict[str, Any]:
+    """How a search went, what ``verify`` says, and how near random placements come."""
+    begin = perf_counter()
+    try:
+        chosen = rg.choose_grasp(
+            outline, fingers, friction=FRICTION, objective=objective, tolerance=TOLERANCE, from_corners=0.0,
+            **asked(outline, objective),
+        )  # fmt: skip
+    except rg.Infeasible as refusal:
+        seconds, proof = perf_counter() - begin, refusal.certificate
+        proven = proof is not None and "not proven" not in str(refusal) and rg.verify(proof).ok
+        better = beaten(outline, objective, fingers, count, None)
+        return {"refused": proven, "seconds": seconds, "random": count, "better": better}
+    seconds = perf_counter() - begin
+    read = rg.ChosenGrasp.from_dict(json.loads(json.dumps(chosen.to_dict())))
+    begin = perf_counter()
+    verdict, more = rg.verify(read), objective in ("force", "answered")
+    checked = perf_counter() - begin
+    return {
+        "value": chosen.value, "bound": chosen.bound, "gap": chosen.gap, "seconds": seconds,
+        "boxes": chosen.certificate.leaves, "verified": verdict.ok, "verify_seconds": checked,
+        "random": count, "better": beaten(outline, objective, fingers, count, chosen.bound),
+        "near": beaten(outline, objective, fingers, count, chosen.value * (0.9 if more else 1.1)),
+    }  # fmt: skip
+
+
+def beaten(outline: rg.Outline, objective: str, fingers: int, count: int, bound: float | None) -> int:
+    """How many random placements are better than a bound; than none at all, without one."""
+    rng, better = np.random.default_rng(OBJECTIVES.index(objective)), 0
+    limit = LIMIT if objective in LIMITED else np.inf
+    given, level = loads(outline), bound
+    if objective == "answered":  # whoever holds the deviations times a little more than the bound is better
+        factor = 0.0 if bound is None else bound * (1 + SLACK)
+        given, level = np.array([0, -1.0, 0]) + 0.1 * factor * given, None
+    elif bound is not None:
+        level = bound * (1 + SLACK) if objective == "force" else bound * (1 - SLACK)
+    for first in range(0, count, AT_ONCE):
+        s = rng.uniform(0, outline.length, (min(AT_ONCE, count - first), fingers))
+        positions, normals = outline.points(s) - outline.centre_of_mass, outline.normals(s)
+        judge = pairs_hold if fingers == 2 else _hold
+        for w in given:
+            good = judge(positions, normals, FRICTION, w, objective, level, limit)
+            positions, normals = positions[good], normals[good]
+            if not len(positions):
+                break
+        better += len(positions)
+    return better
+
+
+def _hold(
+    positions: np.ndarray, normals: np.ndarray, friction: float, load: np.ndarray, objective: str,
+    level: float | None, limit: float,
+) -> np.ndarray:  # fmt: skip
+    """Which grasps hold a load at a level, by ``choose_states``."""
+    judge = "peak" if objective == "answered" else objective
+    found = rg.choose_states(
+        positions, normals, friction, load[:2], load[2], objective=judge, max_force=limit
+    )
+    held = found.held.copy()
+    if level is not None:
+        values = found.values[held]
+        held[held] = values >= level if objective == "force" else values <= level
+    return held
+
+
+def table(kept: dict[str, Any]) -> str:
+    """A line for each objective and number of fingers."""
+    lines = [
+        "| objective, fingers | outlines | gap 1e-4 reached | refused with proof | time, median [s] | "
+        "largest [s] | boxes, median | `verify`, median [s] | verified | random placements | "
+        "within a tenth | better |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    for fingers in (2, 3):
+        for objective in OBJECTIVES:
+            rows = [r for key, r in kept.items() if key.startswith(f"{objective}, {fingers} fingers, ")]
+            if not rows:
+                continue
+            found = [r for r in rows if "gap" in r]
+            seconds = [r["seconds"] for r in rows]
+            proven = sum(r.get("refused", False) for r in rows)
+            middle = [
+                f"{np.median([r[k] for r in found]):.3g}" if found else ""
+                for k in ("boxes", "verify_seconds")
+            ]
+            lines.append(
+                f"| `{objective}`, {fingers} | {len(rows)} | {sum(r['gap'] <= TOLERANCE for r in found)} of "
+                f"{len(found)} | {proven} of {len(rows) - len(found)} | {np.median(seconds):.2f} | "
+                f"{max(seconds):.1f} | {middle[0]} | {middle[1]} | {sum(r['verified'] for r in found)} of "
+                f"{len(found)} | {sum(r['random'] for r in rows):,} | "
+                f"{sum(r.get('near', 0) for r in rows):,} | {sum(r['better'] for r in rows)} |"
+            )
+    return "\n".join(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=50)
+    parser.add_argument("--objectives", nargs="+", default=OBJECTIVES, choices=OBJECTIVES)
+    parser.add_argument("--fingers", nargs="+", type=int, default=(2, 3))
+    parser.add_argument("--random", nargs=2, type=int, default=(100_000, 2_000), help="pairs, triples")
+    parser.add_argument("--seconds", type=float, default=np.inf, help="after which no other row is begun")
+    parser.add_argument("--table", action="store_true")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path(__file__).parents[1] / "results" / "outlines.json"
+    )
+    given = parser.parse_args()
+    kept: dict[str, Any] = (
+        json.loads(given.output.read_text(encoding="utf-8")) if given.output.exists() else {}
+    )
+    if given.table:
+        print(table(kept))
+        return
+    begin, shapes = perf_counter(), list(outlines())[: given.count]
+    for fingers in given.fingers:
+        for objective in given.objectives:
+            for name, outline in shapes:
+                key = f"{objective}, {fingers} fingers, {name}"
+                if key in kept or perf_counter() - begin > given.seconds:
+                    continue
+                kept[key] = row(outline, objective, fingers, given.random[fingers - 2])
+                print(key, kept[key], flush=True)
+                part = given.output.with_suffix(".part")
+                part.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+                part.replace(given.output)
+
+
+if __name__ == "__main__":
+    main()
