@@ -1,12 +1,14 @@
 """What a chosen grasp says of itself: states, bounds and gaps, proofs of refusals, progress."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
 
 import regrasp as rg
 from placements import BRACKET, TILTED, star, value_of
+from regrasp.planning.placement.symmetries import images
 
 pytestmark = pytest.mark.oracle
 
@@ -122,3 +124,38 @@ def test_fingers_that_do_nothing_in_the_worst_load_are_on_the_outline_too() -> N
         loads = rg.LoadSet.hull(rg.Wrench(rng.normal(size=2), float(rng.normal())) for _ in range(2))
         chosen = rg.choose_grasp(chords, 4, loads, friction=0.4, most_boxes=1000)
         assert rg.verify(chosen).ok
+
+
+def test_images_by_symmetry_are_no_other_grasps() -> None:
+    box = rg.Outline([[0, 0], [4, 0], [4, 2], [0, 2]])
+    angles = np.arange(6) * np.pi / 3
+    loads = rg.LoadSet.hull(rg.Wrench([np.cos(t), np.sin(t)], m) for t in angles for m in (0.1, -0.1))
+    chosen = rg.choose_grasp(box, 2, loads, friction=0.6)
+    shown = [chosen.places, *(other.places for other in chosen.others)]
+    assert len(shown) == 5
+    for turned in (lambda s: s + 6, lambda s: 4 - s, lambda s: 10 - s):
+        for a, b in combinations(shown, 2):
+            away = np.abs(np.sort(turned(a) % 12) - np.sort(b))
+            assert np.minimum(away, 12 - away).max() > 0.1 or np.abs(np.sort(a) - np.sort(b)).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("loads", "count"),
+    [
+        ([[0, -1, 0.0]], 2),
+        ([[0, -1, 0.1]], 1),
+        ([[0, 0, 1.0]], 4),
+        ([[1, 0, 0], [0, 1, 0], [-1, 0, 0.0], [0, -1, 0]], 8),
+    ],
+    ids=["down", "down beside", "a torque", "four ways"],
+)
+def test_symmetries_of_a_square_are_those_of_its_loads(loads: list[list[float]], count: int) -> None:
+    square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
+    found = images(square, np.array(loads), np.array([0.2]))
+    edge = found[:, 0].astype(int)
+    along = found - edge[:, None]
+    points = (1 - along) * square[edge] + along * square[(edge + 1) % 4]
+    assert len(found) == count == len(np.unique(np.round(points, 9), axis=0))
+    assert np.abs(points).max(axis=1) == pytest.approx(np.ones(count))
+    halves = np.insert(square, [1, 2, 3, 4], [[0, -1], [1, 0], [0, 1], [-1, 0.0]], axis=0)
+    assert len(images(halves, np.array(loads), np.array([0.2]))) == count  # vertices within sides

@@ -104,3 +104,14 @@ def test_a_map_of_margins_has_the_optimum_of_its_places() -> None:
     chosen = rg.choose_grasp(BRACKET, 2, LOADS, tolerance=0.01, **ASKED)
     assert 0 < np.nanmax(found.values) <= chosen.bound
     assert np.nanmax(found.best) == np.nanmax(found.values)
+
+
+@pytest.mark.parametrize("objective", ["friction_use", "angle", "force"])
+def test_a_level_cut_short_is_read_from_plain_data_too(objective: str) -> None:
+    chosen = rg.choose_grasp(
+        BRACKET, 3, LOADS, most_boxes=200, tolerance=1e-6, **ASKED | {"objective": objective}
+    )
+    again = rg.ChosenGrasp.from_dict(json.loads(json.dumps(chosen.to_dict())))
+    assert again == chosen
+    assert again.gap > 1e-6
+    assert rg.verify(again).ok

@@ -11,7 +11,7 @@ import pytest
 
 import regrasp as rg
 from refusals import refusal
-from regrasp.verification.placed.balls import makes_ball
+from regrasp.verification.placed.whole_sets import makes_ball
 
 pytestmark = pytest.mark.oracle
 

@@ -49,7 +49,8 @@ class ChosenGrasp(ArrayValue):
         bound: no placement reaches less; of a margin or a factor, which are largest at best, more.
         places: (k,) arc lengths of the fingers, or (k, 3) their points in the mesh's coordinates [m].
         others: the best of the grasps tried that differ in a finger by a twentieth of the length, or of the
-            root of the mesh's area, or more.
+            root of the mesh's area, or more; on an outline also from all images by symmetries of it and of
+            the loads.
         certificate: the proof of ``bound``; ``regrasp.verify`` checks it.
         max_force: limit on every force that was given [N]; None where none was.
         min_normal: with which every finger pushes at the least [N].

@@ -21,6 +21,7 @@ from regrasp.planning.placement.levels.level import AnsweredLevel, Level, Shown
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import RingSides, Sides
+from regrasp.planning.placement.symmetries import images as symmetric_images
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
@@ -192,22 +193,30 @@ def _arc_lengths(sides: Sides, places: np.ndarray, u: Array) -> Array:
 def _others(
     search: Search, asked: Asked, u: Array, value: Callable[[float], float]
 ) -> tuple[OtherGrasp, ...]:
-    """The best placements tried that differ from the chosen one and from one another."""
+    """The best placements tried that differ from the chosen one, from one another and from their images."""
     sides, length = search.sides, float(search.sides.lengths.sum())
-    kept = [_along(sides, u)]
+    kept = _alike(search, u)
     found: list[OtherGrasp] = []
     for norm, places, at in search.placements():
         if len(found) == _OTHERS:
             break
         order = np.argsort(at, kind="stable")
-        s = _along(sides, at[order])
-        if min(_farthest(s, other, length) for other in kept) < _DIFFERENT * length:
+        if _farthest(_along(sides, at[order]), kept, length) < _DIFFERENT * length:
             continue
         grasp = grasp_at(sides, places[order], at[order], asked.friction)
         if grasp is not None:
-            kept.append(s)
-            found.append(OtherGrasp(grasp, _arc_lengths(sides, places[order], at[order]), value(norm)))
+            kept = np.vstack([kept, _alike(search, at)])
+            found.append(OtherGrasp(grasp, _arc_lengths(sides, places[order], at[order]), float(value(norm))))
     return tuple(found)
+
+
+def _alike(search: Search, u: Array) -> Array:
+    """(i, k) arc lengths of a placement and its images by symmetry, each in every order around."""
+    sides, images = search.sides, u[None]
+    if not isinstance(sides, RingSides):
+        images = symmetric_images(sides.control_points(), search.loads, u)
+    s = np.sort([_along(sides, each) for each in images], axis=1)
+    return np.concatenate([np.roll(s, turn, axis=1) for turn in range(s.shape[1])])
 
 
 def _along(sides: Sides, u: Array) -> Array:
@@ -217,10 +226,7 @@ def _along(sides: Sides, u: Array) -> Array:
     return result
 
 
-def _farthest(s: Array, other: Array, length: float) -> float:
-    """The largest way of a finger from one placement to another, fingers in the order that fits best."""
-    ways = []
-    for turn in range(len(s)):
-        way = np.abs(np.roll(s, turn) - other)
-        ways.append(float(np.minimum(way, length - way).max()))
-    return min(ways)
+def _farthest(s: Array, others: Array, length: float) -> float:
+    """The largest way of a finger from one placement to the nearest of others (i, k)."""
+    way = np.abs(s - others)
+    return float(np.minimum(way, length - way).max(axis=1).min())

@@ -49,6 +49,10 @@ class Sides(ArrayValue):
         """The largest distance of a vertex from the centre of mass [m]."""
         return float(np.hypot(*self.vertices.T).max())
 
+    def control_points(self) -> Array:
+        """(k, 2) vertices, or (k, 3, 2) the first control points of cubic edges, about the centre of mass."""
+        return self.vertices
+
     def table(self) -> Array:
         """(m, 9) as the compiled search takes them, lengths in units of ``size``."""
         at, along = self.vertices[self.edges] / self.size, self.vectors[self.edges]

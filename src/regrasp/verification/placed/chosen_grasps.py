@@ -11,12 +11,11 @@ from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.arc_lengths import points_at
 from regrasp.verification.placed.areas import share_of
-from regrasp.verification.placed.balls import makes_ball
 from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.protocol import Chosen, Proof
-from regrasp.verification.placed.stiff_answers import answer_alike
 from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.touching import Touching
+from regrasp.verification.placed.whole_sets import answer_alike, makes_ball
 from regrasp.verification.verdict import Verification
 
 # objective: size of a force, norm of the sizes, power of the norm

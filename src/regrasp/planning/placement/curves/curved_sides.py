@@ -40,6 +40,10 @@ class CurvedSides(Sides):
         """The largest distance of a control point from the centre of mass [m]."""
         return float(np.hypot(*self.control.reshape(-1, 2).T).max())
 
+    def control_points(self) -> Array:
+        """(k, 3, 2) of cubic edges, each but the last, which begins the next one."""
+        return self.control[:, :3]
+
     def table(self) -> Array:
         """(m, 17) as the compiled search takes them, lengths in units of ``size``."""
         ends = self.ends - self.edges[:, None]

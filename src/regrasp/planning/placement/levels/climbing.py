@@ -57,7 +57,8 @@ def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
     if search.closed:
         return aim
     # first how far to go, by steps that double, then how much less is enough
-    for step in 0.5 ** np.arange(_SETTLING, 0, -1.0):
+    for halvings in range(_SETTLING, 0, -1):
+        step = 0.5**halvings
         level.put(search, aim + step * (hi - aim))
         if search.excludes(left, fixed):
             lo, hi = aim + 0.5 * step * (hi - aim), aim + step * (hi - aim)

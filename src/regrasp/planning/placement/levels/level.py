@@ -23,6 +23,7 @@ from regrasp.planning.states.choosing import choose_state
 _STEP = 1e-6  # of a level that is zero
 _SURE = 1e-6  # of the limit, more than norms are uncertain by
 _HALVINGS = 50
+_NEARER = 0.998  # of the tolerance: what forces for solvers give back is within it, too
 _EXACT = 1e-10  # relative, of the level of a placement
 AT_THE_EDGE = (1e-8, 1e-6, 1e-4)
 """Parts of a load given back so that forces for it exist for solvers, too."""
@@ -130,7 +131,7 @@ class ForceLevel(Level):
 
     def beyond(self, level: float, tolerance: float) -> float:
         """Larger by a fraction of it."""
-        return min(level + max(0.998 * tolerance * level, _STEP * self.most), self.most)
+        return min(level + max(_NEARER * tolerance * level, _STEP * self.most), self.most)
 
     def top(self, search: Search) -> float:
         """Forces along the normals, of the limit."""
@@ -162,7 +163,7 @@ class AnsweredLevel(Level):
 
     def beyond(self, level: float, tolerance: float) -> float:
         """Larger by a fraction of it."""
-        return level * (1 + tolerance) + _STEP
+        return level + max(_NEARER * tolerance * level, _STEP)
 
     def top(self, search: Search) -> float:
         """So large a wrench as k forces of the limit do not make, at the largest lever."""

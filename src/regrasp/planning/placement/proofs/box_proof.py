@@ -41,8 +41,8 @@ class BoxProof(ArrayValue, ABC):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
                 found[field.name] = value.tolist()
-            elif value != field.default:
-                found[field.name] = value
+            elif value != field.default:  # NumPy's numbers are written otherwise
+                found[field.name] = float(value) if isinstance(value, float) else value
         return found
 
     def to_dict(self) -> dict[str, Any]:

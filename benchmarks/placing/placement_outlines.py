@@ -1,8 +1,8 @@
 """Fingers on fifty outlines: is the gap reached, does the proof stand, is a random placement better?
 
-    python benchmarks/truth/placement_outlines.py [--count 50] [--objectives peak force] [--fingers 2]
+    python benchmarks/placing/placement_outlines.py [--count 50] [--objectives peak force] [--fingers 2]
                                                   [--random 100000 2000] [--seconds 200] [-o FILE]
-    python benchmarks/truth/placement_outlines.py --table
+    python benchmarks/placing/placement_outlines.py --table
 
 Twelve loads: unit forces in six directions, beside the centre of mass by a twentieth of the reach, to either
 side; for ``answered`` twelve such deviations of a tenth of the weight. Friction 0.4, forces of at most 4 N
@@ -35,7 +35,7 @@ SLACK = 1e-6  # of a value, by which solvers may be off
 
 def loads(outline: rg.Outline) -> np.ndarray:
     """(12, 3) about the centre of mass."""
-    around = outline.points(outline.sample(200)) - outline.centre_of_mass
+    around = outline.points(outline.sample(200))
     beside = BESIDE * float(np.linalg.norm(around, axis=1).max())
     angle = np.repeat(np.arange(6) * np.pi / 3, 2)
     return np.column_stack([np.cos(angle), np.sin(angle), beside * np.tile([1.0, -1.0], 6)])
@@ -88,7 +88,7 @@ def beaten(outline: rg.Outline, objective: str, fingers: int, count: int, bound:
         level = bound * (1 + SLACK) if objective == "force" else bound * (1 - SLACK)
     for first in range(0, count, AT_ONCE):
         s = rng.uniform(0, outline.length, (min(AT_ONCE, count - first), fingers))
-        positions, normals = outline.points(s) - outline.centre_of_mass, outline.normals(s)
+        positions, normals = outline.points(s), outline.normals(s)
         judge = pairs_hold if fingers == 2 else _hold
         for w in given:
             good = judge(positions, normals, FRICTION, w, objective, level, limit)
@@ -165,8 +165,8 @@ def main() -> None:
         return
     begin, shapes = perf_counter(), list(outlines())[: given.count]
     for fingers in given.fingers:
-        for objective in given.objectives:
-            for name, outline in shapes:
+        for name, outline in shapes:
+            for objective in given.objectives:
                 key = f"{objective}, {fingers} fingers, {name}"
                 if key in kept or perf_counter() - begin > given.seconds:
                     continue
