@@ -3,6 +3,8 @@
 from importlib.resources import files
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+
 import regrasp as rg
 from regrasp.execution import simulate
 from regrasp.files import parse_scenario, plan_scenario
@@ -50,13 +52,16 @@ if __name__ == "__main__":
     figure = plot_motions(plan_motions(plan, ellipse, tip_radius=0.003, clearance=0.002), ellipse).figure
     figure.savefig(IMAGES / "motions.png", dpi=120, metadata={"Software": None})
     bowl = rg.Outline([[0, 0], [4, 0], [6, 4], [5, 4], [2, 1], [-1, 4], [-2, 4]])
-    ends = (
-        rg.Grasp(bowl.contact_at(s, friction=0.2) for s in places)
-        for places in ((3.39, 9.01, 12.0), (0.44, 18.46, 12.0))
-    )
-    found = rg.regrasps_on_outline(bowl, *ends, rg.Wrench([-1.0, -3.0]), friction=0.2)
-    figure = plot_outline_map(found).figure
-    figure.savefig(IMAGES / "outline-map.png", dpi=160, metadata={"Software": None})
+    figure = plt.figure(figsize=(6.8, 3.75), layout="constrained")
+    for ax, friction in zip(figure.subplots(1, 2), (0.2, 0.4), strict=True):
+        ends = (
+            rg.Grasp(bowl.contact_at(s, friction=friction) for s in places)
+            for places in ((3.39, 9.01, 12.0), (0.44, 18.46, 12.0))
+        )
+        found = rg.regrasps_on_outline(bowl, *ends, rg.Wrench([-1.0, -3.0]), friction=friction)
+        plot_outline_map(found, ax, plan=found.plan() if found.exists else None)
+        ax.tick_params(labelsize=7)
+    figure.savefig(IMAGES / "outline-map.png", dpi=120, metadata={"Software": None})
     part = parts.bracket()
     figure = plot_outline(part, arc_lengths=part.sample(40)).figure
     figure.savefig(IMAGES / "outline.png", dpi=160, metadata={"Software": None})
