@@ -122,6 +122,9 @@ def test_plans_keep_what_was_asked(options):
 
 def test_the_object_turns_no_more_than_the_walk_needs():
     assert not asked(turns=(-1.0, 1.0)).angles.any()
+    limited = asked(turns=(-1.5, 1.5), max_force=6.0)
+    assert limited.exchanges == (2, 2)
+    assert not limited.angles.any()
     turned = asked(0.2, turns=(-1.5, 1.5))
     assert abs(np.diff(turned.angles)).sum() > 0
     for k, (hold, angle) in enumerate(zip(turned.walk.tolist(), turned.angles.tolist(), strict=True)):

@@ -34,6 +34,9 @@ def planned_anywhere(found: Any, options: dict[str, Any]) -> RegraspPlan:
 def _wider(found: Any) -> list[tuple[Array, Array]]:
     """The places and angles of the widest walk; none where force limits leave only some turns."""
     still = found.turns[0] == found.turns[1]
+    turns = found.turns
+    if found.max_force is not None and not found.angles.any() and found.goal_orientation == 0.0:
+        still, turns = True, (0.0, 0.0)  # what stands still needs no room to turn
     if not len(found.walk) or (found.max_force is not None and not still):
         return []
     asked, ends = asked_of(
@@ -43,7 +46,7 @@ def _wider(found: Any) -> list[tuple[Array, Array]]:
         found.load,
         found.friction,
         found.goal_orientation,
-        found.turns,
+        turns,
         found.forbidden,
         found.min_normal,
         found.max_force,

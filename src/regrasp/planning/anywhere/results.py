@@ -87,8 +87,8 @@ class OutlineRegrasps(ArrayValue, Pictured):
 
         ``verify`` judges it like any other; places sampled on the outline may all miss it. Its holds are
         those of the walk, or of one of as many exchanges at places where friction cones may be narrowed by
-        the most, to a thousandth of them, without regard to ``peak_ratio``. With a force limit and turns they
-        are those of the walk.
+        the most, to a thousandth of them, without regard to ``peak_ratio``. Under a force limit a walk that
+        turns stays as it is.
 
         Args:
             objective: as of ``RegraspProblem``.

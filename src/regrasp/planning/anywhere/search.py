@@ -83,6 +83,10 @@ class Decided(NamedTuple):
 def decided(asked: Asked, start: End, goal: End) -> Decided:
     """Finer and finer in angles, and in tangents of a force limit, until there is a walk or a proof."""
     limited, turning = asked.limits.max_force < inf, asked.turns[0] < asked.turns[1]
+    if limited and turning and start.angle == goal.angle:  # with limits walks turn by no more than they must
+        still = decided(asked._replace(turns=(start.angle, start.angle)), start, goal)
+        if still.exchanges is not None:
+            return still._replace(exchanges=(_least_turning(asked, start, goal), still.exchanges[1]))
     found = Decided(None, [], np.empty(0))
     for count in ORIENTATIONS if turning else (1,):
         angles = asked.angles(count, goal.angle)
@@ -124,6 +128,15 @@ def _at(asked: Asked, around: HoldMap, angles: Array, parts: int, start: End, go
                 few = _least(around, *ends), max(len(walk) - 1, 0)
             return result._replace(walk=walk, exchanges=few)
     return result._replace(certificate=_certificate(around, *ends))
+
+
+def _least_turning(asked: Asked, start: End, goal: End) -> int:
+    """Exchanges that every walk has that may turn; 0 where the map is too large to say."""
+    try:
+        around = asked.holds(asked.angles(ORIENTATIONS[0], goal.angle), asked.limits, PARTS[-1])
+        return _least(around, start.places, goal.places)
+    except TooLarge:
+        return 0
 
 
 def _least(holds: HoldMap, start: Places, goal: Places) -> int:
