@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.planning.placement.maps import PlacementMap, placement_map
     from regrasp.planning.placement.regions import ContactRegions, contact_regions
+    from regrasp.planning.placement.space.face_regions import FaceRegions
     from regrasp.planning.regrasps.problem import RegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
@@ -101,6 +102,7 @@ _LATER = {
     "contact_regions": "regrasp.planning.placement.regions",
     "ContactRegions": "regrasp.planning.placement.regions",
     "EquilibriumLocus": "regrasp.planning.states.two_fingers",
+    "FaceRegions": "regrasp.planning.placement.space.face_regions",
     "ForceCost": "regrasp.planning.states.objectives",
     "held_centres": "regrasp.planning.surveys.extremes.held_centres",
     "held_directions": "regrasp.planning.surveys.held_directions",
@@ -175,6 +177,7 @@ __all__ = [
     "Criteria",
     "EquilibriumLocus",
     "EscapeTwist",
+    "FaceRegions",
     "ForceCost",
     "ForceLimits",
     "Grasp",

@@ -100,6 +100,13 @@ def placed() -> rg.ChosenGrasp:
     return rg.choose_grasp(SQUARE_OUTLINE, 2, rg.LoadSet.tilted(WEIGHT_IN_PLANE, 1.0), friction=0.5)
 
 
+@cache
+def on_faces() -> rg.FaceRegions:
+    box = rg.Mesh.box(0.4, 0.3, 0.5)
+    places = [[-0.1, -0.08, -0.25], [0.1, -0.08, -0.25], [0, 0.1, -0.25]]
+    return rg.contact_regions(box, rg.Grasp(box.contact_at(p, friction=0.5) for p in places), WEIGHT)
+
+
 def on_outline(friction: float) -> Any:
     """Fingers on two sides of a rectangle, which hold its weight where friction is enough."""
     start, goal = (
@@ -169,6 +176,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "ChosenGrasp": placed,
     "ContactRegions": lambda: rg.contact_regions(SQUARE_OUTLINE, placed().grasp, WEIGHT_IN_PLANE),
     "PlacementMap": lambda: rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, count=8),
+    "FaceRegions": on_faces,
     "OtherGrasp": lambda: placed().others[0],
     "PlacementProof": lambda: placed().certificate,
     "LoadSet": lambda: rg.LoadSet.ball(LOAD, force=1.0, torque=0.1),

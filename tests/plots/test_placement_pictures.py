@@ -5,7 +5,7 @@ import pytest
 
 import regrasp as rg
 from regrasp import plots
-from values import SQUARE_OUTLINE, WEIGHT_IN_PLANE, placed
+from values import SQUARE_OUTLINE, WEIGHT_IN_PLANE, on_faces, placed
 
 pytestmark = pytest.mark.contract
 
@@ -62,3 +62,10 @@ def test_the_map_of_one_finger_is_drawn_on_the_outline_only() -> None:
     ]
     with pytest.raises(rg.InvalidInput, match="plot_placement_outline"):
         plots.plot_placement_map(found)
+
+
+def test_regions_on_faces_are_drawn_where_they_are() -> None:
+    ax = plots.plot_contact_regions(on_faces())
+    ids = [artist.get_gid() for artist in ax.collections]
+    assert sum(str(name).startswith("region ") for name in ids) == 3
+    assert " m at once" in ax.get_legend().get_texts()[0].get_text()

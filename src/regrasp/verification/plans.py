@@ -24,6 +24,7 @@ from regrasp.verification.float_filter import Checked, check_rows
 from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.placed.chosen_grasps import verify_chosen, verify_proof
+from regrasp.verification.placed.faces.regions import FaceRegions, verify_face_regions
 from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
 from regrasp.verification.protocols import Course, Plan, Scaling
@@ -83,7 +84,7 @@ def verify(
     Raises:
         InvalidInput: For what is no plan, no load function or no curvature.
     """
-    if any(hasattr(plan, name) for name in ("certificate", "twists", "corners", "reached")):
+    if any(hasattr(plan, name) for name in ("certificate", "twists", "corners", "patches", "reached")):
         more_asked = (load, curvature, disturbance, stiffness, friction, position, surface)
         if early_loss or any(value is not None for value in more_asked):
             raise InvalidInput(
@@ -93,6 +94,8 @@ def verify(
             return verify_outline_cut(cast(OutlineCut, plan))
         if hasattr(plan, "reached"):
             return verify_cut(cast(Cut, plan))
+        if hasattr(plan, "patches") and hasattr(plan, "moments"):
+            return verify_face_regions(cast(FaceRegions, plan))
         if hasattr(plan, "corners") and not hasattr(plan, "halves"):
             return verify_regions(cast(Regions, plan))
         if hasattr(plan, "certificate"):

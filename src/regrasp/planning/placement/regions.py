@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
+from typing import overload
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
+from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.curves.curved_regions import CurvedPlaces
@@ -22,6 +24,8 @@ from regrasp.planning.placement.loads import check_planar, inner_and_outer
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides
+from regrasp.planning.placement.space.choosing import check_space
+from regrasp.planning.placement.space.face_regions import FaceRegions, regions_on_faces
 from regrasp.planning.states.choosing import choose_state
 
 PEAK_RATIO = 3.0
@@ -72,9 +76,17 @@ class ContactRegions(ArrayValue):
         return f"ContactRegions(all off by {self.half_width:.4g}, widths {widths})"
 
 
+@overload
 def contact_regions(
     shape: Outline, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
-) -> ContactRegions:
+) -> ContactRegions: ...
+@overload
+def contact_regions(
+    shape: Mesh, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
+) -> FaceRegions: ...
+def contact_regions(
+    shape: Outline | Mesh, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
+) -> ContactRegions | FaceRegions:
     """Independent regions around the contacts of a grasp: every choice within them holds the loads.
 
     On straight sides every placement of a box of arcs holds a load, with forces below a limit, if and only if
@@ -82,11 +94,13 @@ def contact_regions(
     finger is where it stands. So corners prove regions, and the half width is exact to rounding. From there
     the ends of the arcs are moved out one after the other as far as they go. On a curve chords beside the
     arcs, and the cones that all points of an arc share, take the place of sides (``curved_regions``): what is
-    returned is proven, too, and not the widest that there is.
+    returned is proven, too, and not the widest that there is. On a mesh regions are polygons on flat faces,
+    around discs; their corners prove them where forces there hold a little torque about each normal on top.
 
     Args:
-        shape: a polygon or a smooth outline.
-        grasp: contacts on its outer boundary, all of one friction, relative to the centre of mass; up to six.
+        shape: a polygon, a smooth outline, or a mesh of flat faces.
+        grasp: contacts on its outer boundary, all of one friction, relative to the centre of mass; up to six,
+            on a mesh three or four, away from edges.
         load: external wrench on the object about its centre of mass, or a set of them [N, N m].
         max_force: limit on every force [N]; three times the least that the grasp needs if not given.
 
@@ -94,15 +108,18 @@ def contact_regions(
         Infeasible: Where the grasp itself does not hold the loads.
         InvalidInput: For arguments that are not what they must be.
     """
-    if not isinstance(shape, Outline):
-        raise InvalidInput(f"shape must be an Outline, got {shown(shape)}")
-    if not isinstance(grasp, Grasp) or grasp.dimension != 2 or not 2 <= len(grasp) <= 6:
-        raise InvalidInput(f"grasp must be a planar Grasp of two to six contacts, got {shown(grasp)}")
+    if not isinstance(shape, Outline | Mesh):
+        raise InvalidInput(f"shape must be an Outline or a Mesh, got {shown(shape)}")
+    where, d = ("planar Grasp", 2) if isinstance(shape, Outline) else ("Grasp in space", 3)
+    if not isinstance(grasp, Grasp) or grasp.dimension != d or not 2 <= len(grasp) <= 6:
+        raise InvalidInput(f"grasp must be a {where} of two to six contacts, got {shown(grasp)}")
     refuse_limits(grasp, "a search for regions")
     if len(set(grasp.frictions.tolist())) > 1:
         raise InvalidInput("contacts of a grasp with regions must all have the same friction")
-    check_planar(load)
     given = None if max_force is None else number(max_force, "max_force", above=0)
+    if isinstance(shape, Mesh):
+        return regions_on_faces(shape, grasp, check_space(shape, load), given, _limit)
+    check_planar(load)
     _, loads = inner_and_outer(load, 1e-3)
     if not isinstance(shape.boundary, PolygonBoundary):
         return _on_curve(CurvedPlaces(shape, grasp, loads), given)

@@ -13,12 +13,13 @@ from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.regions import ContactRegions
+from regrasp.planning.placement.space.face_regions import FaceRegions
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.png import png
 from regrasp.plots.look.space_axes import equal_scale
 from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
 from regrasp.plots.look.units import SI, Units
-from regrasp.plots.placement.on_meshes import draw_chosen
+from regrasp.plots.placement.on_meshes import draw_chosen, draw_regions
 from regrasp.plots.placement.values import unit_of
 
 _CONE = 0.16  # lengths, as fractions of the outline's size
@@ -73,14 +74,22 @@ def chosen_grasp_png(chosen: ChosenGrasp) -> bytes:
     return png(cast(Figure, plot_chosen_grasp(chosen).figure))
 
 
-def plot_contact_regions(regions: ContactRegions, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+def plot_contact_regions(
+    regions: ContactRegions | FaceRegions, ax: Axes | None = None, *, units: Units = SI
+) -> Axes:
     """The outline with the arc of each finger, thick, in which it may be while the others are in theirs.
+
+    On a mesh, the polygons on its faces.
 
     Args:
         regions: what ``regrasp.contact_regions`` found.
-        ax: the axes to draw on; new ones if not given.
+        ax: the axes to draw on, 3-D for a mesh; new ones if not given.
         units: what one unit of length, force and time is called; nothing is converted.
     """
+    if isinstance(regions, FaceRegions):
+        ax = equal_scale(draw_regions(ax, regions, units), units)
+        _say_radius(ax, regions.radius, units)
+        return ax
     instance(regions, "regions", ContactRegions)
     ax = plot_outline(regions.shape, ax, units=units)
     size = float(np.ptp(regions.shape.polygon(), axis=0).max())
@@ -98,11 +107,14 @@ def plot_contact_regions(regions: ContactRegions, ax: Axes | None = None, *, uni
             gap=14.0,
             color=colour,
         )
-    half = f"{short(float(f'{regions.half_width:.3g}'))} {units.length}"
-    words = f"regions; all may be off by {half} at once"
-    handles = [Line2D([], [], color=GREY, linewidth=4, label=words)]
-    legend(ax, handles)
+    _say_radius(ax, regions.half_width, units)
     return ax
+
+
+def _say_radius(ax: Axes, radius: float, units: Units) -> None:
+    half = f"{short(float(f'{radius:.3g}'))} {units.length}"
+    words = f"regions; all may be off by {half} at once"
+    legend(ax, [Line2D([], [], color=GREY, linewidth=4, label=words)])
 
 
 def _cone(ax: Axes, contact: Contact, length: float, colour: str) -> None:

@@ -112,9 +112,10 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
     """A bound of the norm of forces that make w, within ``precision`` or not below ``level``, and its twist.
 
     rows: (P, 6) points and inward normals. first, count: (k,) rows of each finger's patch. best: (6,) the
-    twist. In ``work`` stay the columns that make w (``make``): each finger's rows (6, k), weights (6, k), x.
+    twist. In ``work`` stay the columns that make w: their amounts x (6,), and of each finger its rows (6, k),
+    weights (6, k) and forces of size 1 (6, k, 3).
     """
-    column, at, weight, _, _, _, inverse, x, y, d, made, shares = work
+    column, at, weight, _, pushed, _, inverse, x, y, d, made, shares, pushes = work
     k = len(first)
     scale = 0.0
     for c in range(6):
@@ -133,6 +134,8 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
         for i in range(k):
             shares[r, i] = 0.0
             made[r, i] = first[i]
+            for c in range(3):
+                pushes[r, i, c] = 0.0
     proven = 0.0
     for _ in range(_MOST):
         value = 0.0
@@ -177,6 +180,8 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
                     inverse[r, c] -= d[r] * inverse[leaving, c]
         for i in range(k):
             made[leaving, i], shares[leaving, i] = at[i], weight[i]
+            for c in range(3):
+                pushes[leaving, i, c] = pushed[i, c]
     return proven
 
 
@@ -185,4 +190,5 @@ def workspace(k: int) -> tuple[Any, ...]:
     return (
         np.zeros(6), np.zeros(k, np.int64), np.zeros(k), np.zeros(3), np.zeros((k, 3)), np.zeros(k),
         np.zeros((6, 6)), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros((6, k), np.int64), np.zeros((6, k)),
+        np.zeros((6, k, 3)),
     )  # fmt: skip

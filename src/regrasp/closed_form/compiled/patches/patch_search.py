@@ -44,7 +44,7 @@ def _judge(rows, first, count, loads, law, level, start, twist, seen, work):  # 
     seen: (k, 6) of each finger: weight, weight times place (3), times its square, row of the largest weight.
     """
     mu, size, norm, precision = law
-    best = work[12]
+    best = work[13]
     made, shares, x = work[10], work[11], work[7]
     k = len(first)
     worst, critical = -1.0, start
@@ -54,7 +54,7 @@ def _judge(rows, first, count, loads, law, level, start, twist, seen, work):  # 
         seen[i, 5] = -1.0
     for number in range(len(loads)):
         load = number if number > start else (number - 1 if number > 0 else start)
-        found = gauge(rows, first, count, loads[load], mu, size, norm, level, precision, best, work[:12])
+        found = gauge(rows, first, count, loads[load], mu, size, norm, level, precision, best, work[:13])
         if found > worst:
             worst, critical = found, load
             for c in range(6):
@@ -264,7 +264,7 @@ def _loop(digest: str) -> Any:
                     kinds[child] = NEAR
                     continue
                 w = loads[critical[box]]
-                known = bound_by(rows, first, count, w, twists[box], mu, size, norm, work[:12])
+                known = bound_by(rows, first, count, w, twists[box], mu, size, norm, work[:13])
                 bounds[child] = max(known, bounds[box])
                 if known < level:
                     proven, load = _judge(

@@ -1,6 +1,8 @@
 """Choosing where the fingers go on a mesh."""
 
+from collections.abc import Mapping
 from math import inf, sqrt
+from types import MappingProxyType
 
 import numpy as np
 
@@ -32,7 +34,9 @@ _SAMPLED = 200  # points, on which a first placement is sought
 _SAMPLED_BOXES = 20_000
 
 
-def check_space(shape: Mesh, load: Wrench | LoadSet, goal: str, given: dict[str, bool]) -> Array:
+def check_space(
+    shape: Mesh, load: Wrench | LoadSet, goal: str = "peak", given: Mapping[str, bool] = MappingProxyType({})
+) -> Array:
     """(L, 6) the loads. ``InvalidInput`` for what a mesh is not searched with; given: options of outlines."""
     if not isinstance(load, Wrench | LoadSet):
         raise InvalidInput(f"load must be a Wrench or a LoadSet, got {shown(load)}")

@@ -1,0 +1,1 @@
+"""Proofs about fingers on flat faces in space."""

@@ -1,0 +1,96 @@
+"""Regions on flat faces in space: every choice within holds, wider ones fail, what is spoiled is seen."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from refusals import refusal
+from values import WEIGHT, on_faces
+
+pytestmark = pytest.mark.laws
+
+
+def holds(points: list[np.ndarray], limit: float) -> bool:
+    grasp = rg.Grasp(rg.Contact(p, [0, 0, 1], 0.5, name=f"F{i}") for i, p in enumerate(points))
+    try:
+        rg.choose_state(grasp, WEIGHT, "peak", max_force=limit)
+    except rg.Infeasible:
+        return False
+    return True
+
+
+def test_every_choice_within_regions_holds_and_not_within_wider_ones() -> None:
+    regions = on_faces()
+    assert rg.verify(regions).ok
+    assert regions.radius > 0.02
+    rng = np.random.default_rng(3)
+    fails = {1.0: 0, 4.0: 0}
+    for factor in fails:
+        for _ in range(60):
+            shares = [rng.dirichlet(np.full(len(p), 0.2)) for p in regions.patches]
+            points = [
+                c.position + factor * (s @ p - c.position)
+                for s, p, c in zip(shares, regions.patches, regions.grasp, strict=True)
+            ]
+            fails[factor] += not holds(points, regions.max_force)
+    assert fails[1.0] == 0
+    assert fails[4.0] > 5
+
+
+def test_regions_are_discs_but_where_faces_end() -> None:
+    box = rg.Mesh.box(0.4, 0.3, 0.5)
+    places = [[-0.1, -0.08, -0.25], [0.1, -0.08, -0.25], [0, 0.149, -0.25]]  # 1 mm from an edge
+    regions = rg.contact_regions(box, rg.Grasp(box.contact_at(p, friction=0.5) for p in places), WEIGHT)
+    assert rg.verify(regions).ok
+    assert regions.radius > 0.01
+    assert regions.patches[2][:, 1].max() == pytest.approx(0.15)
+    assert (np.abs(np.concatenate(regions.patches)[:, :2]) <= [0.2 + 1e-12, 0.15 + 1e-12]).all()
+    assert (regions.alone >= regions.radius).all()
+
+
+def test_units_and_frames_change_nothing_else() -> None:
+    regions = on_faces()
+    turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    length, force = 1e-3, 1e4
+    vertices, faces = regions.shape.surface()
+    mesh = rg.Mesh(length * vertices @ turn.T, faces)
+    grasp = rg.Grasp(rg.Contact(length * turn @ c.position, turn @ c.normal, 0.5) for c in regions.grasp)
+    moved = rg.contact_regions(mesh, grasp, rg.Wrench(force * turn @ WEIGHT.force))
+    assert moved.radius == pytest.approx(length * regions.radius, rel=0.05)
+    assert rg.verify(moved).ok
+
+
+def test_regions_that_claim_too_much_are_not_verified() -> None:
+    good = on_faces()
+    wider = tuple(c.position + 1.01 * (p - c.position) for p, c in zip(good.patches, good.grasp, strict=True))
+    outside = (good.patches[0] - [0.2, 0, 0], *good.patches[1:])
+    for wrong, words in (
+        (replace(good, patches=wider), "equilibrium"),
+        (replace(good, patches=outside), "around its place"),
+        (replace(good, patches=good.patches[:2]), "needs a polygon"),
+        (replace(good, radii=2 * good.radii), "does not end there"),
+        (replace(good, radius=2 * good.radius), "radius of all"),
+        (replace(good, moments=0.5 * good.moments), "lack a torque"),
+        (replace(good, max_force=0.5), "above"),
+        (replace(good, forces=good.forces[:, 1:]), "missing"),
+        (replace(good, shape=rg.Mesh.box(0.4, 0.3, 0.6)), "not on faces"),
+    ):
+        assert any(words in v for v in rg.verify(wrong).violations), (words, rg.verify(wrong))
+
+
+def test_what_has_no_regions_is_refused() -> None:
+    box, grasp = on_faces().shape, on_faces().grasp
+    edge = rg.Grasp([rg.Contact([0.2, 0, -0.25], [0, 0, 1], 0.5), *list(grasp)[1:]])
+    off = rg.Grasp([rg.Contact([0.1, 0, 0], [0, 0, 1], 0.5), *list(grasp)[1:]])
+    for given, words in (
+        ((box, grasp.subset([0, 1]), WEIGHT), "three or four fingers"),
+        ((box, edge, WEIGHT), "on an edge of its face"),
+        ((box, off, WEIGHT), "no flat face"),
+        ((box, grasp, rg.Wrench([0, -1])), "give a load in space"),
+        ((rg.Mesh.sphere(1.0), grasp, WEIGHT), "a smooth mesh"),
+    ):
+        assert words in str(refusal(lambda given=given: rg.contact_regions(*given)))
+    with pytest.raises(rg.Infeasible, match="above max_force"):
+        rg.contact_regions(box, grasp, WEIGHT, max_force=0.1)
