@@ -22,6 +22,7 @@ from regrasp.planning.holds.turning.rows import Rows
 _ALIKE = 1e-6  # margins nearer than this [rad] are one
 _LESS = (2e-6, 1e-5, 1e-3)  # [rad]
 _ASTRAY = 6  # numbers of moves one after the other of which no row is near enough from hold to hold
+_MOST_AT_ONCE = 64  # holds whose following ones are looked at together
 _AT_ONCE = 64  # holds whose margins or arcs are found together
 
 
@@ -139,12 +140,33 @@ class ExactSearch:
                 arcs.update(zip(missing_now, self.arcs.at((first, second), level, widest), strict=True))
             return nodes
 
+        onward: dict[tuple[int, Node], list[Node]] = {}
+        unlooked: list[dict[Node, None]] = [{} for _ in range(best.count + 1)]  # holds, by layers
+        together = 1
+
+        def after(layer: int, node: Node) -> list[Node]:
+            if (layer, node) not in onward:
+                onward[layer, node] = best.rows.onward(node, best.count - layer - 1, level)
+            return onward[layer, node]
+
         def following(layer: int, node: Node) -> list[Node]:
-            return ready(best.rows.onward(node, best.count - layer - 1, level))
+            nonlocal together
+            nodes = after(layer, node)
+            unlooked[layer].pop(node, None)
+            if any(_pair(each) not in arcs for each in nodes):  # and of more holds, each time of twice as many
+                more = list(unlooked[layer])[:together]
+                ready([*nodes, *(each for other in more for each in after(layer, other))])
+                together = min(2 * together, _MOST_AT_ONCE)
+                for other in more:
+                    del unlooked[layer][other]
+            unlooked[layer + 1].update(dict.fromkeys(n for n in nodes if arcs[_pair(n)]))
+            return nodes
 
         ready(best.rows.passed(best.count, level, _AT_ONCE))
+        first = ready(best.rows.first(best.count, level))
+        unlooked[0] = dict.fromkeys(first)
         return least_turning(
-            ready(best.rows.first(best.count, level)),
+            first,
             following,
             best.count,
             lambda node: arcs[_pair(node)],
