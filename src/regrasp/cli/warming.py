@@ -56,6 +56,7 @@ def _planar_regrasps() -> None:
     import numpy as np
 
     import regrasp as rg
+    from regrasp.planning.holds.turning import margins
 
     load = rg.Wrench([0.0, -1.0])
     angles = np.linspace(0, 2 * np.pi, 13)[:-1]
@@ -68,6 +69,11 @@ def _planar_regrasps() -> None:
         rg.plan_regrasp(
             outline, start, goal, load, friction=0.6, candidates=12, orientations=4, weights=weights
         )
+    patience, margins.PATIENCE = margins.PATIENCE, 0
+    try:
+        rg.plan_regrasp(outline, start, goal, load, friction=0.6, candidates=12)
+    finally:
+        margins.PATIENCE = patience
     graph = rg.RegraspProblem(outline, start, goal, load, friction=0.6, candidates=12).graph
     assert isinstance(graph, rg.HoldGraph)
     graph.widest()

@@ -7,11 +7,19 @@ import pytest
 from scipy.optimize import linprog
 
 import regrasp as rg
-from regrasp.closed_form.load_arcs import ARC, LINE, NOTHING, load_arcs, turning_sides, widest_narrowings
+from regrasp.closed_form.pairs.load_arcs import (
+    ARC,
+    LINE,
+    NOTHING,
+    load_arcs,
+    turning_sides,
+    widest_narrowings,
+)
 from regrasp.outline import parts
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 from regrasp.planning.holds.sequences import MAX_TURN, sequences
 from regrasp.planning.holds.stances import REACH
+from regrasp.planning.holds.turning import margins
 from regrasp.planning.holds.turning.arcs import Arcs, Widest
 from regrasp.planning.holds.turning.least_turning import least_turning
 from regrasp.planning.holds.turning.margins import Candidates
@@ -103,6 +111,24 @@ def test_arcs_and_widest_margins_are_those_of_samples_and_better(limited):
                 inside = np.any(off, axis=0) if off else np.zeros(360, dtype=bool)
                 near = abs(graph.margins[:, p] - level) < 1e-6  # the table is in single precision
                 assert ((graph.margins[:, p] >= level) == inside)[~near].all()
+
+
+@pytest.mark.parametrize("options", [{}, {"min_normal": 0.02}, {"one_finger": True}])
+def test_margins_are_the_same_interpreted_and_compiled(options, monkeypatch):
+    rng = np.random.default_rng(3)
+    contacts, load = some_contacts(rng, 14, True)
+    one_finger = options.pop("one_finger", False)
+    candidates = Candidates((*contacts[:9], *some_contacts(rng, 5)[0]), load, 3.0, one_finger, **options)
+    pairs = tuple(rng.permuted(np.tile(np.arange(14), (2000, 1)), axis=1)[:, :2].T)
+    angles = rng.uniform(0, 2 * np.pi, 2000)
+    found = []
+    for patience in (0, 10**9):
+        monkeypatch.setattr(margins, "PATIENCE", patience)
+        monkeypatch.setattr(margins, "_COMPILED", "none of its name")
+        found.append(candidates.margins(pairs, angles))
+    assert found[0] == pytest.approx(found[1], abs=1e-15)
+    assert ((found[0] < 0) == (found[1] < 0)).all()
+    assert 30 < (found[0] >= 0).sum() < 1900
 
 
 def steps_and_turning(angles, last):

@@ -183,11 +183,11 @@ class HoldGraph(ArrayValue):
     @cached_property
     def _alone(self) -> dict[int, NDArray[np.int64]]:
         """Pairs with a contact that the load passes through, by orientation: it might carry all of it."""
-        from regrasp.planning.holds.turning.margins import passes_through
+        from regrasp.closed_form.pairs.pair_margin import passes_through
 
         found: dict[int, NDArray[np.int64]] = {}
         for o, load in enumerate(self.loads):
-            through = np.flatnonzero(passes_through(self._points, load))
+            through = np.flatnonzero(passes_through(*self._points.T, *load))
             if not through.size:
                 continue
             first, second = self.pairs

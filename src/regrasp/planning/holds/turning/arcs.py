@@ -11,7 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regrasp.closed_form.load_arcs import ARC, LINE, load_arcs, turning_sides, widest_load, widest_narrowings
+from regrasp.closed_form.pairs.load_arcs import (
+    ARC,
+    LINE,
+    load_arcs,
+    turning_sides,
+    widest_load,
+    widest_narrowings,
+)
 from regrasp.mechanics.checks import Array
 from regrasp.planning.holds.turning.margins import Candidates, Pairs
 

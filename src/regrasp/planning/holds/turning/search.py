@@ -153,7 +153,8 @@ class ExactSearch:
             nonlocal together
             nodes = after(layer, node)
             unlooked[layer].pop(node, None)
-            if any(_pair(each) not in arcs for each in nodes):  # and of more holds, each time of twice as many
+            if any(_pair(each) not in arcs for each in nodes):
+                # and those after other holds that will be asked for next, each time twice as many
                 more = list(unlooked[layer])[:together]
                 ready([*nodes, *(each for other in more for each in after(layer, other))])
                 together = min(2 * together, _MOST_AT_ONCE)

@@ -1,12 +1,12 @@
 """The best sequences of holds against every sequence there is, on small random graphs.
 
-    python benchmarks/truth/every_sequence.py [TASKS]
+    python benchmarks/answers/every_sequence.py [TASKS]
 
-The judge (`tests/oracles/exhaustive.py`) walks events one by one and shares no code with the searches. A task is
-planar or in space, at a fixed orientation or at some, its fingers alike or each with places of its own; its
-start, its goal, both or neither are held by all fingers but one. Moves and margin of every trade-off, steps and
-turning of each sequence, and the least cost under random weights must be the judge's, and a sequence must be
-found exactly where the judge finds one. Prints a table; a seed is a task.
+The judge (`tests/oracles/exhaustive.py`) walks events one by one and shares no code with the searches. A task
+is planar or in space, at a fixed orientation or at some, its fingers alike or each with places of its own;
+its start, its goal, both or neither are held by all fingers but one. Moves and margin of every trade-off,
+steps and turning of each sequence, and the least cost under random weights must be the judge's, and a
+sequence must be found exactly where the judge finds one. Prints a table; a seed is a task.
 """
 
 import sys
