@@ -1,5 +1,6 @@
 """Choosing the grasp of a scenario: chosen, verified, and only then written and drawn."""
 
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,14 +16,14 @@ def choose(
 ) -> dict[str, Any]:
     """Write the chosen grasp with its proof as plan.json, and draw it."""
     from regrasp.disk.staging import whole_folder
-    from regrasp.files import plan_scenario, write_plan
+    from regrasp.files import write_plan
     from regrasp.files.source import naming
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
 
     with naming(name), progress_bar() as progress:
         task = progress.add_task("choosing", total=None)
-        chosen = plan_scenario(scenario)
+        chosen = scenario.chosen(lambda bound, best: progress.update(task, description=_known(bound, best)))
         progress.update(task, description="verifying")
         verdict = verified(verify(chosen), name)
     for remark in chosen.shape.notes:
@@ -40,3 +41,9 @@ def choose(
     for file in written:
         say(f"wrote {output / file}")
     return verdict_facts(chosen, verdict, 0) | {"wrote": [output / file for file in written]}
+
+
+def _known(bound: float, best: float) -> str:
+    """The best so far and what none is better than, as a search goes on."""
+    found = f"best {best:.5g}, " if isfinite(best) else ""
+    return f"choosing: {found}none better than {bound:.5g}"

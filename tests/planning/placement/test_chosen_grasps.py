@@ -79,6 +79,16 @@ def test_progress_sees_both_bounds_close_in() -> None:
     assert (np.diff(highs) <= 0).all()
 
 
+def test_progress_of_a_level_ends_at_value_and_bound() -> None:
+    seen: list[tuple[float, float]] = []
+    asked = {"friction": 0.5, "max_force": 3.0, "objective": "friction_use"}
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, progress=lambda *known: seen.append(known), **asked)
+    bounds, values = np.array(seen).T
+    assert (bounds <= chosen.value).all()
+    assert np.nanmin(values) == values[-1] == pytest.approx(chosen.value, rel=1e-6)
+    assert bounds[-1] == chosen.bound
+
+
 def test_a_level_that_no_placement_reaches_is_refused_with_a_proof() -> None:
     with pytest.raises(rg.Infeasible, match=r"forces of at most 0\.2 N") as caught:
         rg.choose_grasp(BRACKET, 3, TILTED, friction=0.5, objective="friction_use", max_force=0.2)

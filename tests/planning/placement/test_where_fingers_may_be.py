@@ -25,7 +25,7 @@ def test_fingers_keep_apart_and_away_from_corners() -> None:
 
 def test_what_cannot_be_answered_is_refused() -> None:
     for given, words in (
-        ({"objective": "wrench"}, "objective must be one of sum_normal"),
+        ({"objective": "best"}, "objective must be one of sum_normal"),
         ({"shape": [[0, 0], [1, 0], [0, 1]]}, "shape must be an Outline"),
         ({"load": rg.Wrench([0, 0, 1])}, "planar load"),
         ({"tolerance": 2.0}, "tolerance"),

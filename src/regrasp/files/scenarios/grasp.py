@@ -14,6 +14,7 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.placement.choosing import choose_grasp
 from regrasp.planning.placement.chosen import ChosenGrasp
+from regrasp.planning.placement.search import Progress
 
 _NotNegative = Annotated[float, Field(ge=0)]
 
@@ -107,8 +108,8 @@ class GraspScenario(Strict):
     outline: OutlineEntry
     task: GraspTask
 
-    def chosen(self) -> ChosenGrasp:
-        """The grasp that is asked for."""
+    def chosen(self, progress: Progress | None = None) -> ChosenGrasp:
+        """The grasp that is asked for; ``progress`` as of ``choose_grasp``."""
         task, disturbance = self.task, self.load.disturbance
         return choose_grasp(
             self.outline.value,
@@ -129,4 +130,5 @@ class GraspScenario(Strict):
             min_distance=task.min_distance,
             from_corners=task.from_corners,
             most_boxes=task.most_boxes,
+            progress=progress,
         )

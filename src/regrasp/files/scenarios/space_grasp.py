@@ -13,6 +13,7 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.placement.choosing import choose_grasp
 from regrasp.planning.placement.chosen import ChosenGrasp
+from regrasp.planning.placement.search import Progress
 
 
 class SpaceLoads(Load):
@@ -61,8 +62,8 @@ class SpaceGraspScenario(Strict):
     object: ObjectEntry
     task: SpaceGraspTask
 
-    def chosen(self) -> ChosenGrasp:
-        """The grasp that is asked for."""
+    def chosen(self, progress: Progress | None = None) -> ChosenGrasp:
+        """The grasp that is asked for; ``progress`` as of ``choose_grasp``."""
         task = self.task
         return choose_grasp(
             self.object.value,
@@ -74,4 +75,5 @@ class SpaceGraspScenario(Strict):
             min_distance=task.min_distance,
             from_corners=task.from_corners,
             most_boxes=task.most_boxes,
+            progress=progress,
         )

@@ -105,8 +105,9 @@ def choose_grasp(
         most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
             200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help, and
             1,000,000 on a mesh.
-        progress: called with the bound and the least value so far as the search goes on: the norm of forces
-            behind the objective [N].
+        progress: called with the bound and the best value so far as the search goes on: of the four norms
+            the norm of forces behind the objective [N], infinite while none is found; of the others the
+            objective itself, NaN while none is, with a bound that comes near at the end of the search alone.
 
     Raises:
         Infeasible: Where no placement holds the loads; the certificate is the proof.

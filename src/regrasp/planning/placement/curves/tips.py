@@ -66,35 +66,41 @@ def out_of_reach(sides: Sides, edge: int, radius: float) -> Spans:
     """
     length = sides.lengths[edge]
     t = sides.vectors[edge] / length
-    c = sides.vertices[edge] + radius * np.array([t[1], -t[0]])
+    n = np.array([-t[1], t[0]])
+    c = sides.vertices[edge] - radius * n
     near = radius * (1 - _TOUCHING)
-    taken = []
-    for other in range(len(sides.vertices)):
-        if other == edge:
-            continue
-        a, d = sides.vertices[other], sides.vectors[other] / sides.lengths[other]
-        found = []
-        for end in (a, a + sides.vectors[other]):
-            along, across = t @ (end - c), (end - c) @ np.array([-t[1], t[0]])
-            if abs(across) < near:
-                half = float(np.sqrt(near**2 - across**2))
-                found.append((along - half, along + half))
-        m = np.array([-d[1], d[0]])
-        strip = [
-            _between(m @ (c - a), m @ t, -near, near),
-            _between(d @ (c - a), d @ t, 0.0, sides.lengths[other]),
-        ]
-        lo, hi = max(s[0] for s in strip), min(s[1] for s in strip)
-        if lo < hi:
-            found.append((lo, hi))
-        if found:
-            taken.append((edge + min(f[0] for f in found) / length, edge + max(f[1] for f in found) / length))
+    a = sides.vertices - c
+    d = sides.vectors / sides.lengths[:, None]
+    m = np.stack([-d[:, 1], d[:, 0]], axis=1)
+    lo, hi = np.full(len(a), np.inf), np.full(len(a), -np.inf)
+    for end in (a, a + sides.vectors):
+        half = np.sqrt(np.maximum(near**2 - (end @ n) ** 2, 0.0))
+        meets, along = np.abs(end @ n) < near, end @ t
+        lo = np.where(meets, np.minimum(lo, along - half), lo)
+        hi = np.where(meets, np.maximum(hi, along + half), hi)
+    beside = _between(-(m * a).sum(axis=1), m @ t, -near, near)
+    before = _between(-(d * a).sum(axis=1), d @ t, 0.0, sides.lengths)
+    first, last = np.maximum(beside[0], before[0]), np.minimum(beside[1], before[1])
+    lo, hi = (
+        np.where(first < last, np.minimum(lo, first), lo),
+        np.where(first < last, np.maximum(hi, last), hi),
+    )
+    lo[edge], hi[edge] = np.inf, -np.inf
+    meets = np.flatnonzero((lo < hi) & (lo < length) & (hi > 0))
+    taken: Spans = []
+    for k in meets[np.argsort(lo[meets], kind="stable")].tolist():
+        here = (edge + float(lo[k] / length), edge + float(hi[k] / length))
+        if taken and here[0] <= taken[-1][1]:
+            taken[-1] = (taken[-1][0], max(taken[-1][1], here[1]))
+        else:
+            taken.append(here)
     return taken
 
 
-def _between(at: float, slope: float, least: float, most: float) -> tuple[float, float]:
+def _between(at: Array, slope: Array, least: float, most: float | Array) -> tuple[Array, Array]:
     """The s with least < at + s slope < most."""
-    if slope == 0.0:
-        return (-np.inf, np.inf) if least < at < most else (np.inf, -np.inf)
-    a, b = (least - at) / slope, (most - at) / slope
-    return (a, b) if a < b else (b, a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a, b = (least - at) / slope, (most - at) / slope
+    flat, inside = slope == 0.0, (least < at) & (at < most)
+    lo = np.where(flat, np.where(inside, -np.inf, np.inf), np.minimum(a, b))
+    return lo, np.where(flat, -lo, np.maximum(a, b))

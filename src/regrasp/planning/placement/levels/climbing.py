@@ -1,6 +1,6 @@
 """Climbing to the best level: placements found raise it, and boxes are excluded until none is left."""
 
-from math import inf
+from math import inf, nan
 
 import numpy as np
 
@@ -22,7 +22,7 @@ def run_level(
     it is the largest there is.
     """
     best: float | None = None
-    aim = level.start
+    aim, top = level.start, level.top(search)
     fixed = level.max_force * (1 + _STRICT)
     level.put(search, aim)
     try:
@@ -33,10 +33,10 @@ def run_level(
                 aim = level.beyond(best, tolerance)
                 level.put(search, aim)
                 search.forget(reached, places, u)
-                if aim >= level.top(search):
+                if aim >= top:
                     break
             if progress is not None:
-                progress(aim, inf if best is None else best)
+                progress(level.value(top), nan if best is None else level.value(best))
     except KeyboardInterrupt:
         if best is None:
             raise
@@ -44,7 +44,10 @@ def run_level(
     if best is None:
         search.closed = search.closed and search.excludes(search.left, fixed)
         return best, aim
-    return best, _settled(search, level, aim, fixed)
+    beyond = _settled(search, level, aim, fixed)
+    if progress is not None:
+        progress(level.value(beyond), level.value(best))
+    return best, beyond
 
 
 def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
