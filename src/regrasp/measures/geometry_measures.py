@@ -5,7 +5,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from regrasp.measures.measure import ROA, Measure
+from regrasp.measures.measure import ROA, UNMOVED, Measure
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 
@@ -55,6 +55,7 @@ def geometry_measures(grasp: Grasp) -> Iterator[Measure]:
             "sum |angle_i - mean| / largest such sum",
             f"{ROA}; Park and Starr 1992",
             "none",
+            origin=UNMOVED,
         )
         yield Measure(
             "polygon_area",
@@ -65,6 +66,7 @@ def geometry_measures(grasp: Grasp) -> Iterator[Measure]:
             "area of the polygon of the contacts",
             f"{ROA}; Mirtich and Canny 1994",
             "by its square",
+            origin=UNMOVED,
         )
     yield Measure(
         "centroid_distance",
@@ -87,4 +89,5 @@ def geometry_measures(grasp: Grasp) -> Iterator[Measure]:
             "sigma_min(n_1 ... n_n) / sqrt n: root mean square off the best plane",
             ROA,
             "none",
+            origin=UNMOVED,
         )

@@ -5,16 +5,14 @@ from math import cos, inf, pi, sin
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput
-from regrasp.measures.measure import ROA, Measure
+from regrasp.errors import Infeasible
+from regrasp.measures.measure import BY_LENGTH, ROA, UNMOVED, Measure
 from regrasp.measures.wrench_ball import radius
 from regrasp.measures.wrench_sets import WrenchSet
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.states.choosing import choose_state
-from regrasp.planning.surveys.extremes.largest_load import largest_load
 
 _DIVIDED = "none: torques divided by length"
 FACETS = 8
@@ -84,25 +82,26 @@ def limit_measures(
         yield Measure(name, upper, "N", "[0, inf)", True, words, ferrari, _DIVIDED, how, (lower, upper))
     forces = np.where(np.arange(m) < d, 1.0, 0.0)
     mirtich = f"{ROA}; Mirtich and Canny 1994"
-    for name, kind, metric, factor, unit, scales in (
-        ("decoupled_force", "forces without torque", forces, 1.0, "N", "none"),
-        ("decoupled_torque", "torques without force", 1.0 - forces, length, "N m", "in proportion"),
+    for name, kind, metric, factor, unit, scales, origin in (
+        ("decoupled_force", "forces without torque", forces, 1.0, "N", "none", "changes it"),
+        ("decoupled_torque", "torques without force", 1.0 - forces, length, "N m", "in proportion", UNMOVED),
     ):
         lower, upper, _ = radius(grasp, each, length, gap, metric)
         yield Measure(
             name, factor * upper, unit, "[0, inf)", True, f"largest ball of {kind} (Linf)", mirtich, scales,
-            how, (factor * lower, factor * upper),
+            how, (factor * lower, factor * upper), origin,
         )  # fmt: skip
     columns = generators(whole, facets)
     exact = "" if d == 2 else f", inner pyramids of {facets}"
     yield Measure(
         "wrench_volume", hull_volume(columns), f"N^{m}", "[0, inf)", True,
         f"volume of the L1 wrenches' hull{exact}", f"{ROA}; Miller and Allen 1999", _DIVIDED,
+        origin=BY_LENGTH,
     )  # fmt: skip
     yield Measure(
         "min_weight", least_weight(columns), "-", f"[0, 1/{columns.shape[1]}]", True,
         f"max l: W x = 0, sum x = 1, x >= l{exact}", "Li, Culbertson, Burdick and Ames 2023 (FRoGGeR)",
-        _DIVIDED, "program",
+        _DIVIDED, "program", origin=UNMOVED,
     )  # fmt: skip
     if load is not None:
         try:
@@ -113,33 +112,3 @@ def limit_measures(
             "least_normal_sum", least, "N", "[0, inf]", False, "min sum n_i . f_i that balance the load",
             f"{ROA}; Liu, Xu and others 2004", "none", "program",
         )  # fmt: skip
-
-
-def task_measure(grasp: Grasp, loads: LoadSet) -> Measure:
-    """The largest factor of a hull whose members all are balanced, each by forces of its own.
-
-    Of a convex set of wrenches that hold the members of a hull if it holds its corners: so it is the least
-    of the largest loads towards the corners. The contacts' own ``max_force`` limits count; 0 where the
-    center is not held.
-    """
-    center, corners = loads.center, loads.vertices
-    if corners is None:
-        raise InvalidInput(
-            "loads must be a hull for a measure; round sets have no corners: take a hull around them"
-        )
-    factors, uppers = [inf], [inf]
-    for corner in corners:
-        away = Wrench.from_vector(corner - center.vector)
-        if not away.vector.any():
-            continue
-        try:
-            found = largest_load(grasp, away, center)
-        except Infeasible:
-            factors, uppers = [0.0], [0.0]
-            break
-        factors.append(max(found.factor, 0.0))
-        uppers.append(max(found.bounds[1], 0.0))
-    return Measure(
-        "task_factor", min(factors), "-", "[0, inf]", True, "max k: center + k (loads - center) all balanced",
-        f"{ROA}; Borst, Fischer and Hirzinger 2004", "none", "program", (min(factors), min(uppers)),
-    )  # fmt: skip

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from regrasp.measures.measure import ROA, Measure
+from regrasp.measures.measure import BY_LENGTH, ROA, Measure
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 
@@ -54,6 +54,7 @@ def matrix_measures(grasp: Grasp, length: float) -> Iterator[Measure]:
         "sqrt det(G G') = prod sigma_i",
         li,
         _UNIT,
+        origin=BY_LENGTH,
     )
     yield Measure(
         "isotropy",

@@ -11,6 +11,9 @@ from regrasp.mechanics.value import ArrayValue
 if TYPE_CHECKING:
     import pandas
 
+BY_LENGTH, UNMOVED = "by length", "none"
+"""Of what the origin does."""
+
 ROA = "Roa and Suarez 2015"
 """M. A. Roa and R. Suarez, Grasp quality measures: review and performance, Autonomous Robots 38, 65-88."""
 
@@ -31,6 +34,8 @@ class Measure:
         how: ``closed form``, ``program`` or ``search``.
         bounds: (lower, upper), proven, of what was searched for; None where the value is exact but for
             rounding.
+        origin: what another centre of mass, the origin, does to it, all else staying: ``changes it``, ``by
+            length`` alone if that is not given, or ``none``.
     """
 
     name: str
@@ -43,6 +48,7 @@ class Measure:
     length_unit: str
     how: str = "closed form"
     bounds: tuple[float, float] | None = None
+    origin: str = "changes it"
 
     @property
     def better(self) -> str:
@@ -106,6 +112,7 @@ class Quality(ArrayValue):
                     "formula": m.formula,
                     "source": m.source,
                     "length unit": m.length_unit,
+                    "origin": m.origin,
                     "how": m.how,
                 }
                 for m in self.measures

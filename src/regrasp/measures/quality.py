@@ -6,9 +6,10 @@ from math import inf
 from regrasp.errors import InvalidInput, shown
 from regrasp.measures.closure import taken
 from regrasp.measures.geometry_measures import geometry_measures
-from regrasp.measures.limit_measures import FACETS, limit_measures, task_measure
+from regrasp.measures.limit_measures import FACETS, limit_measures
 from regrasp.measures.matrix_measures import hand_measures, matrix_measures
 from regrasp.measures.measure import Quality
+from regrasp.measures.task_measures import task_measure
 from regrasp.measures.wrench_ball import GAP, length_of, normal_limits
 from regrasp.mechanics.checks import ArrayLike, array, items, number, whole
 from regrasp.mechanics.contact import Contact
@@ -42,8 +43,8 @@ def quality(
             Linear limits of contacts count where ``load`` and ``loads`` do, and nowhere else.
         length: by which torques are divided [m], the grasp's size if not given.
         load: adds the least sum of normal forces that balances it.
-        loads: a hull; adds the largest factor by which it may be scaled (the contacts' own ``max_force``
-            count there, ``limit`` does not).
+        loads: adds the largest factor by which the set may be scaled, of round ones between bounds (the
+            contacts' own ``max_force`` count there, ``limit`` does not).
         jacobians: of each finger, (d, q_i) its velocity per joint speed, in the object's frame: adds the
             measures of the hand.
         gap: of what is searched for in space.
@@ -71,7 +72,7 @@ def quality(
     if loads is not None:
         if not isinstance(loads, LoadSet) or loads.dimension != grasp.dimension:
             raise InvalidInput(f"loads must be a LoadSet of the grasp's dimension, got {shown(loads)}")
-        measures.append(task_measure(grasp, loads))
+        measures.append(task_measure(grasp, loads, gap))
     if jacobians is not None:
         jacobians = items(jacobians, "jacobians")
         if len(jacobians) != len(grasp):
