@@ -20,6 +20,7 @@ from regrasp.planning.states.solving import force_unit
 from regrasp.planning.surveys.extremes.load_reach import Reached, farthest, half_plane, held_state
 
 _NOTHING = 1e-9
+_FAR = 1e3
 _ABOVE = (1e-12, 1e-9, 1e-7, 1e-5)
 
 
@@ -123,13 +124,15 @@ def largest_load(
 
 
 def _unit_of_forces(grasp: Grasp, base: Wrench | None, limits: list[float], one: float) -> float:
-    """Of what the largest load will be [N]: of limits where all forces have one, of the base, or ``one``."""
+    """Of what the largest load will be [N]: ``one``, unless limits of all forces, or the base, are far."""
     finite = [limit for limit in limits if limit < inf]
     if len(finite) == len(limits):
-        return max(finite)
-    if base is not None and base.vector.any():
-        return force_unit(grasp, base)
-    return max(finite, default=one)
+        size = max(finite)
+    elif base is not None and base.vector.any():
+        size = force_unit(grasp, base)
+    else:
+        size = max(finite, default=one)
+    return one if one / _FAR <= size <= one * _FAR else size
 
 
 def _is_held_somewhere(grasp: Grasp, base: Array, along: Array, limits: list[float], unit: float) -> bool:
