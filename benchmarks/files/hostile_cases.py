@@ -161,6 +161,9 @@ def cases(folder: Path) -> Iterator[Case]:
         yield of_state(name, make())
     for name in ("removal", "turn", "regrasp"):
         yield of_setpoints(f"set-points, {name}", PLANS[name](), folder)
+    import hostile_ways
+
+    yield from hostile_ways.cases(folder)
 
 
 def regions() -> Case:

@@ -32,6 +32,11 @@ def some(folder: Path):
             yield given.of_setpoints(name, given.PLANS["removal"](), folder)
     yield given.regions()
     yield given.of_state("state in space", given.STATES["state in space"]())
+    import hostile_ways as ways
+
+    yield ways.of_cut("cut", ways.contacts_cut(min_distance=5.0), folder)
+    yield ways.of_cut("cut, outline", ways.outline_cut(max_force=4.0, min_normal=0.5), folder)
+    yield ways.of_motions("motions", ways.motions(), folder)
 
 
 def test_no_edit_of_a_plan_lies_or_breaks_anything(tmp_path: Path) -> None:
@@ -64,3 +69,28 @@ def test_a_verifier_that_says_no_or_breaks_is_found_out(tmp_path: Path) -> None:
     found = tried(replace(case, told=lambda data: next(said)), 9, Random(1), inf)
     assert found["tracebacks"] == 9
     assert found["bad"][0]["said"].startswith("StopIteration")
+
+
+def test_cuts_that_no_numbers_can_save() -> None:
+    import regrasp as rg
+    from hostile_ways import outline_cut
+
+    free, limited = outline_cut(), outline_cut(max_force=4.0, min_normal=0.5)
+    for cut in (free, limited):
+        for name in ("force", "turned"):
+            assert "within a turn of" in rg.verify(replace(cut, **{name: [1e308, 1.0]})).asked
+        vertices = cut.vertices.copy()
+        vertices[1] = vertices[0]
+        assert rg.verify(replace(cut, vertices=vertices)).violations == (
+            "a side of the outline has no length",
+        )
+        vertices = cut.vertices.copy()
+        vertices[-1] = vertices[0]
+        assert rg.verify(replace(cut, vertices=vertices)).violations == (
+            "a side of the outline has no length",
+        )
+        for factor, fine in ((1 + 1e-13, True), (1 - 1e-13, True), (1 + 1e-11, False), (1 - 1e-11, False)):
+            found = str(rg.verify(replace(cut, turned=factor * cut.turned)))
+            assert ("the loads at the ends of the turn are of different sizes" in found) == (
+                cut is limited and not fine
+            )

@@ -20,7 +20,7 @@ from typing import Protocol
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.verification.exact import cross, dot, exact
+from regrasp.verification.exact import RESOLUTION, cross, dot, exact
 from regrasp.verification.refusals.limited_work import corners, least_work
 from regrasp.verification.verdict import Verification
 
@@ -85,6 +85,8 @@ def verify_outline_cut(cut: OutlineCut) -> Verification:
     if not _is_formed(cut):
         words = "a cut has three places at either end and a twist for every box, all on sides of its outline"
         return Verification((words,), inf, 0.0, -inf)
+    if not np.diff(cut.vertices, axis=0, append=cut.vertices[:1]).any(axis=1).all():
+        return Verification(("a side of the outline has no length",), inf, 0.0, -inf)
     judged = _Cut(cut)
     broken = [] if judged.is_counter_clockwise() else ["the vertices do not run counter-clockwise"]
     broken += [*judged.turn(), *judged.twists_at_work(), *judged.ends(), *judged.gaps()]
@@ -167,7 +169,9 @@ class _Cut:
     def orientations(self) -> str:
         """Which ones the cut is of, in words."""
         one, other = self.forces
-        turn = atan2(abs(cross(one, other)[2]), dot(one, other))
+        aside, along = abs(cross(one, other)[2]), dot(one, other)
+        size = max(aside, abs(along)) or Fraction(1)  # products of doubles need not be doubles
+        turn = atan2(aside / size, along / size)
         return f"any orientation within a turn of {degrees(turn):.4g} deg" if turn else "this orientation"
 
     def turn(self) -> Iterator[str]:
@@ -177,6 +181,9 @@ class _Cut:
         limited = self.limits != (Fraction(0), None)
         if (cross(one, other)[2] == 0 and dot(one, other) <= 0) or (limited and not corners(one, other)):
             yield "the ends of the turn are half a turn apart"
+        squares = [dot(force, force) for force in self.forces]
+        if limited and max(squares) > min(squares) * (1 + 4 * RESOLUTION):  # cones alone have no size
+            yield "the loads at the ends of the turn are of different sizes"
 
     def twists_at_work(self) -> Iterator[str]:
         """Boxes that their twists do not exclude."""
