@@ -18,6 +18,7 @@ from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraint
 from regrasp.planning.placement.laws import LEVELS, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
+from regrasp.planning.placement.levels.level import Level
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
@@ -28,7 +29,6 @@ from regrasp.planning.states.objectives import Objective
 
 FROM_CORNERS = 1e-3
 """Default distance of fingers from corners, as a fraction of the length of the outline."""
-_NARROW = 0.03  # of the tolerance: a box that moves no value by so much, unless it is on a knife's edge
 DISTINCT = 1e-6
 """Default distance of fingers, as a fraction of the object's farthest reach from its centre of mass."""
 
@@ -169,7 +169,9 @@ def choose_grasp(
     if isinstance(level, BallLevel):
         inner = outer = level.loads(level.max_force)
     distance = DISTINCT * sides.size if apart is None else apart
-    search = Search(sides, fingers, mu, inner, law, distance, _NARROW * tolerance)
+    # a box so narrow moves no value by more, unless it is on a knife's edge
+    narrow = (Level.narrow if level is None else level.narrow) * tolerance
+    search = Search(sides, fingers, mu, inner, law, distance, narrow)
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.any)
     if level is not None:
         best, beyond = run_level(search, level, tolerance, most, progress)

@@ -24,6 +24,7 @@ _STEP = 1e-6  # of a level that is zero
 _SURE = 1e-6  # of the limit, more than norms are uncertain by
 _HALVINGS = 50
 _NEARER = 0.998  # of the tolerance: what forces for solvers give back is within it, too
+_SPARED = 0.9  # and what boxes too narrow to be split are off by
 _EXACT = 1e-10  # relative, of the level of a placement
 AT_THE_EDGE = (1e-8, 1e-6, 1e-4)
 """Parts of a load given back so that forces for it exist for solvers, too."""
@@ -36,6 +37,8 @@ class Level(ABC):
     """A level of which more is better, from ``start`` on; the limit of every force is ``max_force`` [N]."""
 
     start: float
+    narrow = 0.03
+    """Of the tolerance: arcs of less, as a fraction of the size, are not split."""
 
     def __init__(self, max_force: float) -> None:
         self.max_force = max_force
@@ -81,6 +84,8 @@ class Level(ABC):
 class FrictionLevel(Level):
     """Cones narrowed from friction mu to nu: the level is -nu / mu for the use, or the angle margin [rad]."""
 
+    narrow = 0.01
+
     def __init__(self, max_force: float, friction: float, *, angle: bool) -> None:
         super().__init__(max_force)
         self.friction, self.angle = friction, angle
@@ -98,7 +103,7 @@ class FrictionLevel(Level):
 
     def beyond(self, level: float, tolerance: float) -> float:
         """Better by a fraction of it."""
-        return level + max(tolerance * abs(level), _STEP)
+        return level + max(_SPARED * tolerance * abs(level), _STEP)
 
     def top(self, search: Search) -> float:
         """No friction left."""
@@ -120,6 +125,7 @@ class ForceLevel(Level):
     """Forces that keep a distance from the edges of their cones: the level is the distance [N]."""
 
     start = 0.0
+    narrow = 0.01
 
     def __init__(self, max_force: float, friction: float) -> None:
         super().__init__(max_force)
@@ -131,7 +137,7 @@ class ForceLevel(Level):
 
     def beyond(self, level: float, tolerance: float) -> float:
         """Larger by a fraction of it."""
-        return min(level + max(_NEARER * tolerance * level, _STEP * self.most), self.most)
+        return min(level + max(_SPARED * tolerance * level, _STEP * self.most), self.most)
 
     def top(self, search: Search) -> float:
         """Forces along the normals, of the limit."""
