@@ -8,6 +8,7 @@ import pytest
 
 import regrasp as rg
 from regrasp.mechanics.arrays.planar import BLOCK
+from regrasp.planning.states.arrays import many_states
 from regrasp.threads import threads
 from strategies import comfortable_pair, comfortable_triple
 
@@ -187,7 +188,9 @@ def test_states_of_arrays_are_those_of_each(fingers: int, dimension: int) -> Non
             np.testing.assert_allclose(found.margins.force[k], seen.margins.force, atol=1e-12)
 
 
-def test_states_of_arrays_take_any_leading_shape_and_say_what_they_leave_open() -> None:
+def test_states_of_arrays_take_any_leading_shape_and_say_what_they_leave_open(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     r, n, mu, f, tau = arrays(6, 3, 2)
     flat = rg.choose_states(r, n, mu, f, tau, objective="effort")
     shaped = rg.choose_states(
@@ -202,9 +205,13 @@ def test_states_of_arrays_take_any_leading_shape_and_say_what_they_leave_open() 
     with pytest.raises(rg.InvalidInput, match="under a zero load needs max_force"):
         rg.choose_states(r, n, mu, np.zeros((6, 2)), objective="force")
     line = np.array([[[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]]])  # leaves the turn about it free
-    open_ = rg.choose_states(line, [[[0, 0, 1.0]] * 3], 0.5, [[0, 0, -1.0]], objective="effort")
-    assert not open_.held[0]
-    assert not open_.refused[0]
+    torques = [[0, 0, 0], [1.0, 0, 0]]  # nothing resists the second
+    asked = rg.choose_states(line, [[[0, 0, 1.0]] * 3], 0.5, [[0, 0, -1.0]], torques, objective="effort")
+    assert asked.held.tolist() == [True, False]
+    assert asked.refused.tolist() == [False, True]
+    monkeypatch.setattr(many_states, "_ASKED", 0)
+    asked = rg.choose_states(line, [[[0, 0, 1.0]] * 3], 0.5, [[0, 0, -1.0]], torques, objective="effort")
+    assert not (asked.held | asked.refused).any()
 
 
 def test_blocks_of_threads_are_parts_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,3 +224,18 @@ def test_blocks_of_threads_are_parts_of_the_whole(monkeypatch: pytest.MonkeyPatc
     for given, count in (("3", 3), ("0", None), ("", None)):
         monkeypatch.setenv("NUMBA_NUM_THREADS", given)
         assert threads() == (count or len(os.sched_getaffinity(0)))
+
+
+def test_states_that_small_programs_left_open_are_found() -> None:
+    """Forces of least effort beside more edges than they need: duals are not found to the last digits."""
+    rng, m = np.random.default_rng(0), 4000
+    angles = rng.uniform(0, 2 * np.pi, (m, 1)) + 2 * np.pi * np.arange(3) / 3 + rng.uniform(-0.3, 0.3, (m, 3))
+    arms = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    pushes, loads = -arms + 0.2 * rng.normal(size=arms.shape), rng.normal(size=(m, 2))
+    rows = [94, 277, 725, 729, 988, 1087, 2450, 3698, 3873]
+    found = rg.choose_states(arms[rows], pushes[rows], 0.6, loads[rows], objective="effort")
+    assert found.held.all()
+    for k, row in enumerate(rows):
+        grasp = rg.Grasp(rg.Contact(r, n, 0.6) for r, n in zip(arms[row], pushes[row], strict=True))
+        alone = rg.choose_state(grasp, rg.Wrench(loads[row]), "effort")
+        assert found.values[k] == pytest.approx(alone.value, rel=1e-8)

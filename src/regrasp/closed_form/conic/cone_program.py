@@ -15,6 +15,7 @@ MOST_STEPS = 60
 _NEAR = 0.99  # of the way to the boundary
 _GAP, _PRIMAL, _DUAL = 1e-11, 1e-12, 1e-10
 _ENOUGH = 1e4  # times these, where rounding ends the steps
+_STRICT = 100.0  # duals that stay a little off leave little of a strictly convex cost: 1e-9 of it at most
 _LEAST = 1e-200
 _STUCK, _LOST = 1e-9, 1e3
 
@@ -189,9 +190,14 @@ def minimise(
         objective = 0.0
         for j in range(size):
             objective += (weight * x[j] / 2.0 + c[j]) * x[j]
-        far = max(gap / (_GAP * max(1.0, abs(objective))), primal / largest / _PRIMAL, dual / cost / _DUAL)
-        if far < best:
-            best = far
+        unit = _GAP * max(1.0, abs(objective))
+        far = max(gap / unit, primal / largest / _PRIMAL, dual / cost / _DUAL)
+        score = far
+        if weight > 0.0:  # c'x + w/2 |x|^2 can fall by no more than gap + dual^2 size / (2 w)
+            left = max(gap / unit, primal / largest / _PRIMAL, dual * dual * size / (2.0 * weight) / unit)
+            score = min(far, _STRICT * left)
+        if score < best:
+            best = score
             for j in range(size):
                 best_x[j] = x[j]
             for i in range(rows):

@@ -90,8 +90,8 @@ class ManyGrasps:
             shape,
         )
 
-    def some(self, rows: NDArray[np.bool_]) -> "ManyGrasps":
-        """Of some grasps."""
+    def some(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> "ManyGrasps":
+        """Of some grasps, by flags or by places."""
         return replace(
             self,
             positions=self.positions[rows],
@@ -99,7 +99,7 @@ class ManyGrasps:
             frictions=self.frictions[rows],
             limits=self.limits[rows],
             loads=self.loads[rows],
-            shape=(int(rows.sum()),),
+            shape=(len(self.loads[rows]),),
         )
 
     def without(self, i: int) -> "ManyGrasps":

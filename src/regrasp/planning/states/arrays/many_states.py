@@ -12,9 +12,12 @@ from regrasp.mechanics.margins import Margins, margins
 from regrasp.mechanics.reserve import RESERVE, reserve_fraction
 from regrasp.mechanics.value import ArrayValue
 from regrasp.planning.states.arrays.chosen import chosen
+from regrasp.planning.states.arrays.left_open import again
 from regrasp.planning.states.arrays.many_grasps import ManyGrasps
 from regrasp.planning.states.criteria import PEAK_RATIO
 from regrasp.planning.states.objectives import Objective, objective_of
+
+_ASKED, _OF = 100, 500
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +26,10 @@ class BatchStates(ArrayValue):
 
     Args:
         held: (...) whether a grasp holds its load: by ``forces`` that were checked.
-        refused: (...) whether none do, proven by ``twists``. Where neither is so, rounding leaves it open, or
-            a motion that no contact resists; ``choose_state`` says more.
+        refused: (...) whether none do, proven by ``twists``. Where neither is so the grasp is open: the small
+            programs were left by rounding, or a motion that no contact resists, and ``choose_state`` found no
+            proof, either. It is asked for a hundred grasps, or one in 500 if these are more; of those open
+            beyond it says more.
         values: (...) of the objective in its unit; NaN where a load is not held.
         forces: (..., n, d) [N]; NaN where it is not held.
         margins: of these forces, each (..., n).
@@ -83,6 +88,12 @@ def choose_states(
     forces, _, verdicts, twists = chosen(given, sought, peak_ratio, kept)
     held = (verdicts == HELD) & given.holds(forces)
     refused = (verdicts == NONE) & given.is_lost(twists)
+    left = np.flatnonzero(~held & ~refused)
+    for k in left[: max(_ASKED, len(held) // _OF)]:
+        again(given, int(k), sought, peak_ratio, reserve, forces, twists)
+    if left.size:
+        held[left] = given.some(left).holds(forces[left])
+        refused[left] = ~held[left] & given.some(left).is_lost(twists[left])
     forces[~held] = np.nan
     twists[~refused] = 0.0
     found = margins(forces, given.normals, given.frictions)
