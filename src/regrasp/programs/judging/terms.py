@@ -90,10 +90,11 @@ def floors_of(
     units: of unknowns, rows and columns, as ``given_units``.
     """
     unknowns, rows, columns = units
-    per_dual = most(cones.units(terms.in_rows(reciprocal(columns))))
+    own = cones.units(rows)
+    products = own * reciprocal(cones.units(terms.in_rows(reciprocal(columns))))
     gap = float(unknowns @ (terms.abs_P @ unknowns + np.abs(q)))
-    row = float(cones.units(rows).min(initial=np.inf))
-    return row, float(columns.min(initial=np.inf)), 1 / per_dual, gap
+    least = [float(each.min(initial=np.inf)) for each in (own, columns, products)]
+    return least[0], least[1], least[2], gap
 
 
 def _dense(matrix: sparse.csc_matrix) -> Any:

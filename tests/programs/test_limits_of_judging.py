@@ -1,0 +1,380 @@
+"""What is believed, at its limits, on both sides: quick audits, verdicts, cones, far rows, rooms."""
+
+import pickle
+from dataclasses import replace
+from multiprocessing import Pipe
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from regrasp.errors import InvalidInput
+from regrasp.programs import Block, Cone, Pattern, Program, Rows, Status, child_side, solve
+from regrasp.programs import backends as table
+from regrasp.programs.backends import least_room, solved_at_once, solved_quickly
+from regrasp.programs.facts import BACKENDS
+from regrasp.programs.judging.audit import audited, missed
+from regrasp.programs.judging.convexity import why_not_convex
+from regrasp.programs.judging.elastic import elastic, proven_anyway
+from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
+from regrasp.programs.judging.quick import surely_sound
+from regrasp.programs.judging.verdict import MISSED, PROVEN, judged
+from regrasp.programs.solution import Solution
+from test_judged_by_their_own_units import nonnegative, program, zero
+
+pytestmark = pytest.mark.contract
+
+BOTH = pytest.mark.parametrize(("share", "inside"), [(0.999, True), (1.001, False)])
+CONES = program(np.zeros((1, 1)), [0], np.zeros((5, 1)), np.zeros(5), zero(1), nonnegative(1),
+                Block(Cone.SECOND_ORDER, 3)).cones  # fmt: skip
+
+
+def claim(p, status, x=None, z=None) -> Solution:
+    x = np.full(p.q.size, np.nan) if x is None else np.array(x, dtype=float)
+    z = np.full(p.b.size, np.nan) if z is None else np.array(z, dtype=float)
+    return Solution(p, "somebody", status, x, z, 7, 0.25, 0.5, "so they say")
+
+
+def nobody(_):
+    raise AssertionError("no point is asked for")
+
+
+# -- quick audits: min x^2 / 2 - x with r x <= r b, unknowns of size 1: floors r, 4 = 2 (|q| + P), 4 and 2
+
+
+def one(b=0.0, r=1.0, n=1):
+    return program(np.eye(n), -np.ones(n), r * np.eye(n), np.full(n, r * b), nonnegative(n), size=1.0)
+
+
+@BOTH
+@pytest.mark.parametrize("r", [1.0, 2.0**10, 2.0**-10])
+def test_how_far_outside_is_close(share, inside, r) -> None:
+    out = share * 1e-6
+    audit = surely_sound(one(1.0, r), np.array([1 + out]), np.zeros(1), 1e-6, 1e-3)
+    assert (audit is not None) is inside
+    if audit is not None:
+        assert audit == pytest.approx(
+            (out, out / 4, 0, out / 2, -0.5, out * r, 0, out, out), rel=1e-5, abs=1e-20
+        )
+
+
+@BOTH
+@pytest.mark.parametrize("r", [1.0, 2.0**10, 2.0**-10])
+def test_how_bent_is_sound(share, inside, r) -> None:
+    audit = surely_sound(one(0.0, r), np.zeros(1), np.array([(1 + share * 4e-6) / r]), 1e-9, 1e-6)
+    assert (audit is not None) is inside
+    if audit is not None:
+        assert audit.dual == pytest.approx(share * 1e-6)
+        assert audit.stationarity == pytest.approx(share * 4e-6)
+
+
+@BOTH
+@pytest.mark.parametrize("r", [1.0, 2.0**10, 2.0**-10])
+def test_how_much_of_products_and_gap_is_sound(share, inside, r) -> None:
+    """x = -e with z = 1 + e: nothing is bent, and e (1 + e) is the gap and the sum of products."""
+    for n, unit in ((1, 2), (3, 4)):  # the gap's unit is 2 n, that of products 4
+        e = share * unit * 1e-6
+        x, z = np.zeros(n), np.ones(n)
+        x[0], z[0] = -e, 1 + e
+        audit = surely_sound(one(0.0, r, n), x, z / r, 1e-9, 1e-6)
+        assert (audit is not None) is inside
+        if audit is not None:
+            assert audit.complementarity == pytest.approx(e * (1 + e) / 4)
+            assert audit.complementarity >= audited(one(0.0, r, n), x, z / r).complementarity
+            assert audit.gap == pytest.approx(e * (1 + e) / (2 * n))
+            assert audit.absolute_gap == pytest.approx(e * (1 + e))
+            assert audit.objective == pytest.approx(e * e / 2 + e)
+
+
+def test_what_is_outside_counts_three_times_with_all_duals() -> None:
+    e = 1e-8
+    audit = surely_sound(one(0.0, 1.0, 3), np.array([e, 0, 0]), np.array([1 - e, 1, 1]), 1e-7, 1e-6)
+    assert audit.complementarity == pytest.approx((e * (1 - e) + 3 * e * (3 - e)) / 4, rel=1e-9)
+    assert audit.primal == audit.slack_violation == e
+
+
+def test_quick_audits_need_units_and_duals_of_the_cone() -> None:
+    sound = np.zeros(1), np.ones(1)
+    assert surely_sound(one(), *sound, 1e-9, 1e-6) is not None
+    assert surely_sound(one(1.0), np.ones(1), np.array([-1e-12]), 1e-9, 1e-6) is None
+    nothing = program([[0.0]], [0.0], [[1.0]], [1.0], nonnegative(1), size=1.0)
+    assert surely_sound(nothing, np.zeros(1), np.zeros(1), 1e-9, 1e-6) is None
+    free = program([[1.0]], [-1.0], np.zeros((0, 1)), [], size=1.0)
+    assert surely_sound(free, np.ones(1), np.zeros(0), 1e-9, 1e-6)[:4] == (0, 0, 0, 0)
+
+
+def test_a_kept_solver_is_believed_as_far_as_it_is_sound(monkeypatch) -> None:
+    p = one(0.5)
+    right = solved_quickly(p)
+    assert (right.status, right.build_time, right.solve_time) == (Status.SOLVED, 0, 0)
+    for off, sound in ((4e-10, True), (6e-10, False)):  # of a row, of unit 1
+        monkeypatch.setattr(
+            table, "answered_quickly", lambda _, off=off: (np.array([0.5 + off]), np.full(1, 0.5))
+        )
+        assert (solved_quickly(p) is not None) is sound
+    for off, sound in ((0.9e-8, True), (1.1e-8, False)):  # of the gap, of unit 2
+        monkeypatch.setattr(
+            table, "answered_quickly", lambda _, off=off: (np.full(1, 0.5), np.array([0.5 + 4 * off]))
+        )
+        assert (solved_quickly(p) is not None) is sound
+    monkeypatch.setattr(table, "answered_quickly", lambda _: None)
+    assert solved_quickly(p) is None
+
+
+def test_who_only_asks_whether_is_told_what_is_sound_as_it_is(monkeypatch) -> None:
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    assert solved_at_once(p, "auto").value == pytest.approx([0.5])
+    none = program([[0.0]], [0.0], [[1.0], [-1.0]], [1, -2], nonnegative(2))
+    falls = program([[0.0]], [-1.0], [[-1.0]], [0], nonnegative(1))
+    assert solved_at_once(none, "auto") is None
+    assert solved_at_once(falls, "clarabel") is None
+    for status in (Status.STOPPED, Status.SOLVED, Status.FAILED, Status.NOT_FOUND):
+        for off, sound in ((0.0, status in (Status.STOPPED, Status.SOLVED)), (1e-3, False)):
+            given = claim(p, status, [0.5 + off], [0.5])
+            monkeypatch.setattr(table, "asked", lambda *_, given=given: given)
+            answer = solved_at_once(p, "clarabel")
+            assert (answer is not None) is sound
+            assert answer is None or answer.status is Status.SOLVED
+
+
+# -- verdicts ------------------------------------------------------------------------------------------------
+
+
+def test_what_is_sound_is_handed_on_and_what_stopped_is_solved() -> None:
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    right = claim(p, Status.SOLVED, [0.5], [0.5])
+    assert judged(right, 1e-7, nobody) is right
+    stopped = judged(replace(right, status=Status.STOPPED), 1e-7, nobody)
+    assert (stopped.status, stopped.said) == (Status.SOLVED, "so they say")
+    for status in (Status.NOT_FOUND, Status.FAILED, Status.UNSOUND):
+        given = replace(right, status=status)
+        assert judged(given, 1e-7, nobody) is given
+
+
+@pytest.mark.parametrize("status", [Status.SOLVED, Status.STOPPED])
+def test_what_is_nearly_right_is_polished_and_says_so(status) -> None:
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    better = judged(claim(p, status, [0.5 + 1e-5], [0.5]), 1e-9, nobody)
+    assert (better.status, better.said) == (Status.SOLVED, "so they say, polished")
+    np.testing.assert_allclose([*better.value, *better.duals], 0.5, rtol=1e-12)
+
+
+def test_what_is_far_off_keeps_its_word_or_is_unsound() -> None:
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    stopped = claim(p, Status.STOPPED, [0.3], [0.5])
+    assert judged(stopped, 1e-9, nobody) is stopped
+    wrong = judged(replace(stopped, status=Status.SOLVED), 1e-9, nobody)
+    assert wrong.status is Status.UNSOUND
+    assert wrong.said.startswith("so they say, but residual ")
+    assert wrong.said.endswith(" of 1e-09 allowed")
+
+
+@pytest.mark.parametrize("status", [Status.SOLVED, Status.STOPPED])
+def test_numbers_on_their_way_to_a_proof_are_one(status) -> None:
+    none = program([[0.0]], [0.0], [[1.0], [-1.0]], [1, -2], nonnegative(2))
+    found = judged(claim(none, status, [1.5], [1e9, 1e9 * (1 + 1e-3)]), 1e-7, nobody)
+    assert found.status is Status.INFEASIBLE
+    assert np.isnan(found.value).all()
+    assert found.infeasibility_residual <= PROVEN
+    falls = program(np.zeros((2, 2)), [-1, 0], [[-1, 1], [-1, 0]], [0, 0], nonnegative(2))
+    found = judged(claim(falls, status, [1e9, 1e9 * (1 + 1e-3)], [1, 1]), 1e-7, nobody)
+    assert found.status is Status.UNBOUNDED
+    assert np.isnan(found.duals).all()
+    assert found.unboundedness_residual <= PROVEN
+
+
+def test_a_point_of_zeros_needs_no_other_and_others_are_looked_for() -> None:
+    falls = program(np.zeros((2, 2)), [0, -1], [[-1, 0]], [0], nonnegative(1))
+    given = claim(falls, Status.UNBOUNDED, [0, 1])
+    assert judged(given, 1e-7, nobody) is given
+    fixed = program(np.zeros((2, 2)), [0, -1], [[1, 0]], [1], zero(1))
+    given = claim(fixed, Status.UNBOUNDED, [0, 1])
+    none = judged(given, 1e-7, lambda p: claim(p, Status.INFEASIBLE, None, [3.0]))
+    assert none.status is Status.INFEASIBLE
+    assert none.said == "so they say, but no point satisfies the constraints"
+    assert np.isnan(none.value).all()
+    assert none.duals.tolist() == [3.0]
+    for share, near in ((0.99, True), (1.01, False)):  # of a unit |b| + |a| X = 2
+        point = np.array([1 + share * 2 * MISSED, 0])
+        assert missed(fixed, point) == pytest.approx(share * MISSED)
+        found = judged(given, 1e-7, lambda p, x=point: claim(p, Status.SOLVED, x, [0]))
+        assert found.status is (Status.UNBOUNDED if near else Status.UNBOUNDED_OR_INFEASIBLE)
+
+
+def test_claims_that_prove_nothing_are_unsound() -> None:
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    for given in (claim(p, Status.INFEASIBLE, None, [1.0]), claim(p, Status.INFEASIBLE),
+                  claim(p, Status.UNBOUNDED, [1.0]), claim(p, Status.UNBOUNDED)):  # fmt: skip
+        wrong = judged(given, 1e-7, nobody)
+        assert wrong.status is Status.UNSOUND
+        assert wrong.said.endswith(" of 1e-08 allowed")
+
+
+# -- cones ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("z", "inside"),
+    [
+        ([-1, 0, 0, 0, 0], True),
+        ([5, -1e-12, 0, 0, 0], False),
+        ([0, 1, 5, 3, 4], True),
+        ([0, 1, 5, -3, -4 - 1e-9], False),
+        ([0, 1, -5, 3, 4], False),
+        ([0, np.nan, 5, 3, 4], False),
+    ],
+)
+def test_what_lies_in_the_dual_cone(z, inside) -> None:
+    z = np.array(z, dtype=float)
+    assert CONES.has_dual(z) is inside
+    np.testing.assert_array_equal(CONES.dual(z), z) if inside else None
+
+
+def test_below_the_apex_the_nearest_is_the_apex() -> None:
+    for v in ([0, 0], [1, 0], [0.6, -0.8]):
+        assert not CONES.dual(np.array([0, 0, -1.0, *v])).any()
+    np.testing.assert_allclose(CONES.dual(np.array([0, 0, -1, 2.0, 0])), [0, 0, 0.5, 0.5, 0])
+    np.testing.assert_array_equal(CONES.dual(np.array([0, 0, 1.0, 0, 0])), [0, 0, 1, 0, 0])
+
+
+def test_cones_of_one_row_are_half_lines() -> None:
+    p = program([[0.0]], [1.0], [[-1.0], [-2.0]], [-1.0, -6.0], Block(Cone.SECOND_ORDER, 1, 2))
+    assert p.cones.excess(np.array([-2.0, 3.0])).tolist() == [2, 0]
+    assert p.cones.dual(np.array([-2.0, 3.0])).tolist() == [0, 3]
+    assert solve(p).value == pytest.approx([3])
+
+
+# -- convexity, rows left out, room --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("P", "words"),
+    [
+        ([[0, 0.5], [0.5, 1]], "P[1, 0] is 0.5 and P[0, 1] is 0.5 beside 1 and 0"),
+        ([[1, 2], [2, 1]], "P[1, 0] is 2 and P[0, 1] is 2 beside 1 and 1"),
+        ([[4, 4 + 1e-11], [4 + 1e-11, 4]], "P[1, 0] is 4 and P[0, 1] is 4 beside 4 and 4"),
+        ([[1, 0], [0, -1e-30]], "P[1, 1] is -1e-30"),
+    ],
+)
+def test_the_words_of_what_is_not_convex(P, words) -> None:
+    assert words in why_not_convex(sparse.csc_matrix(np.array(P, dtype=float)))
+
+
+def test_what_is_convex() -> None:
+    """Zeros that are stored, a row of ones at the edge of Gershgorin's discs and of a factor, rounding."""
+    stored = sparse.csc_matrix((np.array([1.0, 0, 0, 0]), ([0, 0, 1, 1], [0, 1, 0, 1])), (2, 2))
+    assert stored.nnz == 4
+    for P in (stored, np.ones((2, 2)), np.ones((3, 3)), [[4, 4 + 1e-13], [4 + 1e-13, 4]], [[1, 0], [0, 0]]):
+        assert why_not_convex(sparse.csc_matrix(P)) == ""
+    for count in (3, 401):
+        P = np.zeros((count, count))
+        P[:3, :3] = [[1, -0.5, -0.5], [-0.5, 1, -0.5], [-0.5, -0.5, 1]]
+        assert why_not_convex(sparse.csc_matrix(P)) == ""
+        P[0, 1] = P[1, 0] = -0.5 - 1e-6
+        assert why_not_convex(sparse.csc_matrix(P)) != ""
+
+
+@BOTH
+def test_how_far_a_row_without_entries_is(share, inside) -> None:
+    p = program([[1.0]], [1.0], [[0], [2], [-1]], [1e4 / share, 2, 1], nonnegative(3))
+    assert (without_loose_rows(p) is None) is not inside
+    if inside:
+        rest, kept = without_loose_rows(p)
+        assert kept.tolist() == [False, True, True]
+        whole = with_loose_rows(claim(rest, Status.SOLVED, [-1], [0, 2]), p, kept)
+        assert whole.program is p
+        assert whole.duals.tolist() == [0, 0, 2]
+        assert whole.said == "so they say, without loose rows"
+
+
+def test_the_loosest_of_several_gaps_is_left_out() -> None:
+    p = program([[1.0]], [1.0], [[1]] * 4, [1, 1e5, 1e10, 2e10], nonnegative(4))
+    assert without_loose_rows(p)[1].tolist() == [True, True, False, False]
+
+
+def test_the_program_of_the_least_room() -> None:
+    """Largest entries of inequalities and of cones; equations have none, and t is at least -1."""
+    rows = [[3, 4], [2, -5], [1, 0], [0, 7], [2, 2]]
+    cone = Block(Cone.SECOND_ORDER, 3)
+    p = program(np.eye(2), [1, 2], rows, [1, 2, 3, 4, 5], zero(1), nonnegative(1), cone, size=2.0)
+    wide = elastic(p)
+    assert wide.A.toarray()[:, 2].tolist() == [0, -5, -7, 0, 0, -1]
+    assert wide.A.toarray()[:5, :2].tolist() == rows
+    assert wide.b.tolist() == [1, 2, 3, 4, 5, 1]
+    assert (wide.q.tolist(), wide.P.nnz, wide.size) == ([0, 0, 1], 0, 2.0)
+    assert wide.blocks == (*p.blocks, nonnegative(1))
+    none = Program(
+        sparse.csc_matrix((0, 0)), np.zeros(0), sparse.csc_matrix((1, 0)), -np.ones(1), p.blocks[1:2]
+    )
+    assert elastic(none).A.toarray().tolist() == [[0], [-1]]
+
+
+def test_room_is_told_by_whom_one_asks_and_only_by_answers(monkeypatch) -> None:
+    wide = program([[0.0]], [0.0], [[1], [-1]], [5, 5], nonnegative(2))
+    assert least_room(wide, "auto") == pytest.approx(-1, abs=1e-7)
+    tight = program([[0.0]], [0.0], [[1], [-1]], [1, -2], nonnegative(2))
+    assert least_room(tight, "daqp") == pytest.approx(0.5, abs=1e-7)
+    stopped = claim(elastic(tight), Status.STOPPED, [0, 0.5])
+    monkeypatch.setattr(table, "asked", lambda *_: stopped)
+    assert np.isnan(least_room(tight, "clarabel"))
+
+
+def test_a_proof_by_room_for_all_says_so() -> None:
+    tight = program([[0.0]], [0.0], [[1], [-1]], [1, -2], nonnegative(2))
+    stopped = claim(tight, Status.STOPPED)
+    found = proven_anyway(stopped, lambda p: solve(p, throw=False), PROVEN)
+    assert found.said == "so they say, but infeasible with room for all"
+    assert np.isnan(found.value).all()
+    assert found.duals.size == 2
+    for x, z in (([0, -0.5], [1, 1, 0]), ([0, 0.5], [1, 1, np.nan]), ([0, 0.5], [1, 0, 0])):
+        assert proven_anyway(stopped, lambda p, x=x, z=z: claim(p, Status.SOLVED, x, z), PROVEN) is None
+
+
+# -- places, processes, facts --------------------------------------------------------------------------------
+
+
+def test_places_are_named_once_and_shared() -> None:
+    with pytest.raises(InvalidInput, match="twice"):
+        Pattern((2, 2), [0, 0], [1, 1])
+    pattern = Pattern((2, 3), [1, 0, 1], [2, 1, 0])
+    made = pattern.filled(np.array([1.0, 2, 3]))
+    assert made.toarray().tolist() == [[0, 2, 0], [3, 0, 1]]
+    for shared in (made.indices, made.indptr):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 1
+
+
+def test_a_process_apart_is_ready_answers_and_ends(monkeypatch) -> None:
+    ends = []
+    monkeypatch.setattr(child_side.os, "_exit", ends.append)
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    for options, expected in (({}, Solution), ({"no_such_setting": 1}, InvalidInput)):
+        ours, theirs = Pipe()
+        ours.send_bytes(pickle.dumps((p, "clarabel", options)))
+        child_side.serve(theirs.fileno())
+        assert ours.recv_bytes() == b"ready"
+        assert isinstance(pickle.loads(ours.recv_bytes()), expected)
+        with pytest.raises(EOFError):
+            ours.recv_bytes()
+        theirs._handle = None
+        ours.close()
+    assert ends == [0, 0]
+
+
+def test_who_needs_squares_and_who_keeps_time() -> None:
+    strict = {name for name, backend in BACKENDS.items() if backend.strictly_convex}
+    assert strict == {"daqp", "quadprog", "proxqp", "qpalm", "osqp"}
+    timed = {name: backend.time_limit for name, backend in BACKENDS.items() if backend.time_limit}
+    named = dict.fromkeys(("clarabel", "daqp", "highs", "qpalm", "osqp"), "time_limit")
+    assert timed == named | {"scs": "time_limit_secs"}
+    assert {name for name, backend in BACKENDS.items() if backend.second_order} == {"clarabel", "cvxpy"}
+
+
+def test_no_more_solvers_are_kept_than_are_asked_for() -> None:
+    from regrasp.programs import clarabel_backend
+
+    for _ in range(70):  # each a pattern of its own
+        rows = Rows(1)
+        rows.at_least_zero([[1.0]], -1.0)
+        assert table.answered_quickly(rows.program([1.0], size=1.0)) is not None
+        assert len(clarabel_backend._memory.solvers) <= 64
