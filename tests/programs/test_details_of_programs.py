@@ -1,13 +1,28 @@
 """Small things of programs that other tests pass by: shapes, times, options, what is left of a guess."""
 
+import pickle
+from multiprocessing import Pipe
+
 import numpy as np
 import pytest
 from scipy import sparse
 
 from known_programs import known
 from regrasp.errors import InvalidInput
-from regrasp.programs import Block, Cone, Program, Rows, Status, available_backends, solve
-from regrasp.programs.facts import is_available
+from regrasp.programs import (
+    Block,
+    Cone,
+    Pattern,
+    Program,
+    Rows,
+    Solution,
+    Status,
+    available_backends,
+    child_side,
+    solve,
+)
+from regrasp.programs import backends as table
+from regrasp.programs.facts import BACKENDS, is_available
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.convexity import why_not_convex
@@ -177,3 +192,85 @@ def test_a_sound_answer_is_left_as_it_is() -> None:
     assert answer.objective == pytest.approx(2)
     assert answer.residual < 1e-8
     assert "polished" not in answer.said
+
+
+CONES = program(np.zeros((1, 1)), [0], np.zeros((5, 1)), np.zeros(5), zero(1), nonnegative(1),
+                Block(Cone.SECOND_ORDER, 3)).cones  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("z", "inside"),
+    [
+        ([-1, 0, 0, 0, 0], True),
+        ([5, -1e-12, 0, 0, 0], False),
+        ([0, 1, 5, 3, 4], True),
+        ([0, 1, 5, -3, -4 - 1e-9], False),
+        ([0, 1, -5, 3, 4], False),
+        ([0, np.nan, 5, 3, 4], False),
+    ],
+)
+def test_what_lies_in_the_dual_cone(z, inside) -> None:
+    z = np.array(z, dtype=float)
+    assert CONES.has_dual(z) is inside
+    np.testing.assert_array_equal(CONES.dual(z), z) if inside else None
+
+
+def test_below_the_apex_the_nearest_is_the_apex() -> None:
+    for v in ([0, 0], [1, 0], [0.6, -0.8]):
+        assert not CONES.dual(np.array([0, 0, -1.0, *v])).any()
+    np.testing.assert_allclose(CONES.dual(np.array([0, 0, -1, 2.0, 0])), [0, 0, 0.5, 0.5, 0])
+    np.testing.assert_array_equal(CONES.dual(np.array([0, 0, 1.0, 0, 0])), [0, 0, 1, 0, 0])
+
+
+def test_cones_of_one_row_are_half_lines() -> None:
+    p = program([[0.0]], [1.0], [[-1.0], [-2.0]], [-1.0, -6.0], Block(Cone.SECOND_ORDER, 1, 2))
+    assert p.cones.excess(np.array([-2.0, 3.0])).tolist() == [2, 0]
+    assert p.cones.dual(np.array([-2.0, 3.0])).tolist() == [0, 3]
+    assert solve(p).value == pytest.approx([3])
+
+
+def test_places_are_named_once_and_shared() -> None:
+    with pytest.raises(InvalidInput, match="twice"):
+        Pattern((2, 2), [0, 0], [1, 1])
+    pattern = Pattern((2, 3), [1, 0, 1], [2, 1, 0])
+    made = pattern.filled(np.array([1.0, 2, 3]))
+    assert made.toarray().tolist() == [[0, 2, 0], [3, 0, 1]]
+    for shared in (made.indices, made.indptr):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 1
+
+
+def test_a_process_apart_is_ready_answers_and_ends(monkeypatch) -> None:
+    ends = []
+    monkeypatch.setattr(child_side.os, "_exit", ends.append)
+    p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
+    for options, expected in (({}, Solution), ({"no_such_setting": 1}, InvalidInput)):
+        ours, theirs = Pipe()
+        ours.send_bytes(pickle.dumps((p, "clarabel", options)))
+        child_side.serve(theirs.fileno())
+        assert ours.recv_bytes() == b"ready"
+        assert isinstance(pickle.loads(ours.recv_bytes()), expected)
+        with pytest.raises(EOFError):
+            ours.recv_bytes()
+        theirs._handle = None
+        ours.close()
+    assert ends == [0, 0]
+
+
+def test_who_needs_squares_and_who_keeps_time() -> None:
+    strict = {name for name, backend in BACKENDS.items() if backend.strictly_convex}
+    assert strict == {"daqp", "quadprog", "proxqp", "qpalm", "osqp"}
+    timed = {name: backend.time_limit for name, backend in BACKENDS.items() if backend.time_limit}
+    named = dict.fromkeys(("clarabel", "daqp", "highs", "qpalm", "osqp"), "time_limit")
+    assert timed == named | {"scs": "time_limit_secs"}
+    assert {name for name, backend in BACKENDS.items() if backend.second_order} == {"clarabel", "cvxpy"}
+
+
+def test_no_more_solvers_are_kept_than_are_asked_for() -> None:
+    from regrasp.programs import clarabel_backend
+
+    for _ in range(70):  # each a pattern of its own
+        rows = Rows(1)
+        rows.at_least_zero([[1.0]], -1.0)
+        assert table.answered_quickly(rows.program([1.0], size=1.0)) is not None
+        assert len(clarabel_backend._memory.solvers) <= 64
