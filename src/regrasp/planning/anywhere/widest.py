@@ -20,7 +20,7 @@ def widest_walk(asked: Asked, ends: tuple[End, End], angles: Array, exchanges: i
     """Its holds, at the places of some angles [rad]; None where none has room for any margin."""
     start, goal = ends
     low, high = 0.0, atan(asked.friction)
-    parts = PARTS[-1] if asked.limits.max_force < inf else 0
+    parts = PARTS[0] if asked.limits.max_force < inf else 0
     best = None
     for _ in range(_ROUNDS):
         margin = 0.5 * (low + high)
