@@ -95,7 +95,7 @@ def test_doubles_say_what_rationals_say_of_any_stretch(size) -> None:
         if not edges.turns_little(edge, Fraction(lo), Fraction(hi)):
             continue
         exact = float(edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y]))
-        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y)
+        rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y[None])[0]
         best = (
             [most_work(proof, y, *on_curve(edge, t)) for t in np.linspace(lo, hi, 9)] if not margin else [-9]
         )
@@ -120,9 +120,8 @@ def test_a_stretch_that_hardly_moves_is_judged_in_rationals() -> None:
         )
         longest = np.hypot(*(control[0, 2] - control[0, 1]))
         control[0, 1, 0] = short * longest
-        rough = CubicEdges(proof).roughly(
-            np.array([0]), np.array([0.0]), np.array([1e-9]), np.array([1.0, 2, 0])
-        )
+        y, ends = np.array([[1.0, 2, 0]]), (np.array([0.0]), np.array([1e-9]))
+        rough = CubicEdges(proof).roughly(np.array([0]), *ends, y)[0]
         assert np.isfinite(rough) == fine
 
 
