@@ -36,9 +36,8 @@ def least_stiffness(
     Args:
         state_or_plan: a ``GraspState``, a ``Transition`` or a regrasp.
         tip_radius: of round fingertips, which roll [m].
-        stiffness: as in ``Criteria``, by contact and direction; the result is then the least factor of it
-        [-].
-            All alike and 1 if not given, so that the factor is the stiffness itself.
+        stiffness: as in ``Criteria``, by contact and direction; the result is then the least factor of it,
+            without a unit. All alike and 1 if not given, so that the factor is the stiffness itself.
         load_at: (d,) the point of the object at which the load's force acts, object frame [m]; the centre of
             mass if not given. A wrench does not say it, and it matters.
         surface: curvature at the contacts [1/m], a number or (n,), positive where it bulges out; flat if not

@@ -105,7 +105,8 @@ class Asked:
         said = [] if self.disturbance is None else [f"every deviation of the {self.disturbance}"]
         said += [f"{self.friction:.6g} times the friction"] if self.friction != 1 else []
         if self.positions is not None:
-            said.append(f"contacts off along their tangents, in {len(self.positions)} ways")
+            ways = f", in {len(self.positions)} ways" if len(self.positions) > 1 else ""
+            said.append(f"contacts off along their tangents{ways}")
         said += ["the early loss of a finger that leaves or arrives"] if self.early_loss else []
         return ", with ".join(said)
 
