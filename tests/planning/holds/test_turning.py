@@ -131,6 +131,26 @@ def test_margins_are_the_same_interpreted_and_compiled(options, monkeypatch):
     assert 30 < (found[0] >= 0).sum() < 1900
 
 
+def test_both_of_two_peaks_that_tie_are_arcs():
+    """Contacts that mirror each other hold at mirrored angles, in arcs narrower than any grid at the top."""
+    rng, two = np.random.default_rng(5), 0
+    for _ in range(150):
+        (x, y), n = rng.uniform(0.2, 1, 2), rng.normal(size=2)
+        pair = [rg.Contact([side * x, y], [side * n[0], n[1]], 0.3) for side in (1, -1)]
+        arcs = Arcs(Candidates(pair, rg.Wrench([1.0, 0.0]), 3.0, one_finger=False))
+        places = np.array([0]), np.array([1])
+        widest = arcs.widest(places, arcs.bounds()[places])
+        if widest.margins[0] <= 0:
+            continue
+        (runs,) = arcs.at(places, widest.margins[0] * (1 - 1e-6), widest)
+        middles = np.array([(lo + hi) / 2 for lo, hi in runs])
+        mirrored = np.pi - middles  # the load is seen at minus the object's angle
+        apart = abs((middles[:, None] - mirrored + np.pi) % (2 * np.pi) - np.pi)
+        assert (apart.min(axis=1) < 1e-4).all()
+        two += len(runs) > 1 and widest.peaks is not None
+    assert two >= 5
+
+
 def steps_and_turning(angles, last):
     turns = abs(np.diff([0.0, *angles, angles[-1] + (last - angles[-1] + np.pi) % (2 * np.pi) - np.pi]))
     return int(np.maximum(np.ceil(turns / MAX_TURN - 1e-9), 1).sum()), turns.sum()

@@ -25,6 +25,8 @@ from regrasp.planning.holds.turning.margins import Candidates, Pairs
 TOLERANCE = 1e-6
 """The widest margin may be one that is only approached: it is kept at this fraction below it."""
 
+PEAKS = 3
+"""So many of a margin over the angles are looked at closely, where limits leave less than the bound."""
 _GRID = 25
 _SLACK = 1e-12  # [rad] of margins, for rounding
 _SECTIONS, _ROUNDS = 16, 12  # of what is left between two angles, and how often: to 16**-12 of it
@@ -33,10 +35,14 @@ _PULLED = 1e-9  # [rad]
 
 
 class Widest(NamedTuple):
-    """The widest margins of pairs over all angles (m,) [rad], -1 for none, and these angles [rad]."""
+    """The widest margins of pairs over all angles (m,) [rad], -1 for none, and these angles [rad].
+
+    peaks: (m, k) other angles besides [rad], where margins may be hardly less wide; None without any.
+    """
 
     margins: Array
     angles: Array
+    peaks: Array | None = None
 
 
 class Arcs:
@@ -79,20 +85,27 @@ class Arcs:
                 np.where(wider, middle, angles[short]), np.where(wider, better, margins[short])
             )  # fmt: skip
             short = margins < bounds * (1 - TOLERANCE)
+        peaks = None
         if short.any():
             found = self._searched((pairs[0][short], pairs[1][short]))
             wider = found.margins > margins[short]
             angles[short] = np.where(wider, found.angles, angles[short])
             margins[short] = np.where(wider, found.margins, margins[short])
-        return Widest(margins, angles)
+            assert found.peaks is not None
+            peaks = np.repeat(angles[:, None], found.peaks.shape[1], axis=1)
+            peaks[short] = found.peaks
+        return Widest(margins, angles, peaks)
 
     def at(self, pairs: Pairs, level: float, widest: Widest) -> list[list[tuple[float, float]]]:
         """For each pair the arcs (lo, hi) of angles that hold with a margin of ``level`` or more [rad]."""
         begin, length = self._closed(pairs, np.full(pairs[0].shape, level))
         grid = begin[:, None] + length[:, None] * np.linspace(0, 1, _GRID)
-        best = begin + (widest.angles - begin) % (2 * pi)
-        best = np.where(best - begin > length, begin + length / 2, best)
-        angles = np.sort(np.append(grid, best[:, None], axis=1), axis=1)
+        best = widest.angles[:, None]
+        if widest.peaks is not None:
+            best = np.append(best, widest.peaks, axis=1)
+        best = begin[:, None] + (best - begin[:, None]) % (2 * pi)
+        best = np.where(best - begin[:, None] > length[:, None], (begin + length / 2)[:, None], best)
+        angles = np.sort(np.append(grid, best, axis=1), axis=1)
         held = self._margins(pairs, angles) >= level - _SLACK
         inner, outer = angles[:, :-1], angles[:, 1:]
         rises, falls = ~held[:, :-1] & held[:, 1:], held[:, :-1] & ~held[:, 1:]
@@ -151,7 +164,7 @@ class Arcs:
         return self.candidates.margins(each, angles.ravel()).reshape(angles.shape)
 
     def _searched(self, pairs: Pairs) -> Widest:
-        """The widest margins on a grid of the closed arcs, made better around the three best."""
+        """The widest margins on a grid of the closed arcs, made better around the three best peaks."""
         begin, length = self._closed(pairs, np.zeros(pairs[0].shape))
         share = np.linspace(0, 1, 2 * _GRID)
         angles = begin[:, None] + length[:, None] * share
@@ -161,7 +174,7 @@ class Arcs:
         found = Widest(margins[rows, best], angles[rows, best])
         peaks = np.pad(margins, ((0, 0), (1, 1)), constant_values=-2.0)
         peak = (margins >= peaks[:, :-2]) & (margins >= peaks[:, 2:]) & (margins >= 0)
-        order = np.argsort(np.where(peak, -margins, 9.0), axis=1, kind="stable")[:, :3]
+        order = np.argsort(np.where(peak, -margins, 9.0), axis=1, kind="stable")[:, :PEAKS]
         row = np.repeat(rows, order.shape[1])
         place = order.ravel()
         real = peak[row, place]
@@ -177,10 +190,12 @@ class Arcs:
             reached, at = margins[each, best], between[each, best]
             low = between[each, np.maximum(best - 1, 0)]
             high = between[each, np.minimum(best + 1, len(share) - 1)]
+        peaks = np.repeat(found.angles[:, None], order.shape[1], axis=1)
+        peaks[np.nonzero(real.reshape(order.shape))] = at
         for k, value, angle in zip(row.tolist(), reached.tolist(), at.tolist(), strict=True):
             if value > found.margins[k]:
                 found.margins[k], found.angles[k] = value, angle
-        return found
+        return Widest(found.margins, found.angles, peaks)
 
 
 def _runs(angles: Array, held: Array, ends: Array, whole: bool) -> list[tuple[float, float]]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from regrasp.mechanics.checks import Array
 from regrasp.planning.holds.sequences import Sequence
 from regrasp.planning.holds.stances import Places
-from regrasp.planning.holds.turning.arcs import TOLERANCE, Arcs, Widest
+from regrasp.planning.holds.turning.arcs import PEAKS, TOLERANCE, Arcs, Widest
 from regrasp.planning.holds.turning.least_turning import Interval, Node, least_turning
 from regrasp.planning.holds.turning.margins import Candidates, Pairs
 from regrasp.planning.holds.turning.rows import Rows
@@ -51,6 +51,7 @@ class ExactSearch:
         self.widest[self.widest < least] = -1.0
         self.known = self.widest < 0  # no bound any more
         self.angles = np.zeros(self.widest.shape)
+        self.peaks: dict[tuple[int, int], Array] = {}
         self._rows: Rows | None = None
 
     def sequences(
@@ -104,6 +105,10 @@ class ExactSearch:
         margins = np.where(found.margins >= self.least, found.margins, -1.0)
         for a, b in ((first, second), (second, first)):
             self.widest[a, b], self.angles[a, b], self.known[a, b] = margins, found.angles, True
+        if found.peaks is not None:
+            self.peaks.update(
+                zip(zip(first.tolist(), second.tolist(), strict=True), found.peaks, strict=True)
+            )
         self._rows = None
 
     def _walked(self, best: "_Best", goal_angle: float) -> TurningSequence | None:
@@ -137,6 +142,11 @@ class ExactSearch:
             if missing_now:
                 first, second = np.array(missing_now).T
                 widest = Widest(self.widest[first, second], self.angles[first, second])
+                if self.peaks:
+                    none = np.full(PEAKS, np.nan)
+                    peaks = np.array([self.peaks.get(pair, none) for pair in missing_now])
+                    peaks = np.where(np.isnan(peaks), widest.angles[:, None], peaks)
+                    widest = widest._replace(peaks=peaks)
                 arcs.update(zip(missing_now, self.arcs.at((first, second), level, widest), strict=True))
             return nodes
 
