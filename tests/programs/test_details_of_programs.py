@@ -67,7 +67,7 @@ BOX = program(np.eye(2), [-3.0, -1.0], [[1, 0], [0, 1], [1, 1]], [1, 2, 1.5], no
 def test_every_back_end_tells_its_times(backend) -> None:
     answer = solve(BOX, backend)
     assert answer.status is Status.SOLVED
-    assert answer.build_time > 0
+    assert 0 < answer.build_time < 60
     assert 0 < answer.solve_time < 60
 
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 import regrasp as rg
 from regrasp.planning.states.program import state_program
-from regrasp.programs import solve
+from regrasp.programs import Block, Cone, Pattern, Program, solve
 from regrasp.programs.backends import answered_quickly, solved_quickly
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.quick import surely_sound
@@ -70,3 +71,20 @@ def test_what_is_a_little_wrong_is_not_sound_beyond_doubt() -> None:
         off[place] -= 1e-6
         assert surely_sound(program, x, off, 5e-10, 1e-8) is None
     assert surely_sound(program, x * np.nan, z, 5e-10, 1e-8) is None
+
+
+def test_a_kept_solver_takes_every_number_anew() -> None:
+    """min p x^2 / 2 - q x with a x <= b: x = q / p or b / a, whichever is less."""
+    one, zero = sparse.csc_matrix([[1.0]]), sparse.csc_matrix((1, 1))
+    pattern = Pattern((1, 1), [0], [0])
+    asked = [(1, 1, 1, 9), (4, 1, 1, 9), (4, 2, 1, 9), (4, 2, 1, 0.25),
+             (4, 2, 2, 0.25), (1, 1, 1, 9), (0, 1, 1, 9), (0, 1, 3, 9)]  # fmt: skip
+    shared = pattern.filled(np.ones(1))
+    for p, q, a, b in asked:
+        P, A = float(p) * one if p else zero, shared if a == 1 else pattern.filled(np.array([float(a)]))
+        program = Program(
+            P, np.array([-float(q)]), A, np.array([float(b)]), (Block(Cone.NONNEGATIVE, 1),), 1.0
+        )
+        x, z = answered_quickly(program)
+        assert x == pytest.approx([min(q / p if p else np.inf, b / a)], rel=1e-6)
+        assert z == pytest.approx([(q - p * x[0]) / a], abs=1e-6)

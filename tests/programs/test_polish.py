@@ -70,7 +70,9 @@ def test_how_near_is_near(share, near) -> None:
 def test_refused_are_points_that_are_not_finite_and_missing_duals_are_none() -> None:
     free = program(np.eye(2), [-0.5, -0.5], [[1, 0], [0, 1], [1, 1]], [1, 2, 1.5], nonnegative(3))
     inside = np.full(2, 0.5)
+    grows = program(np.zeros((2, 2)), [1, 1], [[-1, 0], [0, -1]], [0, 0], nonnegative(2))
     for wrong in (np.nan, np.inf, -np.inf):
+        assert polished(grows, np.array([0.0, wrong]), np.ones(2), 1e-6) is None
         assert polished(BOX, np.array([1.0, wrong]), Z, 1e-6) is None
         assert polished(BOX, X, np.array([1.5, 0.0, wrong]), 1e-9) is None  # zero is no dual of it
         x, z = polished(free, inside, np.array([0.0, wrong, 0.0]), 1e-9)

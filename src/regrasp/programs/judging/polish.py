@@ -68,7 +68,7 @@ def _step(program: Program, x: Array, z: Array) -> tuple[Array, Array] | None:
     H, z, faces = P + _curvature(program, A, s, z), E.T @ (E @ z), E @ A
     matrix: Any = np.block([[H, faces.T], [faces, np.zeros((len(E), len(E)))]])
     target = np.r_[-(P @ x + program.q + A.T @ z), E @ s]
-    if not (np.isfinite(matrix).all() and np.isfinite(target).all()):
+    if not np.isfinite(matrix).all():
         return None
     rows = reciprocal(np.abs(matrix).max(axis=1, initial=0.0))
     matrix = matrix * rows[:, None]
