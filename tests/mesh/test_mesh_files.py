@@ -201,7 +201,7 @@ ONE_SIDED = [
             "(8, 7.5, 7); a mesh is one object without cavities: keep one, or unite them"),
         (np.vstack([V, V / 2]), np.vstack([F, F[:, ::-1] + 8]), "there are 2 closed surfaces"),
         (SHEET, [[0, 1, 2], [0, 2, 1]], "the mesh encloses no volume: 0, with an area of 1"),
-        (V * [1, 1, 0], F, "1 edge of more than two faces, one from (1, 1.5, -0) to (-1, -1.5, -0)"),
+        (V * [1, 1, 0], F, "1 edge of more than two faces, one from (1, 1.5, 0) to (-1, -1.5, 0)"),
         (np.random.default_rng(0).normal(size=(6, 3)), ONE_SIDED,
             "the surface has one side only, like a Möbius strip: it bounds no object"),
         (np.vstack([V, [[-1, -1.5, 0]]]), [*F[1:], [0, 1, 8], [1, 3, 8], [3, 0, 8]],

@@ -213,8 +213,8 @@ ELSEWHERE = {
     "plan_regrasp", "plan_regrasps", "RegraspProblem",
     # values that hold grasps and do nothing with them; a graph that refuses them at its making
     "bottleneck", "ChosenGrasp", "ChosenState", "Closure", "Contact", "ContactRegions", "Criteria",
-    "EscapeTwist", "Grasp", "GraspState", "HeldCentres", "HeldSphere", "LargestLoad", "LeastFriction",
-    "MarginCurve", "OutlineRegrasps", "Quality", "RegraspCut", "SampledPath", "Sensitivity",
+    "EscapeTwist", "FaceRegions", "Grasp", "GraspState", "HeldCentres", "HeldSphere", "LargestLoad",
+    "LeastFriction", "MarginCurve", "OutlineRegrasps", "Quality", "RegraspCut", "SampledPath", "Sensitivity",
     "StraightPath", "Transition", "TurningPath", "WrenchBall", "RegraspPlan",
     "OutlineCut", "plan_motions", "Bottleneck", "RegraspObstacle", "Tolerances",
 }  # fmt: skip

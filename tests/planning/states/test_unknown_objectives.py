@@ -96,6 +96,8 @@ def told(found: Any) -> str:
     """The objectives that a result says it is for."""
     if isinstance(found, rg.Transition):
         return " ".join(choice.objective for choice in found.record.choices)
+    if isinstance(found, rg.RegraspPlan):
+        return " ".join(told(part) for part in found.steps)
     if isinstance(found, plt.Axes):
         drawn = {o.quantity: o.name for o in (OWN, STRANGER)}
         return drawn.get(found.get_ylabel().partition(" [")[0], found.get_ylabel())
