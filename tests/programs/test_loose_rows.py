@@ -63,3 +63,12 @@ def test_a_far_bound_below_is_no_loose_one() -> None:
     program = Program(one, np.zeros(1), rows, np.array([-1e9, 1.0]), (Block(Cone.NONNEGATIVE, 1, 2),))
     assert without_loose_rows(program) is None
     assert solve(program).status is Status.INFEASIBLE
+
+
+def test_far_is_told_by_sides_beside_each_other_whatever_their_size() -> None:
+    for unit in (2.0**-30, 1.0, 2.0**30):
+        rows, b = sparse.csc_matrix([[1.0], [-1.0]]), unit * np.array([1e5, 1.0])
+        program = Program(
+            sparse.csc_matrix(np.eye(1)), np.zeros(1), rows, b, (Block(Cone.NONNEGATIVE, 1, 2),)
+        )
+        assert without_loose_rows(program)[1].tolist() == [False, True]

@@ -56,14 +56,12 @@ def own_units_of_columns(program: Program, unknowns: Array) -> Array:
     if program.size > 0:
         return program.given_units[2]
     pulls: Array = program.terms.abs_P @ unknowns + np.abs(program.q)
-    return pulls + units_of_columns(program, pulls)
+    return pulls + _units_of_columns(program, pulls)
 
 
-def units_of_columns(program: Program, pulls: Array) -> Array:
+def _units_of_columns(program: Program, pulls: Array) -> Array:
     """(n,) the least |a_ij| Z_i of each column; pulls (n,): the sizes of P x + q."""
     terms, cones = program.terms, program.cones
-    if program.size > 0:
-        return np.full(pulls.size, pulls.max(initial=0.0))
     sides = reciprocal(pulls)
     inverse = cones.largest(terms.in_rows(sides))
     for number in range(PASSES):
