@@ -25,7 +25,7 @@ from regrasp.planning.holds.turning.margins import Candidates, Pairs
 TOLERANCE = 1e-6
 """The widest margin may be one that is only approached: it is kept at this fraction below it."""
 
-PEAKS = 3
+PEAKS = 8
 """So many of a margin over the angles are looked at closely, where limits leave less than the bound."""
 _GRID = 25
 _SLACK = 1e-12  # [rad] of margins, for rounding
@@ -164,7 +164,7 @@ class Arcs:
         return self.candidates.margins(each, angles.ravel()).reshape(angles.shape)
 
     def _searched(self, pairs: Pairs) -> Widest:
-        """The widest margins on a grid of the closed arcs, made better around the three best peaks."""
+        """The widest margins on a grid of the closed arcs, made better around the best peaks."""
         begin, length = self._closed(pairs, np.zeros(pairs[0].shape))
         share = np.linspace(0, 1, 2 * _GRID)
         angles = begin[:, None] + length[:, None] * share
