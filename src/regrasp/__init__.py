@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from regrasp.planning.placement.maps import PlacementMap, placement_map
     from regrasp.planning.placement.regions import ContactRegions, contact_regions
     from regrasp.planning.placement.space.face_regions import FaceRegions
+    from regrasp.planning.placement.space.surface_map import SurfaceMap, surface_map
     from regrasp.planning.regrasps.problem import RegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasps
     from regrasp.planning.regrasps.why_not import RegraspObstacle
@@ -153,6 +154,8 @@ _LATER = {
     "sensitivity": "regrasp.planning.surveys.sensitivity",
     "SqueezeLocus": "regrasp.planning.surveys.squeeze_locus",
     "StraightPath": "regrasp.plans.straight",
+    "surface_map": "regrasp.planning.placement.space.surface_map",
+    "SurfaceMap": "regrasp.planning.placement.space.surface_map",
     "sweep": "regrasp.studies.sweeping",
     "TimeScaling": "regrasp.plans.timing",
     "Transition": "regrasp.plans.transition",
@@ -214,6 +217,7 @@ __all__ = [
     "SolverUnavailable",
     "SqueezeLocus",
     "StraightPath",
+    "SurfaceMap",
     "TimeScaling",
     "Tolerances",
     "Transition",
@@ -252,6 +256,7 @@ __all__ = [
     "read_study",
     "regrasps_on_outline",
     "sensitivity",
+    "surface_map",
     "sweep",
     "tolerances",
     "torque_limits",

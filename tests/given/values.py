@@ -107,6 +107,11 @@ def on_faces() -> rg.FaceRegions:
     return rg.contact_regions(box, rg.Grasp(box.contact_at(p, friction=0.5) for p in places), WEIGHT)
 
 
+@cache
+def mapped() -> rg.SurfaceMap:
+    return rg.surface_map(rg.Mesh.box(0.4, 0.3, 0.5), 3, WEIGHT, friction=0.5, objective="peak", count=16)
+
+
 def on_outline(friction: float) -> Any:
     """Fingers on two sides of a rectangle, which hold its weight where friction is enough."""
     start, goal = (
@@ -177,6 +182,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "ContactRegions": lambda: rg.contact_regions(SQUARE_OUTLINE, placed().grasp, WEIGHT_IN_PLANE),
     "PlacementMap": lambda: rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, count=8),
     "FaceRegions": on_faces,
+    "SurfaceMap": mapped,
     "OtherGrasp": lambda: placed().others[0],
     "PlacementProof": lambda: placed().certificate,
     "LoadSet": lambda: rg.LoadSet.ball(LOAD, force=1.0, torque=0.1),

@@ -25,7 +25,7 @@ RECORDS = {
     "BatchStates", "BatchTolerances", "Bottleneck", "ChosenState", "HeldDirections", "HeldSphere",
     "MarginCurve", "Margins",
     "PyramidLosses", "RegraspCut", "RegraspObstacle", "RegraspPlan", "SampledTransition", "Sensitivity",
-    "ContactRegions", "FaceRegions", "OutlineCut", "OutlineRegrasps", "PlacementMap",
+    "ContactRegions", "FaceRegions", "OutlineCut", "OutlineRegrasps", "PlacementMap", "SurfaceMap",
     "Closure", "WrenchBall", "Measure", "Quality", "LeastFriction", "LargestLoad",
     "HeldCentres", "Tolerances", "Transition", "TurningTransition", "Verification", "StraightPath",
     "SampledPath", "TurningPath",

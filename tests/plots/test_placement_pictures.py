@@ -5,7 +5,7 @@ import pytest
 
 import regrasp as rg
 from regrasp import plots
-from values import SQUARE_OUTLINE, WEIGHT_IN_PLANE, on_faces, placed
+from values import SQUARE_OUTLINE, WEIGHT_IN_PLANE, mapped, on_faces, placed
 
 pytestmark = pytest.mark.contract
 
@@ -69,3 +69,11 @@ def test_regions_on_faces_are_drawn_where_they_are() -> None:
     ids = [artist.get_gid() for artist in ax.collections]
     assert sum(str(name).startswith("region ") for name in ids) == 3
     assert " m at once" in ax.get_legend().get_texts()[0].get_text()
+
+
+def test_the_map_of_a_mesh_has_the_colours_of_the_nearest_points() -> None:
+    found = mapped()
+    ax = plots.plot_surface_map(found)
+    drawn = {artist.get_gid(): artist for artist in ax.collections}
+    assert len(np.unique(drawn["values"].get_facecolor(), axis=0)) > 2
+    assert ax.figure.axes[1].get_ylabel() == "peak [N]"

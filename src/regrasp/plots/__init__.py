@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from regrasp.plots.pages.run_film import animate_execution
     from regrasp.plots.placement.chosen import plot_chosen_grasp, plot_contact_regions
     from regrasp.plots.placement.maps import plot_placement_map, plot_placement_outline
+    from regrasp.plots.placement.surface_maps import plot_surface_map
     from regrasp.plots.regrasps.hold_arcs import plot_hold_arcs, plot_hold_margins
     from regrasp.plots.regrasps.hold_map import plot_hold_map
     from regrasp.plots.regrasps.outline_map import plot_outline_map
@@ -105,6 +106,7 @@ __all__ = [
     "plot_sensitivity",
     "plot_slip",
     "plot_state",
+    "plot_surface_map",
     "plot_tolerances",
     "plot_trade_off",
     "plot_transition",
@@ -163,6 +165,7 @@ _WHERE = {
     "plot_sensitivity": "surveys.sensitivity",
     "plot_slip": "over_time.execution",
     "plot_state": "grasps.state",
+    "plot_surface_map": "placement.surface_maps",
     "plot_tolerances": "surveys.tolerances",
     "plot_trade_off": "regrasps.trade_off",
     "plot_transition": "grasps.state",

@@ -1,7 +1,7 @@
 """Grasps that are chosen on a shape."""
 
 import regrasp as rg
-from values import SQUARE_OUTLINE, WEIGHT_IN_PLANE, placed
+from values import SQUARE_OUTLINE, WEIGHT, WEIGHT_IN_PLANE, mapped, placed
 from wrong_calls.row import Row
 
 
@@ -38,6 +38,11 @@ def rows() -> dict[str, Row]:
                 "free": "count",
                 "length": "positive",
             },
+        ),
+        "surface_map": Row(
+            rg.surface_map,
+            {"shape": mapped().shape, "fingers": 3, "load": WEIGHT, "friction": 0.5, "count": 8},
+            {"shape": "value", "fingers": "count"},
         ),
         "contact_regions": Row(
             rg.contact_regions,

@@ -155,3 +155,21 @@ def test_where_none_holds_the_proof_says_so() -> None:
 def test_what_is_refused(given: dict[str, Any], words: str) -> None:
     call: dict[str, Any] = {"shape": BOX, "fingers": 3, "load": rg.Wrench([0, 0, -1]), "friction": 0.5}
     assert words in str(refusal(lambda: rg.choose_grasp(**(call | given))))
+
+
+def test_a_map_is_the_best_of_all_triples_through_each_point() -> None:
+    found = rg.surface_map(BOX, 3, LOADS, friction=0.5, objective="peak", count=9)
+    contacts = [
+        rg.Contact(p, n, 0.5, name=str(i))
+        for i, (p, n) in enumerate(zip(found.points, found.normals, strict=True))
+    ]
+    best = np.full(9, np.inf)
+    for three in combinations(range(9), 3):
+        try:
+            grasp = rg.Grasp(contacts[i] for i in three)
+            value = max(rg.choose_state(grasp, w, "peak").value for w in LOADS_OF)
+        except rg.Infeasible:
+            continue
+        best[list(three)] = np.minimum(best[list(three)], value)
+    assert found.best == pytest.approx(np.where(best < np.inf, best, np.nan), rel=0.011, nan_ok=True)
+    assert found.share > 0

@@ -89,6 +89,10 @@ class SurfaceSearch:
             if self.best == inf:
                 raise
 
+    def keep_one_on(self, patch: int) -> None:
+        """One finger is on a patch; to be said before the search."""
+        self._boxes[0][0, 0] = patch
+
     def accept(self, spots: Array) -> None:
         """Take a placement (k, 6) [m] for found, where it is better."""
         scaled = np.array(spots / [self.size, self.size, self.size, 1, 1, 1])

@@ -1,6 +1,6 @@
 """Random choices within regions on faces, and within wider ones: what holds the loads, by cvxpy's cones.
 
-    python benchmarks/places/missed_places.py [--count 100000]
+    python benchmarks/placing/missed_places.py [--count 100000] [--only box]
 
 Each placement of fingers, anywhere within the regions, is asked once whether forces within cones and limits
 balance all loads: first by mixing the corners' forces and repairing what is left, which shows that it holds;
@@ -80,10 +80,13 @@ def main() -> None:
     """Count, and print a line for each case and factor."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--count", type=int, default=100_000)
-    count = parser.parse_args().count
+    parser.add_argument("--only", default="", help="cases whose names have this")
+    given = parser.parse_args()
+    count = given.count
     rng = np.random.default_rng(1)
-    for name, (mesh, fingers, given, friction) in CASES.items():
-        loads = [rg.Wrench(f, t) for f, t in given]
+    for name in (case for case in CASES if given.only in case):
+        mesh, fingers, pushes, friction = CASES[name]
+        loads = [rg.Wrench(f, t) for f, t in pushes]
         asked = loads[0] if len(loads) == 1 else rg.LoadSet.hull(loads)
         chosen = rg.choose_grasp(mesh, fingers, asked, friction=friction, objective="peak", tolerance=0.05)
         start = perf_counter()
