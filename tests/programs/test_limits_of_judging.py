@@ -168,11 +168,13 @@ def test_numbers_on_their_way_to_a_proof_are_one(status) -> None:
     none = program([[0.0]], [0.0], [[1.0], [-1.0]], [1, -2], nonnegative(2))
     found = judged(claim(none, status, [1.5], [1e9, 1e9 * (1 + 1e-3)]), 1e-7, nobody)
     assert found.status is Status.INFEASIBLE
+    assert found.value.shape == none.q.shape
     assert np.isnan(found.value).all()
     assert found.infeasibility_residual <= PROVEN
     falls = program(np.zeros((2, 2)), [-1, 0], [[-1, 1], [-1, 0]], [0, 0], nonnegative(2))
     found = judged(claim(falls, status, [1e9, 1e9 * (1 + 1e-3)], [1, 1]), 1e-7, nobody)
     assert found.status is Status.UNBOUNDED
+    assert found.duals.shape == falls.b.shape
     assert np.isnan(found.duals).all()
     assert found.unboundedness_residual <= PROVEN
 
