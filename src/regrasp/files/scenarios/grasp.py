@@ -109,7 +109,11 @@ class GraspScenario(Strict):
     task: GraspTask
 
     def chosen(self, progress: Progress | None = None) -> ChosenGrasp:
-        """The grasp that is asked for; ``progress`` as of ``choose_grasp``."""
+        """The grasp that is asked for.
+
+        Args:
+            progress: called with bound and best value as the search goes on, as of ``choose_grasp``.
+        """
         task, disturbance = self.task, self.load.disturbance
         return choose_grasp(
             self.outline.value,

@@ -63,7 +63,11 @@ class SpaceGraspScenario(Strict):
     task: SpaceGraspTask
 
     def chosen(self, progress: Progress | None = None) -> ChosenGrasp:
-        """The grasp that is asked for; ``progress`` as of ``choose_grasp``."""
+        """The grasp that is asked for.
+
+        Args:
+            progress: called with bound and best value as the search goes on, as of ``choose_grasp``.
+        """
         task = self.task
         return choose_grasp(
             self.object.value,

@@ -44,8 +44,9 @@ class FaceRegions(ArrayValue):
         max_force: no force need be larger [N].
         loads: (l, 6) that are held, and all between [N, N m].
         moments: (l, k) about each finger's normal, which corners hold on top of a load, both ways [N m].
-        tilts: (l, k, 3) along the face and ``focus`` (l, k) [1/m]: forces are nearly along the normal, plus
-            the tilt, plus the focus times the way from the finger's place.
+        tilts: (l, k, 3) along the face: forces are nearly along the normal, plus the tilt, plus the focus
+            times the way from the finger's place.
+        focus: (l, k) of the same [1/m].
         forces: (l, c, s, k, 3) at all combinations of corners, under each load with all signs of moments:
             they prove the regions [N].
     """
