@@ -173,6 +173,21 @@ def test_given_ends_that_do_not_withstand_the_disturbance_are_refused(which) -> 
         rg.plan_rotation(ends[0], 0.3, end=ends[1], **chosen)
 
 
+@pytest.mark.parametrize(("share", "held"), [(1.0, False), (0.985, True)])
+def test_limits_under_deviations_are_judged_between_the_states_of_a_turn(share, held) -> None:
+    """Both states withstand: between them forces grow by 1 / cos(0.15), 1.01."""
+    chosen = {"disturbance": AIR, "max_force": 60.0 * share}
+    loads = [WEIGHT, turned_load(WEIGHT, 0.3)]
+    grasp = pair(A={"max_force": 60.0}, B={"max_force": 60.0})
+    ends = [rg.GraspState(grasp, x, rg.choose_state(pair(), x, "force", **chosen).forces) for x in loads]
+    path = TurningPath([0.0, 0.3], [state.forces for state in ends])
+    plan = Transition(*ends, rg.TimeScaling.spline(1.0), Record(0.0), path=path)
+    assert rg.verify(plan).ok
+    verdict = rg.verify(plan, disturbance=AIR)
+    assert verdict.ok == held
+    assert all("between 0 and 0.3 rad: force of" in words for words in verdict.violations)
+
+
 def test_options_of_states_are_checked_where_none_is_chosen() -> None:
     plan = rg.plan_rotation(pair(), 0.3, load=WEIGHT)
     assert plan.record.least_normals == ()

@@ -119,6 +119,7 @@ def within_limits(chooser: Chooser, before: Knot, after: Knot) -> None:
             f"{who} would break its linear limits by {-spare.min():.4g} between turns of {a:.6g} and {b:.6g} "
             f"rad; choose states with less force, or loosen them"
         )
+    _refuse_what_gives_between(chooser, before, after)
     peaks = path.peaks(ends[0], ends[1])
     for contact, peak in zip(chooser.grasp, peaks.tolist(), strict=True):
         if contact.max_force is not None and peak > contact.max_force:
@@ -126,6 +127,33 @@ def within_limits(chooser: Chooser, before: Knot, after: Knot) -> None:
                 f"{contact.name} would need {peak:.6g} between turns of {a:.6g} and {b:.6g} rad, above its "
                 f"limit {contact.max_force:g}; choose states with less force, or allow more"
             )
+
+
+def _refuse_what_gives_between(chooser: Chooser, before: Knot, after: Knot) -> None:
+    """Raise ``Infeasible`` where forces between two states and a deviation exceed a limit.
+
+    The arc lies in the triangle of both states and m = (f + g) / (1 + cos Delta), where its tangents meet, and
+    what withstands a set is convex. So do limits with the part cos(Delta / 2) of them at both states, by which
+    forces grow at most. Cones need neither: both states keep to them.
+    """
+    criteria, grasp = chooser.criteria, chooser.grasp
+    demand = criteria.demand(grasp) if criteria.withstands else None
+    if demand is None:
+        return
+    (a, f), (b, g) = before, after
+    limits = np.array(criteria.limits(grasp))
+    spare = demand.spare(grasp.cones.measured((f + g) / (1 + cos(b - a))), limits)
+    if spare >= 0:
+        return
+    less = eased(grasp, cos((b - a) / 2) * (1 - 1e-9))
+    by_part = replace(criteria, max_force=None).demand(less)
+    assert by_part is not None
+    part = np.array(replace(criteria, max_force=None).limits(less))
+    if min(by_part.spare(grasp.cones.measured(forces), part) for forces in (f, g)) < 0:
+        raise Infeasible(
+            f"some finger would miss its limit under the disturbance by {-spare:.4g} N between turns of {a:.6g} "
+            f"and {b:.6g} rad; choose states with less force, or allow more"
+        )
 
 
 def middle(chooser: Chooser, before: Knot, after: Knot) -> Array:

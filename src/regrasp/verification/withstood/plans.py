@@ -4,8 +4,9 @@ Forces change by R d, R = -K G' (G K G')^-1 with the stiffnesses K of the finger
 or arrives, or carries none at all, is force-controlled. The forces f with f + R d inside cones and limits for
 all d are a convex set, so that both ends prove a straight path, and instants one that is linear between them.
 In a turn forces are a f + b g with a, b >= 0 and a + b >= 1: a f + b g + R d = a (f + R d') + b (g + R d')
-with d' = d / (a + b), which is a member where zero is one; limits then need the part 1 / (a + b) >= cos(Delta
-/ 2) of them. States at which all fingers at work may answer, ends, withstand that, too.
+with d' = d / (a + b), which is a member where zero is one. Limits are kept where f, g and m = (f + g) / (1 +
+cos Delta) keep them, in whose triangle the arc lies; or where f and g keep the part cos(Delta / 2) of them,
+since 1 / (a + b) is no less. States at which all fingers at work may answer, ends, withstand that, too.
 
 Contacts off by r' - r change the balance by (G' - G) f, and forces by R' of that: linear in f again.
 """
@@ -39,6 +40,10 @@ from regrasp.verification.withstood.matrices import (
     times,
     transposed,
 )
+
+_WHOLE = Fraction(1)
+_ROUNDING = Fraction(1, 10**12)
+"""Of cosines in doubles: more than they are off."""
 
 
 @dataclass(frozen=True)
@@ -177,38 +182,52 @@ class _Judge:
         deciding = deciding_forces(plan)
         idle = [i for i in range(len(names)) if not deciding[:, i].any()]
         moving = tuple(sorted({*leaving, *arriving, *idle}))
-        for label, forces, share in self._states():
-            yield from self._state(label, forces, moving, share)
+        for label, forces in self._states():
+            yield from self._state(label, _stacked(forces), moving)
+        yield from self._arcs(moving)
         if moving:
             for label, state, away in (("start", plan.start, arriving), ("end", plan.end, leaving)):
                 own = tuple(sorted({*away, *idle}))
                 if own != moving:
                     yield from self._state(
-                        f"{label}, all fingers at work answering", state.forces, own, Fraction(1)
+                        f"{label}, all fingers at work answering", _stacked(state.forces), own
                     )
 
-    def _states(self) -> Iterator[tuple[str, Array, Fraction]]:
-        """Labels, forces and the share of limits that may be used, of all that decide."""
-        plan, one = self.plan, Fraction(1)
+    def _states(self) -> Iterator[tuple[str, Array]]:
+        """Labels and forces of all states that decide."""
+        plan = self.plan
         if plan.turn is not None:
             angles = plan.turn.angles.tolist()
-            widest = max(abs(b - a) for a, b in pairwise(angles))
-            share = one if plan.turn.middles is not None else Fraction(cos(widest / 2) * (1 - 1e-12))
             for angle, forces in zip(angles, plan.turn.forces, strict=True):
-                yield f"angle {angle:.6g} rad", forces, share
+                yield f"angle {angle:.6g} rad", forces
             for k, forces in enumerate(() if plan.turn.middles is None else plan.turn.middles):
-                yield f"between {angles[k]:.6g} and {angles[k + 1]:.6g} rad", forces, one
+                yield f"between {angles[k]:.6g} and {angles[k + 1]:.6g} rad", forces
         elif plan.course is not None:
             for k, forces in enumerate(plan.course.forces):
-                yield f"instant {k}", forces, one
+                yield f"instant {k}", forces
         else:
-            yield "start", plan.start.forces, one
-            yield "end", plan.end.forces, one
+            yield "start", plan.start.forces
+            yield "end", plan.end.forces
+
+    def _arcs(self, controlled: tuple[int, ...]) -> Iterator[str]:
+        """Limits between the angles of a turn: by where tangents meet, or by a part of them at both angles."""
+        turn = self.plan.turn
+        if turn is None or turn.middles is not None:
+            return
+        states = [_stacked(forces) for forces in turn.forces]
+        for (a, f), (b, g) in pairwise(zip(turn.angles.tolist(), states, strict=True)):
+            length = max(1 + Fraction(cos(b - a)) - _ROUNDING, _ROUNDING)
+            met = [(x + y) / length for x, y in zip(f, g, strict=True)]
+            found = list(self._state(f"between {a:.6g} and {b:.6g} rad", met, controlled))
+            part = max(Fraction(cos((b - a) / 2)) - _ROUNDING, Fraction(0))
+            if found and any(any(self._state("", forces, controlled, part)) for forces in (f, g)):
+                yield from found
 
     def _state(
-        self, label: str, forces: Array, controlled: tuple[int, ...], share: Fraction
+        self, label: str, stacked: Vector, controlled: tuple[int, ...], share: Fraction = _WHOLE
     ) -> Iterator[str]:
-        answer, stacked = self._answer(controlled), exact(forces.ravel().tolist())
+        """share: the part of limits that may be used."""
+        answer = self._answer(controlled)
         if self.off is not None:
             stacked = _added(stacked, answer, times(self.off, stacked))
         yield from self._contacts(label, stacked, answer, (), share)
@@ -270,6 +289,10 @@ class _Judge:
             answer = coarse(product(pushed, held))
         self.answers[controlled] = answer
         return answer
+
+
+def _stacked(forces: Array) -> Vector:
+    return exact(forces.ravel().tolist())
 
 
 def _added(forces: Vector, answer: Matrix, wrench: Vector) -> Vector:
