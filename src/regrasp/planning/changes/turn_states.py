@@ -132,9 +132,9 @@ def within_limits(chooser: Chooser, before: Knot, after: Knot) -> None:
 def _refuse_what_gives_between(chooser: Chooser, before: Knot, after: Knot) -> None:
     """Raise ``Infeasible`` where forces between two states and a deviation exceed a limit.
 
-    The arc lies in the triangle of both states and m = (f + g) / (1 + cos Delta), where its tangents meet, and
-    what withstands a set is convex. So do limits with the part cos(Delta / 2) of them at both states, by which
-    forces grow at most. Cones need neither: both states keep to them.
+    The arc lies in the triangle of both states and m = (f + g) / (1 + cos Delta), where its tangents meet,
+    and what withstands a set is convex. So do limits with the part cos(Delta / 2) of them at both states, by
+    which forces grow at most. Cones need neither: both states keep to them.
     """
     criteria, grasp = chooser.criteria, chooser.grasp
     demand = criteria.demand(grasp) if criteria.withstands else None
@@ -149,10 +149,10 @@ def _refuse_what_gives_between(chooser: Chooser, before: Knot, after: Knot) -> N
     by_part = replace(criteria, max_force=None).demand(less)
     assert by_part is not None
     part = np.array(replace(criteria, max_force=None).limits(less))
-    if min(by_part.spare(grasp.cones.measured(forces), part) for forces in (f, g)) < 0:
+    if min(by_part.spare(grasp.cones.measured(x), part) for x in (f, g)) < 0:
         raise Infeasible(
-            f"some finger would miss its limit under the disturbance by {-spare:.4g} N between turns of {a:.6g} "
-            f"and {b:.6g} rad; choose states with less force, or allow more"
+            f"some finger would miss its limit under the disturbance by {-spare:.4g} N between turns of "
+            f"{a:.6g} and {b:.6g} rad; choose states with less force, or allow more"
         )
 
 

@@ -210,7 +210,7 @@ class _Judge:
             yield "end", plan.end.forces
 
     def _arcs(self, controlled: tuple[int, ...]) -> Iterator[str]:
-        """Limits between the angles of a turn: by where tangents meet, or by a part of them at both angles."""
+        """Limits between the angles of a turn: by where tangents meet, or by a part of them at both."""
         turn = self.plan.turn
         if turn is None or turn.middles is not None:
             return
