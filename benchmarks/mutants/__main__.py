@@ -34,10 +34,11 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         ["verification/**/test_[!c]*.py", "verification/**/test_co*.py", "**/test_verification.py"],
         0.95,
     ),
-    "proofs": (
-        ["verification/*/*.py"],
+    "placed": (
+        ["verification/placed/**/*.py"],
         [
-            "verification/**/test_*.py",
+            "verification/proofs/test_*.py",
+            "verification/test_placement_proofs.py",
             *(
                 f"planning/**/test_{name}.py"
                 for name in (
@@ -45,18 +46,41 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
                     "constraints",
                     "curves",
                     "contact_regions",
-                    "wrench_ball_placement",
                     "grasps_on_meshes",
-                    "regrasps_on_outline",
-                    "turns_and_forbidden_arcs",
-                    "tolerances",
-                    "regrasps_that_withstand",
-                    "force_limits_on_outline",
+                    "regions_on_*",
+                    "w*_placement",
                 )
             ),
+        ],
+        0.95,
+    ),
+    "refusals": (
+        ["verification/refusals/*.py"],
+        [
+            "verification/**/test_cuts*.py",
+            "verification/by_hand/test_limited_work*.py",
+            "planning/anywhere/test_*.py",
+        ],
+        0.95,
+    ),
+    "ways": (
+        ["verification/ways/*.py"],
+        [
+            "verification/by_hand/test_*s_by_hand.py",
+            "verification/motions/test_*.py",
             "files/test_ways_file.py",
             "files/test_motion_files.py",
             "motions/test_*.py",
+        ],
+        0.95,
+    ),
+    "withstood": (
+        ["verification/withstood/*.py"],
+        [
+            "verification/by_hand/test_withstood*.py",
+            "verification/test_withstood_plans.py",
+            "planning/**/test_tolerances.py",
+            "planning/**/test_regrasps_that_withstand.py",
         ],
         0.95,
     ),

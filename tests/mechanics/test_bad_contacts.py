@@ -59,6 +59,18 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         rg.InvalidInput,
         "contact: friction must be a number, got '0.3'",
     ),
+    "Contact: moved": (
+        lambda: P1.changed(position=[0, 0]),
+        rg.InvalidInput,
+        "friction, max_force, torsion, limits and name of a contact can be changed, got position; "
+        "make another Contact",
+    ),
+    "Contact: changed in a list": (
+        lambda: rg.Grasp(c.changed(friction=0.5, normal=[0, 1]) for c in GRASP),
+        rg.InvalidInput,
+        "friction, max_force, torsion, limits and name of a contact can be changed, got normal; "
+        "make another Contact",
+    ),
     "Contact: infinite limit": (
         lambda: rg.Contact([0, 0], [1, 0], 0.3, max_force=inf),
         rg.InvalidInput,
@@ -98,6 +110,16 @@ CALLS: dict[str, tuple[Call, type[Exception], str | re.Pattern[str]]] = {
         lambda: rg.Grasp([]),
         rg.InvalidInput,
         "a grasp needs at least one contact, got none",
+    ),
+    "Grasp: no list": (
+        lambda: rg.Grasp(3),
+        rg.InvalidInput,
+        "contacts of a grasp must be a list, got 3",
+    ),
+    "Grasp: a generator's own mistake": (
+        lambda: rg.Grasp(c.named() for c in GRASP),
+        TypeError,
+        re.compile(r"Contact\.named\(\) missing 1 required positional argument: .*"),
     ),
     "Grasp: of points": (
         lambda: rg.Grasp([[0, 0], [1, 0]]),

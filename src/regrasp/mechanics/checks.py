@@ -171,9 +171,10 @@ def items(value: Any, what: str) -> tuple[Any, ...]:
     try:
         if isinstance(value, (str, bytes, type)):
             raise TypeError
-        return tuple(value)
+        given = iter(value)
     except TypeError:
         raise InvalidInput(f"{what} must be a list, got {shown(value)}") from None
+    return tuple(given)  # a TypeError of what makes the entries is the caller's own
 
 
 def function(value: Any, what: str, kind: str, arguments: int = 1) -> None:

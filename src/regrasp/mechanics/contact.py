@@ -19,6 +19,7 @@ from regrasp.mechanics.value import ArrayValue, numbers
 # A normal whose length is this near to 1 is taken as it is, so that one normalised before (whose length is
 # within 3 2^-53 of 1) keeps its every bit.
 _UNIT = 2.0**-51
+_CHANGEABLE = ("friction", "max_force", "torsion", "limits", "name")
 
 MOST = 1e50
 """Positions [m], frictions [-] and torsions [m] up to this, and not below its inverse, may be multiplied."""
@@ -166,9 +167,16 @@ class Contact(ArrayValue):
         Args:
             **fields: ``friction`` [-], ``max_force`` [N], ``torsion`` [m], ``limits`` or ``name``, as of
                 ``Contact``.
+
+        Raises:
+            InvalidInput: For other fields, ``position`` and ``normal`` among them, and as ``Contact`` does.
         """
-        kept = {name: getattr(self, name) for name in ("max_force", "torsion", "limits", "name")} | fields
-        return Contact(self.position, self.normal, kept.pop("friction", self.friction), **kept)
+        if other := [name for name in fields if name not in _CHANGEABLE]:
+            raise InvalidInput(
+                f"friction, max_force, torsion, limits and name of a contact can be changed, got {other[0]}; "
+                "make another Contact"
+            )
+        return Contact(self.position, self.normal, **{k: getattr(self, k) for k in _CHANGEABLE} | fields)
 
     def to_dict(self) -> dict[str, Any]:
         """The contact as plain data, which JSON can hold; ``from_dict`` gives back the equal contact."""
