@@ -15,6 +15,8 @@ is: with w_j = c_j N_j / sum c_j N_j, sum w_j |v_j - p| <= sqrt(sum w_j |v_j - r
 torques over t from -e to e are a convex-valued map of closed graph of [-e, e] into itself, so (Kakutani) one
 t is what the mixture lacks, and it holds the load at p. All bounds are convex in forces, so they hold of
 mixtures: finger by finger, with the torques of those yet to move on top, corners prove all of the regions.
+
+All of it is computed in doubles, with margins for rounding, and the verdict says so.
 """
 
 from itertools import pairwise, product
@@ -92,7 +94,7 @@ def verify_face_regions(regions: FaceRegions) -> Verification:
     """The verdict: that wherever in their polygons the fingers are, they hold the loads."""
     broken = _shapes_wrong(regions)
     if broken:
-        return Verification(tuple(broken), inf, -inf, -inf)
+        return Verification(tuple(broken), inf, -inf, -inf, in_doubles=True)
     for i, patch in enumerate(regions.patches):
         broken += _patch_wrong(regions, i, np.asarray(patch))
     if not 0 <= regions.radius <= float(np.min(regions.radii)) * (1 + _CLOSE):
@@ -118,9 +120,13 @@ def verify_face_regions(regions: FaceRegions) -> Verification:
                 )
     if not residual <= float(RESOLUTION):
         broken.append(f"corners are out of equilibrium by {residual:.3g} of the forces")
-    angle = np.arctan(mu) - np.arctan2(across, along)
-    least = float(angle[size > _ROUNDING * regions.max_force].min(initial=inf))
-    return Verification(tuple(broken), residual, least, slack)
+    used = size > _ROUNDING * regions.max_force
+    with np.errstate(divide="ignore", invalid="ignore"):
+        room = (mu**2 - (across / along) ** 2)[used]
+    least = (np.arctan(mu) - np.arctan2(across, along))[used]
+    return Verification(
+        tuple(broken), residual, float(least.min(initial=inf)), float(room.min(initial=inf)), in_doubles=True
+    )
 
 
 def _shapes_wrong(regions: FaceRegions) -> list[str]:
