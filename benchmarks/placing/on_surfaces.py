@@ -3,13 +3,16 @@
     python benchmarks/placing/on_surfaces.py [--only bracket] [--attacks 100000] [--seconds 10]
 
 Rivals and attacks judge placements by the search's own compiled norm; an attack that seems to beat the bound
-is judged again by a cone program (cvxpy), and counts if that says so, too. The integer program (HiGHS) sees inner pyramids of eight facets.
+is judged again by a cone program (cvxpy), and counts if that says so, too. The integer program (HiGHS) sees
+inner pyramids of eight facets. With --write the rows are kept in benchmarks/results.
 """
 
 import argparse
+import json
 from collections.abc import Callable
 from itertools import combinations
 from math import inf
+from pathlib import Path
 from time import perf_counter
 
 import cvxpy as cp
@@ -30,6 +33,7 @@ CASES = [
     ("bracket, 6 loads", BRACKET, SIX, 0.6, k, o) for k in (3, 4) for o in ("peak", "sum_normal", "effort")
 ]
 CASES += [("box, 3 loads", BOX, THREE, 0.5, 3, o) for o in ("peak", "sum_normal")]
+RESULTS = Path(__file__).parents[1] / "results" / "placement_in_space.json"
 Judge = Callable[[np.ndarray], float]
 
 
@@ -213,7 +217,8 @@ def main() -> None:
     parser.add_argument("--only", default="")
     parser.add_argument("--attacks", type=int, default=100_000)
     parser.add_argument("--seconds", type=float, default=10.0)
-    given = parser.parse_args()
+    parser.add_argument("--write", action="store_true")
+    given, rows = parser.parse_args(), {}
     rg.choose_grasp(BOX, 3, rg.Wrench([0, 0, -1]), friction=0.5, tolerance=0.5)
     for name, mesh, loads, friction, fingers, objective in CASES:
         if given.only not in f"{name}, {fingers} fingers, {objective}":
@@ -241,6 +246,11 @@ def main() -> None:
                 surface, loads, friction, fingers, 20, 3 * given.seconds, objective
             )
         value = chosen.value
+        rows[f"{name}, {fingers} fingers, {objective}"] = {
+            "seconds": took, "value": value, "bound": chosen.bound, "gap": chosen.gap,
+            "boxes": len(chosen.certificate.boxes), "verified": verdict.ok, "verify_seconds": checked,
+            "attacks": given.attacks, "best_attack": best, "below_bound": beaten, "rivals": rivals,
+        }  # fmt: skip
         shown = ", ".join(f"{rival} {found / value - 1:+.1%}" for rival, found in rivals.items())
         print(f"{name}, {fingers} fingers, {objective}: {value:.5g} in {took:.2f} s, gap {chosen.gap:.2%},")
         print(f"  {len(chosen.certificate.boxes)} boxes, verified {verdict.ok} in {checked:.2f} s")
@@ -248,6 +258,8 @@ def main() -> None:
             f"  {given.attacks} attacks: best {best / value - 1:+.2%}, {beaten} below the bound; {shown}",
             flush=True,
         )
+        if given.write:
+            RESULTS.write_text(json.dumps(rows, indent=1) + "\n")
 
 
 if __name__ == "__main__":
