@@ -49,6 +49,8 @@ def test_refusals_at_any_orientation_are_proven(options):
         else "with fingers 5 apart"
     )
     assert str(verdict).count(asked) == 2  # another regrasp may well exist
+    assert " pairs may hold" in verdict.components
+    assert verdict.components in str(verdict)
     assert verdict.crossing == len(proof.reached) * (len(proof.contacts) - len(proof.reached))
 
 

@@ -29,6 +29,8 @@ class Verification(ArrayValue):
             others.
         bound: no placement has a smaller value than this, of a chosen grasp; None of others.
         crossing: pairs of contacts that cross a cut, of which none holds; None of others.
+        components: which pairs of a cut's contacts may hold, and the components that they form, in
+            words; empty for others.
         asked: what every hold of the regrasps that a cut excludes had to keep, of an ``OutlineCut`` at which
             orientations, too; or which part of its outline a proof about places is of, in words; empty for
             nothing.
@@ -47,6 +49,7 @@ class Verification(ArrayValue):
     excluded: int | None = None
     bound: float | None = None
     crossing: int | None = None
+    components: str = ""
     asked: str = ""
     withstood: str = ""
     in_doubles: bool = False
@@ -74,7 +77,8 @@ class Verification(ArrayValue):
             return (
                 f"no regrasp leads from the start to the goal on these contacts{self.asked}, at any "
                 f"orientation: none of {self.crossing} pairs across the cut holds a load{self.asked}, "
-                f"in exact arithmetic\n{_NOT_COVERED.format('contacts elsewhere')}"
+                f"in exact arithmetic\n{self.components}{chr(10) if self.components else ''}"
+                f"{_NOT_COVERED.format('contacts elsewhere')}"
             )
         by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
         how = "double precision, with margins for rounding" if self.in_doubles else "exact arithmetic"

@@ -71,6 +71,25 @@ def test_options_of_a_regrasp_reach_the_plan() -> None:
     assert limited.steps[1].record.choices[0].objective == "force"
     assert limited.steps[1].grasp.max_forces.tolist() == [6.0] * 3
     few = planned(("candidates = 120", "candidates = 40"))
+    named = scenario(("candidates = 120", "candidates = [0.031, 0.052]"))
+    assert named.task.candidates == [0.031, 0.052]
+    outline, given = named.outline.value, (named.start_grasp, named.goal_grasp)
+    task = {
+        "orientations": 24,
+        "goal_orientation": radians(180),
+        "max_turn": radians(90),
+        "min_distance": 0.02,
+    }
+    same = rg.plan_regrasp(
+        outline,
+        *given,
+        rg.Wrench([0, -2]),
+        friction=0.6,
+        candidates=[0.031, 0.052],
+        step_duration=0.5,
+        **task,
+    )
+    assert plan_scenario(named) == same
     assert few.margin <= planned(("candidates = 120", "candidates = 200")).margin + 0.05
 
 
@@ -163,6 +182,9 @@ TASK_KEYS = (
           "place them at different points"]),
         ([(PART, BOX.replace("0.1]", "0.01]")), (START_POINT, "[-0.1, -0.005]")],
          ["start.positions[0]: arc length 0 is at a corner, where no normal is defined"]),
+        ([("candidates = 120", "candidates = []")], ["task.candidates: expected at least 1 entries, got []"]),
+        ([("candidates = 120", 'candidates = [0.1, "b"]')],
+         ["task.candidates[1]: expected a number, got 'b'"]),
         ([("goal_degrees = 180.0", "goal_degrees = 50.0")],
          ["task: goal_degrees must be a multiple of 360 / orientations = 15, got 50"]),
         ([("orientations = 24", "orientations = 0\nangles = 3"), ("max_turn_degrees = 90.0",

@@ -4,6 +4,7 @@ import pytest
 
 import regrasp as rg
 from regrasp.outline import parts
+from regrasp.outline.polygon import PolygonBoundary
 
 pytestmark = pytest.mark.laws
 
@@ -63,6 +64,9 @@ def test_a_goal_on_another_component_says_at_which_friction_they_meet(part, fric
     assert not set(obstacle.start) & set(obstacle.goal) - {-1}
     assert obstacle.max_force is None
     needed = obstacle.friction
+    elsewhere = "; whether fingers elsewhere on this outline could, regrasps_on_outline decides"
+    polygon = isinstance(outline.boundary, PolygonBoundary) and not outline.holes
+    assert str(error.value).endswith(elsewhere) == polygon
     assert f"there would be one with friction {needed:g} instead of {friction:g}" in str(error.value)
     assert rg.verify(regrasp(needed)).ok
     with pytest.raises(rg.Infeasible):

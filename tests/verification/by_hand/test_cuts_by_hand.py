@@ -101,6 +101,11 @@ def test_starts_and_goals_are_on_their_sides() -> None:
     assert "contacts 3 and 4 of the goal may hold and are not both on the other side" in said(full)
     assert "of the start" not in said(full)
     assert rg.verify(full).crossing == 0
+    words = "15 of 15 pairs may hold, in 1 component of 6 contacts; those of the start in one of 6, "
+    assert rg.verify(full).components == f"{words}those of the goal in one of 6"
+    none = "0 of 15 pairs may hold; no two fingers of the start do, no two fingers of the goal do"
+    assert rg.verify(cut([*LEFT, *LEFT])).components == none
+    assert rg.verify(cut([*LEFT, *RIGHT])).components.startswith("9 of 15 pairs")
     assert rg.verify(cut(both)).crossing == 9
     assert "same contacts" in said(cut(both, goal=(2, 1, 0)))
     for wrong in ({"start": (0, 1, 1)}, {"goal": (3, 4, 4)}, {"start": (0, 1, 6)}, {"goal": (-1, 4, 5)},

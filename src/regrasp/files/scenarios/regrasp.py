@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationInfo, model_validator
 
 from regrasp.errors import InvalidInput
 from regrasp.files.scenarios.disturbance import Disturbance
@@ -21,6 +21,11 @@ from regrasp.planning.holds.sequences import MAX_TURN
 from regrasp.planning.regrasps.options import MOST_CANDIDATES
 
 Ring = Annotated[list[Vector], Field(min_length=3)]
+Candidates = Annotated[
+    Annotated[int, Tag("number"), Field(ge=1, le=MOST_CANDIDATES)]
+    | Annotated[list[float], Tag("list"), Field(min_length=1, max_length=MOST_CANDIDATES)],
+    Discriminator(lambda value: "list" if isinstance(value, list) else "number"),
+]
 
 _SHAPES = ("vertices", "points", "ellipse", "part", "file")
 _OF_FILES = ("scale", "unit", "layers", "tolerance")
@@ -140,8 +145,9 @@ class RegraspTask(CommonTask):
         0.0,
         description="the object's angle in the end, counter-clockwise; one of the orientations if given",
     )
-    candidates: int = Field(
-        120, ge=1, le=MOST_CANDIDATES, description="points on the outline where fingers may touch"
+    candidates: Candidates = Field(
+        120,
+        description="points on the outline where fingers may touch: how many, or a list of arc lengths [m]",
     )
     max_turn_degrees: Annotated[float, Field(gt=0, lt=180)] | None = Field(
         None, description=f"largest turn in one step; {np.degrees(MAX_TURN):.4g} if absent"

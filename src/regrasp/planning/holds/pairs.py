@@ -94,8 +94,8 @@ class HoldGraph(ArrayValue):
             raise InvalidInput(f"load must be a Wrench, got {shown(self.load)}; write Wrench(force=[...])")
         if self.load.dimension != 2 or self.load.torque.any() or not self.load.force.any():
             raise InvalidInput(
-                f"the load of a hold graph is a force through the centre of mass, not zero, "
-                f"got {shown(self.load)}"
+                f"expected a planar force through the centre of mass, which is not zero, as the load of "
+                f"regrasps and hold graphs, got {shown(self.load)}; single changes and turns take a torque"
             )
         if self.keep is not None:
             function(self.keep, "keep", "a function of first points, second points and the angle", 3)

@@ -10,6 +10,8 @@ from regrasp.errors import Infeasible, RegraspError, SolverFailed
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.holds.graphs import AnyGraph, Parts, holding, holds_within
 from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.cut import cut_of
@@ -82,12 +84,24 @@ def why_not(problem: Asked) -> Infeasible:
         cut=cut,
     )
     return Infeasible(
-        f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}{_proven(cut)}", obstacle
+        f"{_reason(problem, parts[0], parts[1])}; {_remedy(problem, obstacle)}{_proven(cut)}"
+        f"{_elsewhere(problem) if cut is None else ''}",
+        obstacle,
     )
 
 
 def _proven(cut: RegraspCut | None) -> str:
     return "" if cut is None else "; none at any orientation is proven, by the cut of the certificate"
+
+
+def _elsewhere(problem: Asked) -> str:
+    """Where to ask about all places of an outline, if they and the options are what can be asked about."""
+    shape = problem.outline
+    if not isinstance(shape, Outline) or not isinstance(shape.boundary, PolygonBoundary) or shape.holes:
+        return ""
+    if problem.arcs is not None or problem.keep is not None or problem.min_distance or problem.judges_holds:
+        return ""
+    return "; whether fingers elsewhere on this outline could, regrasps_on_outline decides"
 
 
 def _components(graph: AnyGraph, places: tuple[int, ...]) -> tuple[int, ...]:

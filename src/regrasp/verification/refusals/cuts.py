@@ -21,6 +21,9 @@ _TANGENT = tuple(Fraction(a, b) for a, b in ((1, 1), (1, 3), (2, 15), (17, 315),
 
 _DOUBLINGS, _FINE = 7, 2**80
 
+# Components of more contacts than this are not listed: it would take longer than the proof.
+_MOST_LISTED = 500
+
 
 class Cut(Protocol):
     """What ``verify`` needs to know of a cut, whoever made it."""
@@ -70,7 +73,41 @@ def verify_cut(cut: Cut) -> Verification:
             broken.append(f"contacts {i} and {j} of the goal may hold and are not both on the other side")
     crossing = [(i, j) for i in sorted(inside) for j in outside]
     broken += [f"contacts {i} and {j} may hold across the cut" for i, j in crossing if holds.may(i, j)]
-    return Verification(tuple(broken), 0.0, inf, inf, crossing=len(crossing), asked=_asked(cut))
+    return Verification(
+        tuple(broken),
+        0.0,
+        inf,
+        inf,
+        crossing=len(crossing),
+        components=_components(cut, holds),
+        asked=_asked(cut),
+    )
+
+
+def _components(cut: Cut, holds: "_Holds") -> str:
+    """Which pairs may hold, and the components that they form, in words; empty for very many contacts."""
+    count = len(cut.contacts)
+    if count > _MOST_LISTED:
+        return ""
+    pairs = [(i, j) for i, j in combinations(range(count), 2) if holds.may(i, j)]
+    first = list(range(count))  # contact of its component
+    for i, j in pairs:
+        one, other = first[i], first[j]
+        if one != other:
+            first = [min(one, other) if k in (one, other) else k for k in first]
+    sizes = sorted((n for n in map(first.count, set(first)) if n > 1), reverse=True)
+    of = f", in {len(sizes)} component{'s' * (len(sizes) > 1)} of {_listed(sizes)} contacts" if sizes else ""
+    ends = []
+    for what, places in (("start", cut.start), ("goal", cut.goal)):
+        held = {first[i] for i, j in combinations(places, 2) if holds.may(i, j)}
+        where = " and ".join(f"one of {first.count(k)}" for k in sorted(held))
+        ends.append(f"those of the {what} in {where}" if held else f"no two fingers of the {what} do")
+    return f"{len(pairs)} of {count * (count - 1) // 2} pairs may hold{of}; {', '.join(ends)}"
+
+
+def _listed(sizes: list[int]) -> str:
+    shown = ", ".join(map(str, sizes[:4]))
+    return shown if len(sizes) <= 4 else f"{shown} and fewer"
 
 
 def _asked(cut: Cut) -> str:
@@ -99,6 +136,8 @@ class _Holds:
                 return False
         elif one == other and one != 0:
             return False
+        if not self.apart:
+            return True
         off = [a - b for a, b in zip(self.points[i], self.points[j], strict=True)]
         return off[0] ** 2 + off[1] ** 2 >= self.apart
 

@@ -92,7 +92,13 @@ class SpatialSetting:
         if not isinstance(count, int):
             places = np.unique(np.asarray(count), axis=0) + self._mesh.centre_of_mass
             mu, most = problem.friction, problem.max_force
-            return [self._mesh.contact_at(point, friction=mu, max_force=most) for point in places]
+            try:
+                return [self._mesh.contact_at(point, friction=mu, max_force=most) for point in places]
+            except InvalidInput as error:
+                raise InvalidInput(
+                    f"candidates are relative to the centre of mass, such as mesh.sample(30) - "
+                    f"mesh.centre_of_mass: {error}"
+                ) from None
         return list(
             self._mesh.contacts(
                 count, friction=problem.friction, max_force=problem.max_force, seed=problem.seed
