@@ -43,7 +43,7 @@ def plot_hold_map(
         ax: the axes to draw on; new ones if not given.
         plan: its holds of two fingers, drawn as a path from the square to the disc. An exchange is a line
             along one axis: the other finger stays. It moves through the air, so what the line crosses means
-            nothing. In space a hold of three fingers is three discs with its number.
+            nothing. In space a hold of three fingers is three joined discs, one a pair, and a number aside.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     if plan is not None:
@@ -91,7 +91,7 @@ def _draw_margins(ax: Axes, edges: Array, values: Array) -> None:
 
 
 def _in_space(graph: TripleGraph, o: int | None, ax: Axes | None, plan: RegraspPlan | None) -> Axes:
-    """Contacts by their numbers; a plan's hold is the three cells of its pairs below the diagonal."""
+    """Contacts by their numbers; a plan's hold is the three cells of its pairs below the diagonal, joined."""
     count, ways = len(graph.contacts), len(graph.loads)
     ax = axes_or_new(ax, height=3.3, bar=True)
     _draw_margins(ax, 0.5 + np.arange(count + 1.0), widest_of_pairs(graph, o))
@@ -101,12 +101,12 @@ def _in_space(graph: TripleGraph, o: int | None, ax: Axes | None, plan: RegraspP
         if not set(names) <= set(numbers):
             raise InvalidInput(f"the plan's contacts {shown(names)} are not those of the graph")
         i, j, m = sorted(numbers[name] for name in names)
-        corners = [(j, i), (m, i), (m, j)]
-        for at in corners:
-            seen.setdefault(at, []).append(str(k))
-        ax.plot(*zip(*corners, strict=True), "o", color=PATH, markersize=4, zorder=5, gid=f"hold {k}")
-    for cell, words in seen.items():
-        note(ax, ", ".join(words), cell, (1, 1), gap=4, color=INK)
+        seen.setdefault((m, i), []).append(str(k))
+        x, y = (j, m, m), (i, i, j)
+        ax.plot(x, y, "o-", color=PATH, markersize=4, linewidth=0.8, zorder=5, gid=f"hold {k}")
+    for k, (cell, words) in enumerate(sorted(seen.items())):
+        # Cells may be lower than a word, so that words above one another step aside.
+        note(ax, ", ".join(words), cell, (1, 0), gap=4 + 8 * (k % 3), color=INK)
     ax.set_aspect("equal", adjustable="box")
     ax.set_xlabel("one finger at contact", fontsize=TEXT)
     ax.set_ylabel("another at", fontsize=TEXT)
