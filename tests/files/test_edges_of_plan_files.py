@@ -10,7 +10,9 @@ import pytest
 
 import regrasp as rg
 from regrasp.files import read_plan, write_plan, write_setpoints
+from regrasp.files.plans.plan_file import plan_document, plan_of
 from regrasp.files.plans.setpoints import checked, read_setpoints
+from regrasp.mechanics.robust.withstood import Withstood
 
 pytestmark = pytest.mark.contract
 
@@ -45,6 +47,29 @@ def test_several_fingers_at_once_are_kept(kind, empty, tmp_path: Path) -> None:
     again = read_plan(file)
     assert (again.leaving, again.arriving) == (plan.leaving, plan.arriving)
     assert rg.verify(again).ok
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        ({"disturbance": None}, "must be a disturbance or an early loss, got neither"),
+        ({"disturbance": {"center": 1, "factor": 1.0, "body": {}}}, "wrench must have shape"),
+        ({"early_loss": 1}, "early_loss must be True or False"),
+        ({"other": 1}, "unknown key 'other'"),
+        ({"stiffness": float("nan")}, "stiffness must be"),
+    ],
+)
+def test_what_is_withstood_is_read_in_full_or_refused(edit, words) -> None:
+    plan = both("removal")
+    old = plan_document(plan)
+    assert "withstands" not in old["record"]
+    assert plan_of(old).record.withstands is None
+    said = Withstood(rg.LoadSet.ball(rg.Wrench([0, 0]), force=0.1, torque=0.1))
+    document = plan_document(replace(plan, record=replace(plan.record, withstands=said)))
+    assert plan_of(document).record.withstands == said
+    document["record"]["withstands"] |= edit
+    with pytest.raises(rg.InvalidInput, match=f"record.withstands: .*{words}"):
+        plan_of(document)
 
 
 def one_step(angle: float, rotation=None) -> rg.RegraspPlan:

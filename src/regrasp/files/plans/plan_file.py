@@ -252,8 +252,15 @@ def _read_record(record: StoredRecord) -> Record:
         record.path_objective,
         tuple(_unlimited(limit) for limit in record.rate_limits),
         tuple(record.least_normals),
-        None if record.withstands is None else Withstood.from_dict(record.withstands),
+        None if record.withstands is None else _withstood(record.withstands),
     )
+
+
+def _withstood(stored: dict[str, Any]) -> Withstood:
+    try:
+        return Withstood.from_dict(stored)
+    except InvalidInput as error:
+        raise InvalidInput(f"record.withstands: {error}") from None
 
 
 def _unlimited(limit: float | None) -> float:

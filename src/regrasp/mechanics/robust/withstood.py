@@ -24,6 +24,10 @@ class Withstood(ArrayValue):
     stiffness: Stiffness = 1.0
     early_loss: bool = False
 
+    def __post_init__(self) -> None:
+        if self.disturbance is None and not self.early_loss:
+            raise InvalidInput("what is withstood must be a disturbance or an early loss, got neither")
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data, which JSON can hold."""
         return {
