@@ -2,9 +2,12 @@
 
 from math import pi
 
+import numpy as np
 import pytest
 
 import regrasp as rg
+from box import BOX, GOAL, MU, WEIGHT
+from box import START as FOUR
 from refusals import refusal
 
 pytestmark = pytest.mark.laws
@@ -74,6 +77,34 @@ def test_fingers_move_through_the_air_to_the_goal_that_is_taken() -> None:
     )
 
 
+IN_SPACE = {"friction": MU, "orientations": 12, "candidates": 16}
+
+
+def test_on_a_mesh_three_fingers_of_least_force_and_a_fourth_are_the_goal() -> None:
+    c, s = np.cos(1.2), np.sin(1.2)
+    turned = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    plan = rg.plan_regrasp(BOX, FOUR, None, WEIGHT, goal_rotation=turned, **IN_SPACE)  # type: ignore[arg-type]
+    assert rg.verify(plan).ok
+    assert plan.rotation(plan.duration) == pytest.approx(turned, abs=1e-9)
+    seen = rg.Wrench(turned.T @ WEIGHT.force)
+    best = rg.choose_grasp(BOX, 3, seen, friction=MU, objective="peak", tolerance=0.01)
+    last = plan.steps[-1].grasp
+    three = rg.Grasp(c for c in last if not (c.name or "").endswith("F4"))
+    assert rg.choose_state(three, seen, "peak").value <= 2 * best.value
+    assert rg.choose_state(last, seen, "peak").value <= rg.choose_state(three, seen, "peak").value + 1e-9
+    assert all(
+        BOX.contact_at(c.position + BOX.centre_of_mass, friction=MU).normal @ c.normal > 0.99 for c in last
+    )
+
+
+def test_on_a_mesh_a_start_is_chosen_and_a_goal_that_is_the_start_needs_no_move() -> None:
+    plan = rg.plan_regrasp(BOX, None, GOAL, WEIGHT, **IN_SPACE)  # type: ignore[arg-type]
+    assert rg.verify(plan).ok
+    assert len(plan.steps[0].grasp) == 4
+    stays = rg.plan_regrasp(BOX, FOUR, [GOAL, FOUR], WEIGHT, **IN_SPACE)  # type: ignore[arg-type]
+    assert len(stays.moves) == 0
+
+
 def test_open_ends_that_mean_nothing_are_refused() -> None:
     box = rg.Mesh.box(1, 1, 1)
     for given, words in (
@@ -82,7 +113,7 @@ def test_open_ends_that_mean_nothing_are_refused() -> None:
         ({"start": "any"}, "start must be a Grasp, several of them"),
         ({"goal": None, "weights": rg.RegraspWeights()}, "give one start and one goal"),
         ({"goal": [START] * 101}, "1 starts and 101 goals are more than 100 pairs"),
-        ({"outline": box, "goal": None}, "goal is chosen on outlines only"),
+        ({"outline": box, "goal": None}, "the shape is in space and load in the plane"),
     ):
         call = {"outline": ELLIPSE, "start": START, "goal": START, "load": LOAD, **OPTIONS, **given}
         assert words in str(refusal(lambda call=call: rg.plan_regrasp(**call)))  # type: ignore[misc]
