@@ -133,12 +133,19 @@ def regrasp(effort: Effort) -> Iterator[Row]:
     def swung(t: float) -> rg.Wrench:
         return rg.Wrench((1 + 0.1 * np.sin(2 * pi * t)) * WEIGHT.force, WEIGHT.torque)
 
+    shaking = rg.LoadSet.ball(rg.Wrench([0, 0, 0]), force=0.02, torque=0.01)
     makers = {
         "removal": ("a removal", lambda: rg.plan_removal(state, 3)),
         "turn": ("a turn by 90 degrees", lambda: rg.plan_rotation(state, pi / 2, axis=[1, 0, 0])),
         "path": (
             f"a removal under a load that swings, {instants} instants",
             lambda: rg.plan_removal(state.grasp, 3, load=swung, instants=instants),
+        ),
+        "withstood": (
+            f"the same that withstands a ball of disturbances, {instants} instants",
+            lambda: rg.plan_removal(
+                state.grasp, 3, load=swung, instants=instants, disturbance=shaking, max_force=5.0
+            ),
         ),
     }
     for key, (name, make) in makers.items():

@@ -14,7 +14,7 @@ Contacts off by r' - r change the balance by (G' - G) f, and forces by R' of tha
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import cos
 
 import numpy as np
@@ -27,10 +27,11 @@ from regrasp.mechanics.robust.moved import moved
 from regrasp.mechanics.robust.stiffness import Stiffness, checked_stiffness, stiffness_matrices
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
-from regrasp.verification.exact import Vector, exact
+from regrasp.verification.exact import Vector, dot, exact
 from regrasp.verification.protocols import Plan, Withstood
 from regrasp.verification.records import deciding_forces
 from regrasp.verification.withstood.contacts import Body, Touch
+from regrasp.verification.withstood.float_filter import Sized, Sure, doubt, in_doubles, surely_withstood
 from regrasp.verification.withstood.matrices import (
     Matrix,
     coarse,
@@ -182,16 +183,15 @@ class _Judge:
         deciding = deciding_forces(plan)
         idle = [i for i in range(len(names)) if not deciding[:, i].any()]
         moving = tuple(sorted({*leaving, *arriving, *idle}))
-        for label, forces in self._states():
-            yield from self._state(label, _stacked(forces), moving)
+        states = [(label, _stacked(forces)) for label, forces in self._states()]
+        yield from chain(*self._found(states, moving))
         yield from self._arcs(moving)
         if moving:
             for label, state, away in (("start", plan.start, arriving), ("end", plan.end, leaving)):
                 own = tuple(sorted({*away, *idle}))
                 if own != moving:
-                    yield from self._state(
-                        f"{label}, all fingers at work answering", _stacked(state.forces), own
-                    )
+                    said = f"{label}, all fingers at work answering"
+                    yield from chain(*self._found([(said, _stacked(state.forces))], own))
 
     def _states(self) -> Iterator[tuple[str, Array]]:
         """Labels and forces of all states that decide."""
@@ -215,44 +215,77 @@ class _Judge:
         if turn is None or turn.middles is not None:
             return
         states = [_stacked(forces) for forces in turn.forces]
-        for (a, f), (b, g) in pairwise(zip(turn.angles.tolist(), states, strict=True)):
+        arcs, met = list(pairwise(zip(turn.angles.tolist(), states, strict=True))), []
+        for (a, f), (b, g) in arcs:
             length = max(1 + Fraction(cos(b - a)) - _ROUNDING, _ROUNDING)
-            met = [(x + y) / length for x, y in zip(f, g, strict=True)]
-            found = list(self._state(f"between {a:.6g} and {b:.6g} rad", met, controlled))
+            forces = [(x + y) / length for x, y in zip(f, g, strict=True)]
+            met.append((f"between {a:.6g} and {b:.6g} rad", forces))
+        for ((a, f), (b, g)), found in zip(arcs, self._found(met, controlled), strict=True):
             part = max(Fraction(cos((b - a) / 2)) - _ROUNDING, Fraction(0))
-            if found and any(any(self._state("", forces, controlled, part)) for forces in (f, g)):
+            if found and any(self._found([("", f), ("", g)], controlled, part)):
                 yield from found
 
-    def _state(
-        self, label: str, stacked: Vector, controlled: tuple[int, ...], share: Fraction = _WHOLE
-    ) -> Iterator[str]:
-        """share: the part of limits that may be used."""
-        answer = self._answer(controlled)
-        if self.off is not None:
-            stacked = _added(stacked, answer, times(self.off, stacked))
-        yield from self._contacts(label, stacked, answer, (), share)
+    def _found(
+        self, states: list[tuple[str, Vector]], controlled: tuple[int, ...], share: Fraction = _WHOLE
+    ) -> list[list[str]]:
+        """What breaks in each state; share: the part of limits that may be used."""
+        answer, w = self._answer(controlled), self.grasp.width
+        cases: list[tuple[int, ...]] = [()]
         if self.asked.early_loss and controlled:
-            some = [(i,) for i in controlled]
-            for gone in some if len(some) == 1 else [*some, controlled]:
-                who = ", ".join(one_line(self.grasp.names[i]) for i in gone)
-                w = self.grasp.width
-                lost = list(stacked)
-                wrench = [
-                    -sum(
-                        (row[w * i + k] * stacked[w * i + k] for i in gone for k in range(w)),
-                        start=Fraction(0),
-                    )
-                    for row in self.matrix
-                ]
-                lost = _added(lost, answer, wrench)
-                yield from self._contacts(f"{label}, {who} lost", lost, answer, gone, share)
+            cases += [(i,) for i in controlled]
+            cases += [controlled] if len(controlled) > 1 else []
+        sure, found = self._surely([f for _, f in states], answer, cases, share), []
+        for k, (label, stacked) in enumerate(states):
+            broken: list[str] = []
+            found.append(broken)
+            if all(settled[k].all() for settled in sure):
+                continue
+            if self.off is not None:
+                stacked = _added(stacked, answer, times(self.off, stacked))
+            for gone, settled in zip(cases, sure, strict=True):
+                said, lost = label, stacked
+                if gone:
+                    who = ", ".join(one_line(self.grasp.names[i]) for i in gone)
+                    said = f"{label}, {who} lost"
+                    away = [w * i + j for i in gone for j in range(w)]
+                    wrench = [-dot([row[j] for j in away], [stacked[j] for j in away]) for row in self.matrix]
+                    lost = _added(stacked, answer, wrench)
+                broken += self._contacts(said, lost, answer, settled[k], share)
+        return found
+
+    @np.errstate(all="ignore")
+    def _surely(
+        self, states: list[Vector], answer: Matrix, cases: list[tuple[int, ...]], share: Fraction
+    ) -> list[Sure]:
+        """(states, n) for the fingers gone in each case: which contacts surely withstand all, or are gone."""
+        w, n = self.grasp.width, len(self.grasp)
+        off = doubt(n * w + len(self.matrix))
+        given, response, matrix = in_doubles(states), in_doubles(answer), in_doubles(self.matrix)
+        forces, found = Sized(given, abs(given)), []
+        if self.off is not None:
+            forces = forces.changed(response, in_doubles(self.off))
+        for gone in cases:
+            columns = np.isin(np.arange(n * w) // w, gone)
+            after = forces.changed(response, np.where(columns, -matrix, 0.0)) if gone else forces
+            settled = np.ones((len(states), n), dtype=bool)
+            for i, touch in enumerate(self.touches):
+                rows = slice(w * i, w * i + w)
+                if i in gone:
+                    continue
+                settled[:, i] = surely_withstood(
+                    touch, after.part(rows), response[rows], self.body, float(share), off
+                )
+                if not touch.rows and not any(any(row) for row in answer[rows]):
+                    settled[:, i] |= [not any(stacked[rows]) for stacked in states]  # the apex
+            found.append(settled)
+        return found
 
     def _contacts(
-        self, label: str, forces: Vector, answer: Matrix, gone: tuple[int, ...], share: Fraction
+        self, label: str, forces: Vector, answer: Matrix, settled: Sure, share: Fraction
     ) -> Iterator[str]:
         w = self.grasp.width
         for i, touch in enumerate(self.touches):
-            if i in gone:
+            if settled[i]:
                 continue
             rows = slice(w * i, w * i + w)
             found = touch.broken(forces[rows], answer[rows], self.body, share)
