@@ -7,8 +7,9 @@ import pytest
 
 from known_programs import projection_on_simplex
 from regrasp.errors import InvalidInput, SolverFailed, SolverUnavailable
-from regrasp.programs import Rows, Status, available_backends, facts, solve
+from regrasp.programs import Rows, Status, available_backends, facts, qp_backend, solve
 from regrasp.programs import backends as table
+from regrasp.programs.answer import Answer
 
 pytestmark = pytest.mark.oracle
 
@@ -246,3 +247,47 @@ def test_unknown_and_missing_back_ends(monkeypatch):
     assert available_backends() == ()
     with pytest.raises(SolverUnavailable, match=r"needs the package daqp: pip install 'regrasp\[solvers\]'"):
         solve(program, "daqp")
+
+
+def falling_beside(far, says="found"):
+    """min -y with x = far, and a solver that is exact: its proximal steps are 1 / weight long."""
+    rows = Rows(2)
+    rows.equal([[1.0, 0.0]], [far])
+
+    class Session:
+        def __init__(self, given, **_) -> None:
+            self.given = given
+
+        def solve(self):
+            weights = self.given.P.diagonal()
+            return Answer(says, np.array([far, -self.given.q[1] / weights[1]]), np.zeros(1), 3, "done")
+
+    return rows.program([0.0, -1.0]), Session
+
+
+@pytest.mark.parametrize(("says", "status"), [("found", Status.UNBOUNDED), ("failed", Status.NOT_FOUND)])
+def test_the_last_step_is_the_direction_however_far_away_it_begins(monkeypatch, says, status) -> None:
+    """The point itself falls, too, but along the equation's far side."""
+    program, session = falling_beside(1e9, says)
+    exact = type("call", (), {"layout": staticmethod(lambda given: given), "Session": session})
+    monkeypatch.setattr(qp_backend, "import_module", lambda _: exact)
+    answer = qp_backend.solve(program, "daqp")
+    assert answer.status is status
+    if status is Status.UNBOUNDED:
+        assert answer.value[0] == 0 < answer.value[1]
+
+
+@pytest.mark.parametrize(("told", "times"), [(4.0, (6.0, 4.0)), (None, (0.0, 10.0))])
+def test_what_a_solver_does_not_tell_of_is_all_its_own(monkeypatch, told, times) -> None:
+    class Session:
+        def __init__(self, *_, **__) -> None: ...
+
+        def solve(self):
+            return Answer("found", np.zeros(2), np.zeros(1), solve_time=told)
+
+    exact = type("call", (), {"layout": staticmethod(lambda given: given), "Session": Session})
+    monkeypatch.setattr(qp_backend, "import_module", lambda _: exact)
+    clock = iter([100.0, 110.0])
+    monkeypatch.setattr(qp_backend, "perf_counter", lambda: next(clock))
+    answer = qp_backend.solve(falling_beside(1.0)[0], "highs")
+    assert (answer.build_time, answer.solve_time) == times

@@ -8,6 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
+from known_programs import known
 from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
@@ -193,3 +194,22 @@ def test_duals_outside_of_the_cone_prove_nothing():
         p, "somebody", Status.INFEASIBLE, np.full(1, np.nan), np.array([1.0, -1.0]), None, 0, 0, ""
     )
     assert judged(claim, 1e-7, lambda _: claim).status is Status.UNSOUND
+
+
+@pytest.mark.parametrize("large", [1.0, 1e3, 1e9, 1e15])
+def test_rows_that_cancel_hide_no_others(large) -> None:
+    """x + y = 0, x + y <= 0 and y >= 1 have a point, (-1, 1), whatever the first two weigh."""
+    p = program(np.zeros((2, 2)), [0, 0], [[1, 1], [1, 1], [0, -1]], [0, 0, -1], zero(1), nonnegative(2))
+    z = np.array([-large, large, 1.0])
+    assert infeasibility_residual(p, z) >= 1e-2
+    nothing = np.full(2, np.nan)
+    given = Solution(p, "somebody", Status.INFEASIBLE, nothing, z, 7, 0.25, 0.5, "so they say")
+    assert judged(given, 1e-7, lambda _: given).status is Status.UNSOUND
+
+
+def test_a_dual_that_a_step_leaves_at_rounding_proves_nothing() -> None:
+    """A program of known truth with a point, and what a back end gave out as a proof that there is none."""
+    p = known(1996).program
+    given = [0.40265678165853513, 1.525624609441914e-05, -597358.4722383111, 26591.84272842451,
+             -1159.9161729793327, 0.0, 51160285.354274504]  # fmt: skip
+    assert infeasibility_residual(p, cleaned_duals(p, np.array(given), PROVEN)) > 1e-3

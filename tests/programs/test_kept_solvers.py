@@ -6,7 +6,7 @@ from scipy import sparse
 
 import regrasp as rg
 from regrasp.planning.states.program import state_program
-from regrasp.programs import Block, Cone, Pattern, Program, solve
+from regrasp.programs import Block, Cone, Pattern, Program, clarabel_backend, solve
 from regrasp.programs.backends import answered_quickly, solved_quickly
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.quick import surely_sound
@@ -88,3 +88,38 @@ def test_a_kept_solver_takes_every_number_anew() -> None:
         x, z = answered_quickly(program)
         assert x == pytest.approx([min(q / p if p else np.inf, b / a)], rel=1e-6)
         assert z == pytest.approx([(q - p * x[0]) / a], abs=1e-6)
+
+
+def line(P=((1.0,),), q=(-1.0,)):
+    n = len(q)
+    pattern = Pattern((1, n), [0] * n, range(n))
+    A = pattern.filled(np.ones(n))
+    return Program(
+        sparse.csc_matrix(np.array(P)), np.array(q), A, np.ones(1), (Block(Cone.NONNEGATIVE, 1),), 1.0
+    )
+
+
+def test_solvers_of_several_patterns_are_kept_side_by_side() -> None:
+    clarabel_backend._memory.__dict__.clear()
+    for _ in range(2):
+        for program in (one := line(), two := line()):
+            assert answered_quickly(program) is not None
+    assert len(clarabel_backend._memory.solvers) == 4
+    assert one is not two
+
+
+@pytest.mark.parametrize(("far", "is_believed"), [(0.9999e50, True), (1.0001e50, False)])
+def test_what_ends_beyond_all_numbers_is_no_answer(monkeypatch, far, is_believed) -> None:
+    class Far:
+        status, x, z = "Solved", [-far], [0.0]
+        update = staticmethod(lambda **_: None)
+        solve = classmethod(lambda cls: cls)
+
+    monkeypatch.setattr(clarabel_backend.clarabel, "DefaultSolver", lambda *_: Far)
+    assert (answered_quickly(line()) is not None) is is_believed
+
+
+def test_squares_alone_are_quick() -> None:
+    """Places of P that are off its diagonal are no part of what tells patterns apart."""
+    assert line([[2.0, 0.0], [0.0, 2.0]], [-1.0, -1.0]).is_quick
+    assert not line([[2.0, 1.0], [1.0, 2.0]], [-1.0, -1.0]).is_quick

@@ -13,6 +13,7 @@ from regrasp.programs.judging.audit import audited, missed
 from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.elastic import elastic, proven_anyway
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
+from regrasp.programs.judging.proofs import infeasibility_residual
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import MISSED, PROVEN, judged
 from regrasp.programs.solution import Solution
@@ -206,6 +207,50 @@ def test_claims_that_prove_nothing_are_unsound() -> None:
         assert wrong.said.endswith(" of 1e-08 allowed")
 
 
+def test_a_certificate_that_is_one_is_left_as_it_is() -> None:
+    """With a dual that is outside its cone by what the objective does not feel, too."""
+    p = program([[0.0]], [0.0], [[1], [-1]], [1, -2], nonnegative(2))
+    given = claim(p, Status.INFEASIBLE, None, [1.0, 1.0])
+    assert judged(given, 1e-7, nobody) is given
+
+
+def test_what_only_looks_like_a_proof_ends_no_search() -> None:
+    """-x + y <= -1 and x <= 0.95 y meet at (-19, -20), so that (1, 1) is off by 0.05 of 1.95 only."""
+    p = program(np.zeros((2, 2)), [0, -0.05], [[-1, 1], [1, -0.95]], [-1, 0], nonnegative(2))
+    near = claim(p, Status.STOPPED, np.array([-19.0, -20.0]) * (1 + 1e-4), [1, 1])
+    found = judged(near, 1e-9, lambda p: claim(p, Status.STOPPED))
+    assert found.status is Status.SOLVED
+    assert found.value == pytest.approx([-19, -20])
+
+
+def test_noise_hides_no_proof() -> None:
+    """x <= 1 and x >= 2 by (1, 1); a third row's dual, a thousandth of them, leaves as much as they prove."""
+    p = program([[0.0]], [0.0], [[1], [-1], [1e3]], [1, -2, 1e4], nonnegative(3))
+    stopped = claim(p, Status.STOPPED, [1.5], [1, 1, 5e-5])
+    assert 0.1 < infeasibility_residual(p, stopped.duals) < 1
+    found = judged(stopped, 1e-9, nobody)
+    assert found.status is Status.INFEASIBLE
+
+
+def test_a_solution_beside_its_far_rows_is_none(monkeypatch) -> None:
+    """x <= 1e9 is left out, and the rest has its least at 1e10."""
+    p = program([[1.0]], [-1e10], [[1], [-1]], [1e9, 1], nonnegative(2))
+
+    def solved(given, *_):
+        return claim(given, Status.FAILED) if given.b.size == 2 else claim(given, Status.SOLVED, [1e10], [0])
+
+    monkeypatch.setattr(table, "_solved", solved)
+    assert solve(p, throw=False).status is Status.FAILED
+
+
+@pytest.mark.parametrize("status", [Status.UNBOUNDED, Status.UNBOUNDED_OR_INFEASIBLE])
+def test_the_residual_of_a_direction_is_what_decides(status) -> None:
+    p = program(np.zeros((2, 2)), [0, -1], [[-1, 0]], [1], nonnegative(1))
+    assert claim(p, status, [-1e-5, 1]).residual == pytest.approx(1.0)
+    assert claim(p, status, [0, 1]).residual == 0
+    assert claim(p, Status.STOPPED, [0, 1]).residual == np.inf
+
+
 # -- convexity, rows left out, room --------------------------------------------------------------------------
 
 
@@ -234,6 +279,11 @@ def test_what_is_convex() -> None:
         assert why_not_convex(sparse.csc_matrix(P)) == ""
         P[0, 1] = P[1, 0] = -0.5 - 1e-6
         assert why_not_convex(sparse.csc_matrix(P)) != ""
+
+
+def test_a_matrix_of_low_rank_is_convex_however_many_unknowns() -> None:
+    root = np.random.default_rng(0).normal(size=(390, 5))
+    assert why_not_convex(sparse.csc_matrix(root @ root.T)) == ""
 
 
 @BOTH

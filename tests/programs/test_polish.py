@@ -203,3 +203,10 @@ def test_five_steps_are_enough_by_the_curvature_of_cones() -> None:
         x, z = polished(p, best + np.array([1e-4, -1e-4]), dual * (1 + 1e-4), 1e-13)
         np.testing.assert_allclose(x, best, rtol=1e-11)
         np.testing.assert_allclose(z, dual, rtol=1e-11)
+
+
+def test_a_row_that_pulls_as_much_as_it_is_away_is_not_touched() -> None:
+    """x <= 0 at x = 0 without a dual: neither is larger."""
+    p = program([[1.0]], [0.0], [[1], [1]], [0, 1], nonnegative(2))
+    assert touched(p, np.zeros(1), np.zeros(2)).shape == (0, 2)
+    assert touched(p, np.zeros(1), np.array([1e-9, 0])).tolist() == [[1, 0]]

@@ -6,9 +6,12 @@ A dual z in K* with A'z = 0 and b'z < 0 proves that no x has b - A x in K: x wou
     -b'z <= sum_j |A'z|_j |x_j| <= miss * sum_ij |z_i a_ij x_j|,   miss = max_j |A'z|_j / sum_i |z_i a_ij|
 
 and the residual is miss / (-b'z / sum_i |z_i b_i|): in a feasible point the terms of x, weighted by z, would
-be 1 / residual times those of b. Likewise a direction d with P d = 0, -A d in K and q'd < 0 along which the
-objective falls for ever from any feasible point, if there is one. Where ``Program.size`` says that all
-unknowns are in one unit, columns are too, and each is measured by the largest.
+be 1 / residual times those of b. Rows of which b has none, and that cancel, hide by their terms what others
+leave. So the residual is at least a hundredth of sum_j |A'z|_j X_j / -b'z, with X the units of the unknowns:
+a feasible point would have one that is so many times its unit. Likewise a direction d with P d = 0, -A d in K
+and q'd < 0 along which the objective falls for ever from any feasible point, if there is one. Where
+``Program.size`` says that all unknowns are in one unit, columns are too, and each is measured by the largest,
+with no other bound.
 """
 
 from math import inf
@@ -17,10 +20,13 @@ import numpy as np
 
 from regrasp.programs.blocks import Array
 from regrasp.programs.judging.terms import largest
+from regrasp.programs.judging.units import units_of_unknowns
 from regrasp.programs.program import Program
 
 _ROUNDING = 2.0**-45
 """A sum this small beside its terms has no sign."""
+_GROWN = 1e-2
+"""Part of the growth of unknowns in their own units that counts."""
 
 
 def infeasibility_residual(program: Program, z: Array) -> float:
@@ -31,8 +37,13 @@ def infeasibility_residual(program: Program, z: Array) -> float:
         of_columns = terms.abs_A.T @ np.abs(inside)
         if program.size > 0:
             of_columns = np.full(of_columns.size, of_columns.max(initial=0.0))
-        miss = largest(np.abs(terms.A.T @ inside), of_columns)
-        return _per(miss, float(b @ inside), float(np.abs(b) @ np.abs(inside)))
+        left = np.abs(terms.A.T @ inside)
+        value, size = float(b @ inside), float(np.abs(b) @ np.abs(inside))
+        residual = _per(largest(left, of_columns), value, size)
+        if program.size > 0 or not residual < inf:
+            return residual
+        grown = float(left @ units_of_unknowns(program)[0]) / -value
+        return float(np.maximum(residual, _GROWN * grown))
 
 
 def unboundedness_residual(program: Program, d: Array) -> float:
