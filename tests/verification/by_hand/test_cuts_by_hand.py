@@ -1,14 +1,14 @@
 """Cuts that no hold crosses, of contacts and of places of an outline, made by hand."""
 
 from fractions import Fraction
-from math import atan, nan, nextafter, tan
+from math import atan, inf, nan, nextafter, tan
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.verification.refusals.cuts import _tangent_below
+from regrasp.verification.refusals.cuts import _Holds, _tangent_below
 
 pytestmark = pytest.mark.oracle
 
@@ -268,3 +268,36 @@ def test_cuts_of_no_form(changes) -> None:
 def test_vertices_run_counter_clockwise() -> None:
     assert "counter-clockwise" not in said(outline_cut())
     assert "the vertices do not run counter-clockwise" in said(outline_cut(vertices=SQUARE[::-1]))
+    for small in (1e-3, 1e3):
+        assert "counter-clockwise" in said(outline_cut(vertices=small * SQUARE[::-1]))
+        assert "counter-clockwise" not in said(outline_cut(vertices=small * SQUARE))
+
+
+def test_contacts_without_a_cone_hold_beside_those_that_hold_alone() -> None:
+    """Ones whose forces turn left, both ways, and right, and one whose cone is empty once it is narrowed."""
+    left, both, right, none = (contact(x, -1, 0, 1, mu) for x, mu in ((2, 1), (0, 1), (-2, 1), (1, 0.01)))
+    holds = _Holds(cut([left, both, right, none], margin=0.1))
+    assert holds.sides == [1, 0, -1, None]
+    expected = {(0, 1), (0, 2), (1, 2), (1, 3)}
+    for i in range(4):
+        for j in range(4):
+            assert i == j or holds.may(i, j) == ((min(i, j), max(i, j)) in expected), (i, j)
+
+
+def test_which_way_forces_along_oblique_normals_turn() -> None:
+    """At (0, -1) with normal (4, 3) and mu = t the torque is 4 -+ 3 t: both ways above 4/3."""
+    for mu, side in (1.33, 1), (1.34, 0), (0.0, 1):
+        holds = _Holds(cut([contact(0, -1, 4, 3, mu), contact(0, 1, 4, 3, mu), contact(0, 1, -4, 3, mu)]))
+        assert holds.sides == [side, -side, side], mu
+
+
+def test_numbers_of_verdicts_on_cuts() -> None:
+    fine = rg.verify(cut(LEFT + [contact(x, -2, 1, 0.2, 0.1) for x in (-0.1, 0.0, 0.1)]))
+    assert (fine.worst_residual, fine.least_angle, fine.least_cone_slack) == (0.0, inf, inf)
+    assert fine.crossing == 9
+    bad = rg.verify(cut(LEFT + RIGHT, start=(0, 1, 9)))
+    assert (bad.worst_residual, bad.least_angle, bad.least_cone_slack) == (inf, 0.0, -inf)
+    made = rg.verify(outline_cut())
+    assert (made.worst_residual, made.least_angle, made.least_cone_slack) == (0.0, inf, inf)
+    broken = rg.verify(outline_cut(friction=nan))
+    assert (broken.worst_residual, broken.least_angle, broken.least_cone_slack) == (inf, 0.0, -inf)

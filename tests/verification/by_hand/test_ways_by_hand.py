@@ -9,6 +9,7 @@ import pytest
 import regrasp as rg
 from regrasp.verification import verify_motion_rows, verify_motions
 from regrasp.verification.ways.distances import points_of_axis, to_axis, to_boundary, to_faces
+from regrasp.verification.ways.verdict import _SAME, _lifting
 
 pytestmark = pytest.mark.oracle
 
@@ -254,7 +255,7 @@ def test_rows_that_are_right() -> None:
     assert verdict.ok, str(verdict)
     assert verdict.tip_radius == pytest.approx(RADIUS)
     assert verdict.touching == 2
-    assert verdict.rows == 11
+    assert str(verdict).startswith("11 set-points of positions and forces verified")
     apart = min(float(np.linalg.norm([x + 1.1, 2.0])) for x in np.linspace(0, 1, 11))
     assert verdict.to_fingers == pytest.approx(min(apart, np.hypot(0.1, 2)) - 2 * RADIUS)
 
@@ -318,6 +319,30 @@ def test_rows_are_on_their_ways() -> None:
         found = told(ways)
         assert (found == "") == good, off
         assert good or "finger 3 is" in found or "off its way" in found
+        assert not off > 1e-9 or f"finger 3 is {off:.3g} off its way at 0.4 s" in found
     for last, good in (1.0, True), (1 + 0.9e-12, True), (1 + 2e-12, False), (2.0, False):
         ways = SimpleNamespace(duration=last, positions=lambda t: rows().positions)
         assert ("rows last 1 s, the ways" not in told(ways)) == good, last
+
+
+def test_beside_a_change_of_speed_positions_may_be_between_both() -> None:
+    """Finger 3 stops between rows 4 and 5: there, and in the intervals beside, 1 m/s times 0.1 s are open."""
+    for interval, room in (2, 0.0), (3, 0.1), (4, 0.1), (5, 0.1), (6, 0.0):
+        for part, good in (room - 1e-8 if room else 0.0, True), (room + 1e-8, False):
+            made = rows()
+            made.velocities[5:, 2, 0] = 0
+            made.positions[5:, 2, 0] = made.positions[4, 2, 0] + 0.05
+            made.positions[interval + 1 :, 2, 1] += part
+            found = "; ".join(verify_motion_rows(held(), made).violations)
+            assert ("finger 3 moves otherwise" not in found) == good, (interval, part)
+
+
+def test_lifts_are_on_normals_and_not_too_high() -> None:
+    high, near = 4 * (RADIUS + 2 * CLEARANCE), _SAME * CLEARANCE
+    for name in "ABCD":
+        aside = np.array(PLACES[name][1])[::-1]
+        for h, off, good in (
+            (0.0, 0.0, True), (-0.9 * near, 0.0, True), (-1.1 * near, 0.0, False), (high - 1e-9, 0.0, True),
+            (high + 1e-9, 0.0, False), (1.0, 0.9 * near, True), (1.0, 1.1 * near, False),
+        ):  # fmt: skip
+            assert _lifting(right(), (tip(name, h) + off * aside)[None]).tolist() == [good], (name, h, off)

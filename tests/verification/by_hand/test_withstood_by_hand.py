@@ -176,6 +176,7 @@ def test_what_matrices_do() -> None:
         rows = [[Fraction(scale) / 3, Fraction(scale) * 2]]
         for x, y in zip(rows[0], coarse(rows)[0], strict=True):
             assert abs(x - y) <= Fraction(scale) * Fraction(1, 2**98)
+        assert all(x.denominator & (x.denominator - 1) == 0 for x in coarse(rows)[0])  # a binary fraction
     assert coarse(exact([[0, 0]])) == exact([[0, 0]])
 
 
@@ -219,3 +220,68 @@ def test_contacts_after_one_that_is_gone_are_looked_at() -> None:
     """A, the first, leaves with C: of those after it one is over its limit."""
     for more in "BD":
         assert f"A lost: force of {more} exceeds its limit" in leaves("AC", 0.01, True, more)
+
+
+@pytest.mark.parametrize("contact", [PLANE, SPACE])
+def test_loads_that_tilt_are_looked_at_from_outside(contact) -> None:
+    """A force of 1 within an angle of the normal: what only the polytope around them breaks is not proven."""
+    d, edge = contact.dimension, float(np.arctan(0.5))
+    push = rg.Wrench(np.eye(d)[0])
+    answer = exact(np.hstack([np.eye(d), np.zeros((d, 2 * d - 3))]))
+
+    def found(angle, limit=None):
+        touch = Touch(contact.changed(max_force=limit), ONE, d)
+        return touch.broken([Fraction(0)] * d, answer, Body(rg.LoadSet.tilted(push, angle)))
+
+    sizes = Body(rg.LoadSet.tilted(push, 0.1)).sizes
+    assert sizes[0] == pytest.approx(1)
+    assert sizes[1:d] == pytest.approx(np.sin(0.1))
+    behind = Touch(contact, ONE, d).broken(
+        [Fraction(-3 * k) for k in np.eye(d, dtype=int)[0].tolist()],
+        answer,
+        Body(rg.LoadSet.tilted(push, 0.0)),
+    )
+    assert behind.how == CONE
+    assert behind.member is not None
+    assert found(0.9 * edge) is None
+    over = found(edge * (1 + 1e-5))
+    assert over.how == CONE
+    assert np.linalg.norm(over.member.force[1:]) > 0.5 * over.member.force[0]
+    assert np.linalg.norm(over.member.force) == pytest.approx(1)
+    near = found(edge * (1 - 1e-5))
+    assert near is None if d == 2 else (near.how, near.member) == (CONE, None)
+    assert found(0.2, limit=1.1) is None
+    assert (found(0.2, limit=1 + 1e-9).how, found(0.2, limit=1 + 1e-9).member) == (LIMIT, None)
+    assert found(0.2, limit=0.999).how == LIMIT
+    assert np.linalg.norm(found(0.2, limit=0.999).member.force) == pytest.approx(1)
+
+
+def test_contacts_off_are_named_where_there_are_several() -> None:
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    plan = Plan("rotation", None, state, state)
+    far, none = [9.0, 0, 0, 0], [0.0] * 4
+    alone = rg.verify(plan, position=far).violations
+    assert alone
+    assert not any("contacts off as in row" in v for v in alone)
+    for rows, k in ([far, none], 0), ([none, far], 1):
+        several = rg.verify(plan, position=rows).violations
+        assert several == tuple(f"{v}, contacts off as in row {k}" for v in alone)
+    assert rg.verify(plan, position=[none, none]).ok
+
+
+def test_what_is_promised_is_judged_but_where_more_is_asked() -> None:
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    ball, small = (rg.LoadSet.ball(rg.Wrench([0, 0]), force=f) for f in (100.0, 1e-3))
+    made = Plan("rotation", None, state, state)
+    values = {name: getattr(made, name) for name in (*Plan.__dataclass_fields__, "forces")}
+    promise = SimpleNamespace(disturbance=ball, stiffness=None, early_loss=False)
+    record = SimpleNamespace(**vars(made.record) | {"withstands": promise})
+    plan = SimpleNamespace(**values | {"record": record, "leaving": (), "arriving": ()})
+    told = rg.verify(plan).violations
+    assert told
+    assert all(v.startswith("record: ") for v in told)
+    assert any(v.startswith("record: ") for v in rg.verify(plan, disturbance=small).violations)
+    same = rg.verify(plan, disturbance=ball).violations  # said once
+    assert same == tuple(v.removeprefix("record: ") for v in told)

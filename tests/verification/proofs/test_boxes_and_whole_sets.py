@@ -1,0 +1,134 @@
+"""Which boxes doubles decide, and sets that grasps stand as a whole, by hand."""
+
+from fractions import Fraction
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from proofs import limit, planar_points, random_planar
+from regrasp.verification.placed import clear_boxes as of_boxes
+from regrasp.verification.placed.clear_boxes import clear_boxes
+from regrasp.verification.placed.straight import StraightEdges
+from regrasp.verification.placed.whole_sets import answer_alike, makes_ball
+
+pytestmark = pytest.mark.oracle
+
+KINDS = [(size, norm) for size in ("normal", "force") for norm in ("sum", "squares", "largest")]
+
+
+def clear(proof) -> list[bool]:
+    return clear_boxes(proof, StraightEdges(proof)).tolist()
+
+
+@pytest.mark.parametrize(("size", "norm"), KINDS)
+def test_doubles_decide_what_is_beyond_rounding(size, norm) -> None:
+    rng, seen = np.random.default_rng(3), 0
+    for _ in range(8):
+        proof = random_planar(rng, size, norm, splits=0)
+        most = float(limit(proof, planar_points(proof)))
+        if not most > 0:
+            continue
+        seen += 1
+        for factor, good in (
+            (1e-3, True),
+            (1 - 1e-11, True),
+            (1 - 2e-14, False),
+            (1 + 1e-14, False),
+            (2, False),
+        ):
+            proof.bound = most * factor
+            assert clear(proof) == [good], factor
+        proof.bound, twists = most / 2, proof.twists
+        for scale, good in (1e-100, True), (1e100, True), (1e-145, False), (1e-170, False):
+            proof.twists = twists * scale
+            assert clear(proof) == [good], scale
+    assert seen > 3
+
+
+def test_boxes_of_no_form_are_not_clear(monkeypatch) -> None:
+    rng, seen = np.random.default_rng(5), 0
+    while seen < 6:
+        proof = random_planar(rng, "normal", "sum", splits=3)
+        most = float(limit(proof, planar_points(proof)))
+        if not most > 0 or len(proof.loads) < 2:
+            continue
+        seen += 1
+        proof.bound = most / 2
+        leaves = (proof.children[:, 1] == 0).tolist()
+        assert clear(proof) == leaves
+        for at_once in (1, 2, 3, 7):
+            monkeypatch.setattr(of_boxes, "_AT_ONCE", at_once)
+            assert clear(proof) == leaves
+        monkeypatch.undo()
+        box = leaves.index(True)
+        without = [good and k != box for k, good in enumerate(leaves)]
+        first, last = proof.arcs[box, -1].tolist()
+        for name, at, value in (
+            ("number", box, -1), ("number", box, -2), ("number", box, len(proof.loads)),
+            ("arcs", (box, -1), (first, len(proof.sides))), ("arcs", (box, -1), (-1, last)),
+            ("arcs", (box, -1), (last + 1, last)), ("children", (box, 1), 1),
+        ):  # fmt: skip
+            kept = getattr(proof, name)
+            other = kept.copy()
+            other[at] = value
+            setattr(proof, name, other)
+            assert clear(proof) == without, (name, value)
+            setattr(proof, name, kept)
+
+
+@pytest.mark.parametrize(("limit", "length"), [(1.0, 1.0), (3.0, 1.0), (1.0, 4.0)])
+def test_balls_whose_radius_is_a_root_of_a_fraction(limit, length) -> None:
+    """Eight forces along the axes, torques +-c: h = 2 max(|u1|, c |u3|) + 2 max(|u2|, c |u3|).
+
+    On u = (c, c, 1) it is 4 c / sqrt(1 + 2 c^2), the least for c = 1/2, and on u = (1, 0, 0) it is 2.
+    Two fingers facing each other with mu = 1 make the ball of sqrt(2/3): u = (2, 1, 1).
+    """
+    for c, square in (0.5, Fraction(8, 3)), (1.0, Fraction(4)):
+        eight = [
+            rg.Contact([-x * length - z, s * x * c * length], [x, 0], 0.0)
+            for x in (1, -1)
+            for s, z in ((1, 0), (-1, 0))
+        ]
+        eight += [
+            rg.Contact([s * y * c * length, -y * length], [0, y], 0.0) for y in (1, -1) for s in (1, -1)
+        ]
+        _judge(rg.Grasp(eight), limit, length, square)
+    two = rg.Grasp([rg.Contact([-length, 0], [1, 0], 1.0), rg.Contact([length, 0], [-1, 0], 1.0)])
+    _judge(two, limit, length, Fraction(2, 3))
+    assert not makes_ball(two.subset([0]), limit, length, Fraction(1, 10**9))
+
+
+def _judge(grasp, limit, length, square) -> None:
+    radius = Fraction(float(square) ** 0.5 * limit)
+    assert makes_ball(grasp, limit, length, radius * (1 - Fraction(1, 2**50)))
+    assert not makes_ball(grasp, limit, length, radius * (1 + Fraction(1, 2**50)))
+
+
+@pytest.mark.parametrize("length", [1.0, 1e-6, 1e6])
+@pytest.mark.parametrize("force", [1.0, 1e-6, 1e6])
+def test_answers_are_those_of_springs_at_the_limit(length, force) -> None:
+    """A squeeze along the axis x of two fingers at equal heights is what no twist makes."""
+    places = length * np.array([[1.0, 0.25], [-1.0, 0.25], [0.0, -2.0]])
+    first = force * np.array([[-4.0, 1], [4.0, 1], [0, 1]])
+    field = np.stack([-places[:, 1], places[:, 0]], axis=1)
+    moved = first + force * (np.array([0.3, -0.2]) + 0.5 * field / length)
+    squeeze = np.array([[1.0, 0], [-1.0, 0], [0, 0]])
+
+    def alike(*forces) -> bool:
+        return answer_alike(
+            tuple(SimpleNamespace(grasp=SimpleNamespace(positions=places), forces=f) for f in forces)
+        )
+
+    assert alike(first, first)
+    assert alike(first, moved)
+    assert alike(first, moved, first, moved)
+    most = np.abs(moved).max()
+    for part, good in (0.9e-9, True), (1.1e-9, False):
+        off = moved + part * most * squeeze
+        assert alike(first, off) == alike(first, moved, off) == alike(first, off, moved) == good
+        assert alike(first, moved - part * most * squeeze) == good
+    places[:] = 0  # all at one point
+    assert alike(first, first + force)
+    assert not alike(first, first + force * squeeze)

@@ -1,0 +1,258 @@
+"""Regions on the bottom of a cube, made by hand: torques, places and forces at their limits."""
+
+from itertools import product
+from math import atan, inf, nan
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.faces.regions import verify_face_regions
+
+pytestmark = pytest.mark.oracle
+
+CUBE, REACH, UP = rg.Mesh.box(2, 2, 2), 3**0.5, np.array([0, 0, 1.0])
+REST = np.array([[0.5, 0.6, -1], [-0.6, 0.5, -1], [0.1, -0.7, -1]])
+SQUARE = np.array([[-0.1, -0.1, -1], [0.1, -0.1, -1], [0.1, 0.1, -1], [-0.1, 0.1, -1]])
+LOAD = np.array([[0.0, 0, -8, 0, 0, 0]])
+
+
+def made(patch=SQUARE, place=(0, 0, -1), push=lambda corner, sign: UP, moment=1e-9, friction=2.0, **changes):
+    """Finger A anywhere in a polygon pushes as ``push`` says, three others hold the rest of the load."""
+    patch, place = np.array(patch, dtype=float), np.array(place, dtype=float)
+    grasp = rg.Grasp(rg.Contact(p, UP, friction, name=n) for p, n in zip([place, *REST], "ABCD", strict=True))
+    matrix = np.vstack([np.tile(np.eye(3), 3), np.hstack([_cross(p) for p in REST])])
+    forces = np.zeros((1, len(patch), 2, 4, 3))
+    for c, (s, sign) in product(range(len(patch)), enumerate((-1.0, 1.0))):
+        f = np.asarray(push(patch[c], sign), dtype=float)
+        whole = LOAD[0] + np.r_[f, np.cross(patch[c], f)] + np.r_[0, 0, 0, sign * moment * UP]
+        forces[0, c, s] = [f, *(np.linalg.pinv(matrix) @ -whole).reshape(3, 3)]
+    given = {
+        "shape": CUBE, "grasp": grasp, "patches": (patch, *(p[None] for p in REST)), "radius": 0.0,
+        "radii": np.zeros(4), "max_force": 100.0, "loads": LOAD, "moments": np.array([[moment, 0, 0, 0]]),
+        "tilts": np.zeros((1, 4, 3)), "focus": np.zeros((1, 4)), "forces": forces,
+    }  # fmt: skip
+    return SimpleNamespace(**given | changes)
+
+
+def _cross(p):
+    return np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
+
+
+def said(regions) -> str:
+    return "; ".join(verify_face_regions(regions).violations)
+
+
+def test_what_is_right_and_its_margins() -> None:
+    verdict = verify_face_regions(made())
+    assert verdict.ok
+    assert 0 < verdict.worst_residual < float(RESOLUTION)
+    forces = made().forces[0]
+    across = np.hypot(forces[..., 0], forces[..., 1])
+    assert verdict.least_cone_slack == pytest.approx((4 - (across / forces[..., 2]) ** 2).min(), rel=1e-9)
+    assert verdict.least_angle == pytest.approx((atan(2) - np.arctan2(across, forces[..., 2])).min())
+    idle = verify_face_regions(made(push=lambda corner, sign: 0 * UP, friction=3.0))
+    assert idle.ok
+    assert idle.least_angle > 0  # of the fingers that push
+    for size, counts in (0.9e-8, False), (1.1e-8, True):  # 1e-12 of max_force is none
+        regions = made(max_force=1e4, push=lambda c, s, size=size: size / 5**0.5 * np.array([2 - 1e-9, 0, 1]))
+        assert (verify_face_regions(regions).least_angle < 1e-8) == counts
+
+
+@pytest.mark.parametrize("tilt", [[0, 0, 0], [0.2, -0.1, 0], [0.2, -0.1, 5.0]])
+@pytest.mark.parametrize("focus", [0.0, 0.7])
+@pytest.mark.parametrize(("only", "other"), [(1.0, 0.01), (-1.0, 0.01), (1.0, 0.02)])
+def test_the_torque_that_mixtures_lack_at_its_limit(tilt, focus, only, other) -> None:
+    """N is 2 at one corner, 1 at the others; 0.01 aside there: slope 0.005 times 2 times 0.1 sqrt 2.
+
+    Aside where N is 1 it is 0.01 times the width where that is less than the slope's 0.02 times the radius.
+    """
+    first = SQUARE[0]
+    tilts, place = np.zeros((1, 4, 3)), np.array([0, 0, -1.0])
+    tilts[0, 0] = tilt
+    across = np.array([*tilt[:2], 0])
+
+    def push(aside_at, off):
+        def f(corner, sign):
+            at, here = (corner == first).all(), (corner == SQUARE[aside_at]).all() and sign == only
+            n = 2.0 if at else 1.0
+            return n * (UP + across + focus * (corner - off)) + (
+                other * np.array([0.6, 0.8, 0]) if here else 0
+            )
+
+        return f
+
+    far = np.array([0.05, 0.05, -1.0])  # the corner (-0.1, -0.1) is 0.15 sqrt 2 from it
+    width = 0.2 * 2**0.5
+    for where, at, lacks in (
+        (0, place, other * width / 2),
+        (1, place, other * width),
+        (0, far, other * 0.15 * 2**0.5),
+        (1, far, other * width),
+    ):
+        for factor, good in (1 + 1e-8, True), (1 - 1e-6, False):
+            regions = made(
+                place=at,
+                push=push(where, at),
+                moment=lacks * factor,
+                tilts=tilts,
+                focus=np.full((1, 4), focus),
+            )
+            found = said(regions)
+            assert (found == "") == good, (where, factor, found)
+            assert good or found.startswith("load 1: mixtures of the forces of A may lack a torque")
+
+
+def test_a_finger_that_does_not_push_has_no_slope() -> None:
+    """Aside without a normal force, at friction: the width counts; without any force nothing is lacked."""
+    for n in (0.0, 1e-3):
+        regions = made(push=lambda c, s, n=n: n * UP, moment=1e-9)
+        assert said(regions) == ""
+
+
+def test_cones_and_limits_at_corners() -> None:
+    for less, good in (2e-12, True), (0.5e-12, False), (-1e-9, False):
+        regions = made(
+            push=lambda c, s, less=less: [2 * (1 - less), 0, 1], tilts=np.full((1, 4, 3), [2.0, 0, 0])
+        )
+        found = said(regions)
+        assert ("outside its cone" not in found) == good, (less, found)
+    good = made()
+    most = float(np.linalg.norm(good.forces, axis=-1).max())
+    good.max_force = most
+    assert said(good) == ""
+    good.max_force = np.nextafter(most, 0)
+    assert said(good).startswith("a force of")
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
+def test_equilibrium_at_its_limit(scale) -> None:
+    """Of the largest force, or of the load where that is larger; torques of the farthest corner's lever."""
+    for finger, axis, sign in product(range(4), range(3), (0, 1)):
+        for part, good in (0.9, True), (1.1, False):
+            regions = made()
+            size = max(np.linalg.norm(regions.forces, axis=-1).max(), 8.0)
+            regions.forces[0, 2, sign, finger, axis] += part * float(RESOLUTION) * size * 0.999
+            regions.forces, regions.loads = regions.forces * scale, LOAD * scale
+            regions.max_force, regions.moments = regions.max_force * scale, regions.moments * scale
+            found = said(regions)
+            assert ("out of equilibrium" not in found) == good, (finger, axis, found)
+    lever = np.linalg.norm([*REST, SQUARE[0]], axis=1).max()
+    arm = np.linalg.norm(np.cross(REST[0] - REST[1], UP))
+    for part, good in (0.95, True), (1.05, False):  # of two fingers, as much the other way: a torque alone
+        regions = made()
+        size = 8.0 * part * float(RESOLUTION) * lever / arm
+        regions.forces[0, 1, 0, 1] += size * UP
+        regions.forces[0, 1, 0, 2] -= size * UP
+        assert (said(regions) == "") == good
+    none = made(loads=0 * LOAD)
+    none.forces[:] = 0
+    assert said(none) == ""
+    large = 1e3 * LOAD
+    assert "out of equilibrium by 1" in said(made(loads=large, forces=0 * made().forces))
+
+
+def test_radii_are_no_wider_than_polygons() -> None:
+    for factor, good in (1 + 0.9e-9, True), (1 + 1.1e-9, False):
+        found = said(made(radii=np.array([0.1 * factor, 0, 0, 0])))
+        assert (found == "") == good
+        assert good or "polygon of A is narrower than its radius" in found
+        assert (said(made(radii=np.full(4, 0.0), radius=0.0)) == "") is True
+        regions = made(radii=np.array([0.1, 0, 0, 0]))
+        regions.radius = 1e-300
+        assert "radius of all" in said(regions)
+    assert "radius of all" in said(made(radius=-1e-300))
+    assert "radius of all" in said(made(radius=nan))
+
+
+def test_polygons_end_where_faces_do() -> None:
+    """The cube's face ends at x = 1: a polygon about (0.7, 0) may be narrower there, and nowhere else."""
+
+    def told(radius, right=1.0, low=-0.5, left=0.2):
+        patch = [[left, low, -1], [right, low, -1], [right, 0.5, -1], [left, 0.5, -1]]
+        return said(made(patch=patch, place=[0.7, 0, -1], radii=np.array([radius, 0, 0, 0]), friction=9.0))
+
+    narrow = "polygon of A is narrower than its radius"
+    assert told(0.5) == ""
+    assert told(0.3) == told(0.3, right=1 - 1e-12) == ""
+    assert told(0.5, right=1 - 0.9e-9 * REACH) == ""
+    for wrong in ({"right": 1 - 1.1e-9 * REACH}, {"right": 0.95}, {"low": -0.45}, {"left": 0.25}):
+        assert narrow in told(0.5, **wrong)
+    assert "is not on faces with its normal" in told(0.5, right=1.001)
+    for way in 1, -1:  # the two triangles of the face share one of its diagonals, which is no end of it
+        patch = np.array([[0, 0], [0.4, 0.4 * way], [0.4, -0.2 * way], [0.2, -0.4 * way]])
+        patch = np.c_[patch[::way], -np.ones(4)]
+        found = said(
+            made(patch=patch, place=[0.25, -0.05 * way, -1], radii=np.array([0.3, 0, 0, 0]), friction=9.0)
+        )
+        assert narrow in found
+
+
+@pytest.mark.parametrize(
+    ("patch", "words"),
+    [
+        (SQUARE[::-1], ""),
+        (SQUARE[[0, 2, 1, 3]], "is not convex"),
+        (np.vstack([SQUARE, SQUARE[3]]), "is not convex"),
+        (np.vstack([SQUARE, [-0.1, 0, -1]]), "is not convex"),
+        (np.vstack([SQUARE, [-0.05, 0, -1]]), "is not convex"),
+        (SQUARE + np.array([0.1, 0, 0]), "is not around its place"),
+        (SQUARE + np.array([0.0999, 0, 0]), ""),
+        (SQUARE - [0, 0.1001, 0], "is not around its place"),
+        (SQUARE + 0.5e-9 * REACH * UP, ""),
+        (SQUARE * [1, 1, -1], "is not around its place"),
+        (SQUARE[:2], "A has no polygon"),
+    ],
+)
+def test_polygons_are_convex_about_their_places_and_on_faces(patch, words) -> None:
+    found = said(made(patch=patch, friction=9.0))
+    assert (found == "") == (words == "")
+    assert words in found
+
+
+def test_fingers_of_no_polygon_are_at_their_places() -> None:
+    good = made()
+    for off, fine in (0.9e-9, True), (1.1e-9, False):
+        moved = made(patches=(SQUARE, good.patches[1] + [off * REACH, 0, 0], *good.patches[2:]))
+        assert ("B has no polygon" not in said(moved)) == fine
+    assert "B has no polygon" in said(made(radii=np.array([0, 1e-300, 0, 0])))
+    assert "polygon of A is not on faces" in said(made(shape=rg.Mesh.box(2, 2, 2.1)))
+    upside = rg.Grasp(rg.Contact(c.position, -c.normal, 2.0, name=c.name) for c in good.grasp)
+    assert "polygon of A is not on faces" in said(made(grasp=upside))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"patches": made().patches[:3]}, "each contact needs a polygon"),
+        ({"patches": (SQUARE[:, :2], *made().patches[1:])}, "each contact needs a polygon"),
+        ({"patches": (SQUARE[0], *made().patches[1:])}, "each contact needs a polygon"),
+        ({"patches": (SQUARE[:0], *made().patches[1:])}, "each contact needs a polygon"),
+        ({"loads": LOAD[:0]}, "there is no load"),
+        ({"loads": LOAD[:, :5]}, "there is no load"),
+        ({"loads": LOAD[0]}, "there is no load"),
+        ({"forces": made().forces[:, :3]}, "are missing"),
+        ({"forces": made().forces[:, :, :1]}, "are missing"),
+        ({"forces": made().forces[..., :2]}, "are missing"),
+        ({"forces": np.concatenate([made().forces] * 2)}, "are missing"),
+        ({"forces": made().forces + inf}, "are missing"),
+        ({"moments": np.zeros((1, 3))}, "are missing"),
+        ({"moments": np.full((1, 4), nan)}, "are missing"),
+        ({"tilts": np.zeros((1, 4, 2))}, "are missing"),
+        ({"focus": np.zeros((2, 4))}, "are missing"),
+        ({"radii": np.zeros(3)}, "are missing"),
+    ],
+)
+def test_regions_of_no_form(changes, words) -> None:
+    assert said(made()) == ""
+    verdict = verify_face_regions(made(**changes))
+    assert words in "; ".join(verdict.violations)
+    assert (verdict.worst_residual, verdict.least_angle, verdict.least_cone_slack) == (inf, -inf, -inf)
+
+
+def test_polygons_in_another_plane_than_their_place() -> None:
+    for off, good in (0.9e-9, True), (1.1e-9, False):
+        regions = made(place=[0, 0, -1 + off * REACH], friction=9.0)
+        assert ("is not around its place" not in said(regions)) == good
