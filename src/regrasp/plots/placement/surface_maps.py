@@ -20,9 +20,10 @@ from regrasp.plots.look.view import sight
 from regrasp.plots.placement.values import as_drawn, drawn_in
 
 _WORST = 90.0  # percentile of values that colours tell apart: the worst grow without end
-_PIECES = 3000
+_PIECES = 10_000
 _BEST = 8  # points, which new axes look at from above or below
 _RAISED, _TURNED = 25.0, -55.0  # [deg]
+_SHORT = 0.7  # of the longest side
 _FACING = 2.0  # what a normal's difference counts, where the mesh's reach is 1
 
 
@@ -37,7 +38,7 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     instance(surface, "surface", SurfaceMap)
     new, ax = ax is None, space_axes(ax, height=3.8)
     if new:
-        ax.set_position((0.1, 0.03, 0.68, 0.84))
+        ax.set_position((0.06, 0.04, 0.68, 0.84))
         looked_at = surface.normals[np.argsort(surface.best)[:_BEST]].mean(axis=0)
         ax.view_init(-_RAISED if looked_at[2] > 0 else _RAISED, _TURNED)
     mesh = surface.shape.surface()
@@ -61,6 +62,7 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     include(ax, mesh[0])
     bar = ax.figure.colorbar(
         ScalarMappable(scale, "viridis_r"),
+        cax=ax.figure.add_axes((0.83, 0.25, 0.035, 0.5)) if new else None,
         ax=ax,
         shrink=0.6,
         pad=0.16,
@@ -72,7 +74,12 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     if len(held) < len(values):
         key = Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold through here")
         legend(ax, [key], bbox_to_anchor=(0, 1.12))
-    return equal_scale(ax, units)
+    equal_scale(ax, units)
+    spans = [np.ptp(limits) for limits in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim())]
+    for axis, span in zip((ax.xaxis, ax.yaxis, ax.zaxis), spans, strict=True):
+        if span < _SHORT * max(spans):  # where numbers would run together
+            axis.get_major_locator().set_params(nbins=2)
+    return ax
 
 
 def _pieces(vertices: Array, faces: Any) -> tuple[Array, Array]:
