@@ -3,7 +3,8 @@
 Between instants h apart, a function with |w''| <= c is within c h^2 / 8 of the chord. Forces that balance the
 function itself are f - G+ (w - chord), with G the grasp matrix of the fingers that stay: each changes by at
 most gap / s, s the least singular value of G. If that is no more than the least force margin and what the
-limits leave, such forces lie inside cones and limits at every t.
+limits leave, such forces lie inside cones and limits at every t. A soft finger's torque m counts as the
+tangential force mu m / e that it uses up, in G, too.
 """
 
 from collections.abc import Callable
@@ -32,8 +33,7 @@ def check_load(
     else:
         times, forces, loads = plan.course.times, plan.course.forces, plan.course.loads
     grasp, moving = plan.start.grasp, (*plan.leaving, *plan.arriving)
-    if grasp.is_soft:
-        raise InvalidInput("a load function is checked for point contacts; a finger of these is soft")
+    forces = grasp.cones.measured(forces)
     length = float(_lengths(grasp.positions).max()) or 1.0
     scale = max(_sizes(loads, length).max(), float(abs(forces).max()))
     given = _at(load, times, loads.shape[1])
@@ -57,11 +57,11 @@ def check_load(
             return measured, False, [broken]
     stays = [i for i, known in enumerate(grasp.names) if known not in moving]
     room = _room(plan, forces[:, stays], stays)
-    d = grasp.dimension
-    matrix = grasp.matrix.reshape(-1, len(grasp), d)[:, stays].reshape(grasp.matrix.shape[0], -1).copy()
+    d, columns = grasp.dimension, grasp.cones.matrix.reshape(-1, len(grasp), grasp.width)
+    matrix = columns[:, stays].reshape(len(columns), -1).copy()
     matrix[d:] /= length
-    rows, columns = matrix.shape
-    least = float(np.linalg.svd(matrix, compute_uv=False)[-1]) if columns >= rows else 0.0
+    wide = matrix.shape[1] >= matrix.shape[0]
+    least = float(np.linalg.svd(matrix, compute_uv=False)[-1]) if wide else 0.0
     # Force and torque may both be off by the gap.
     change = np.sqrt(2) * gap / least if least > 1e-12 else np.inf
     if gap > small and not change <= room:
@@ -98,9 +98,9 @@ def _lengths(vectors: Array) -> Array:
 
 
 def _room(plan: Plan, forces: Array, stays: list[int]) -> float:
-    """The least change of a force that could leave its cone, its limit or its least normal force."""
+    """The least change of a force, as the cones measure it, that could leave its cone or a limit."""
     grasp = plan.start.grasp
-    mu, normals = grasp.frictions[stays], grasp.normals[stays]
+    mu, normals = grasp.frictions[stays], grasp.cones.normals[stays]
     normal = (forces * normals).sum(axis=-1)
     tangential = _lengths(forces - normal[..., None] * normals)
     edge = (mu * normal - tangential) / np.hypot(1.0, mu)

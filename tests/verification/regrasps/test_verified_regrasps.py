@@ -133,12 +133,32 @@ def test_limits_of_soft_fingers_are_one_thing_everywhere():
     assert "above its limit" in "; ".join(rg.verify(claimed).violations)
 
 
-def test_load_functions_are_for_point_contacts():
+def test_load_functions_of_soft_fingers_are_held_between_instants() -> None:
+    """By forces inside their cones that differ from the plan's by what the fingers that stay answer."""
     from space import soft_random
 
-    grasp, load = soft_random(np.random.default_rng(0), 5), rg.Wrench([0, 0, -1.0], [0.01, 0.02, 0])
-    with pytest.raises(rg.InvalidInput, match="a load function is checked for point contacts"):
-        rg.verify(rg.plan_removal(grasp, 1, load=load), lambda t: load)
+    grasp = soft_random(np.random.default_rng(0), 5)
+
+    def load(t: float) -> rg.Wrench:
+        return rg.Wrench([0, 0.05 * np.sin(7 * t), -1.0], [0.01, 0.02, 0])
+
+    def planned(instants: int) -> rg.Transition:
+        return rg.plan_removal(
+            grasp, 1, load=load, instants=instants, duration=1.0, objective="effort", reserve=0.2
+        )
+
+    fine, coarse = planned(41), planned(3)
+    found = rg.verify(fine, load, curvature=0.05 * 49)
+    assert found.ok, str(found)
+    assert found.load_gap_is_proven
+    assert not rg.verify(coarse, load).ok
+    gone = grasp.names.index(fine.leaving[0])
+    arms = np.array([[1, 1, 1, (c.torsion or 0) / c.friction] for c in grasp])
+    arms[gone] = 0
+    answer = arms.ravel()[:, None] * np.linalg.pinv(grasp.matrix * arms.ravel())
+    for t in np.linspace(0, 1, 97):
+        forces = fine.forces(t) - (answer @ (load(t).vector - fine.load(t))).reshape(5, 4)
+        assert rg.GraspState(grasp, load(t), forces).is_balanced(reserve=0.0)
 
 
 def test_places_belong_to_single_steps():
