@@ -8,6 +8,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.laws import Law
+from regrasp.planning.placement.parts import Queue, search_in_parts
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.sides import RingSides, Sides
 
@@ -80,14 +81,26 @@ class Search:
 
         law = self._law(self.friction, kept_friction(self.friction, 2 * RESERVE), self.law)
         self._only = only
+
+        def part(queue: Queue, budget: int) -> int:
+            return int(search(
+                self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
+                self.narrow, queue.boxes, queue.heap, queue.state, queue.found, queue.tried, budget,
+                spare(self.fingers),
+            ))  # fmt: skip
+
         found = np.zeros_like(self._found) if only else self._found
-        ended = search(
-            self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
-            self.narrow, self._boxes, self._heap, self._state, found, self._tried, _AT_A_TIME,
-            spare(self.fingers),
-        )  # fmt: skip
-        self.closed = ended == CLOSED
-        return not self.closed and (ended != FULL or self._grow(most))
+        queue = Queue(self._boxes, self._heap, self._state, found, self._tried)
+        if not only and queue.is_for_parts:
+            while not queue.has_room and self._grow(most):
+                queue.boxes, queue.heap = self._boxes, self._heap
+            if queue.has_room:
+                ended = search_in_parts(queue, part)
+                if any(end != CLOSED for end in ended):
+                    return True
+        ended_by = part(queue, _AT_A_TIME)
+        self.closed = ended_by == CLOSED
+        return not self.closed and (ended_by != FULL or self._grow(most))
 
     @property
     def left(self) -> np.ndarray:

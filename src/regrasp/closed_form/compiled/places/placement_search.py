@@ -125,7 +125,7 @@ def spare(k: int) -> tuple[Any, ...]:
 
 
 def _loop(digest: str) -> Any:
-    @kept("the search for places", error_model="numpy", _nrt=False)
+    @kept("the search for places", error_model="numpy", nogil=True, _nrt=False)
     def search(  # type: ignore[no-untyped-def]
         sides, loads, law, fixed, tolerance, least, narrow, boxes, heap, state, found, tried, budget, spare
     ):

@@ -1,0 +1,77 @@
+"""Large searches in parts, on one thread and on more: the same answer, number by number, with a proof."""
+
+from _thread import interrupt_main
+from threading import Timer
+from typing import Any
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from regrasp.planning.placement import parts
+
+pytestmark = pytest.mark.laws
+
+C = rg.Outline([(0, 0), (3, 0), (3, 1), (1, 1), (1, 4), (3, 4), (3, 5), (0, 5)])
+LOADS = rg.LoadSet.hull(
+    [
+        rg.Wrench.from_vector([np.cos(a), np.sin(a), m])
+        for a in np.arange(6) * np.pi / 3
+        for m in (0.15, -0.15)
+    ]
+)
+
+MOST = 7000
+
+
+def chosen(**more: Any) -> rg.ChosenGrasp:
+    """Three fingers on the letter C, where many placements are nearly as good, as far as boxes go."""
+    asked: dict[str, Any] = {"objective": "force", "max_force": 4.0, "tolerance": 1e-6, "from_corners": 0.0}
+    return rg.choose_grasp(C, 3, LOADS, friction=0.4, **asked | {"most_boxes": MOST} | more)
+
+
+def on(threads: int, monkeypatch: pytest.MonkeyPatch, **more: Any) -> tuple[rg.ChosenGrasp, list[int]]:
+    """What is chosen with so many threads, and how many rounds in parts it took."""
+    rounds: list[int] = []
+    monkeypatch.setattr(parts, "_FROM", 512)
+
+    def counted() -> int:
+        rounds.append(threads)
+        return threads
+
+    monkeypatch.setattr(parts, "threads", counted)
+    return chosen(**more), rounds
+
+
+@pytest.mark.parametrize("objective", ["force", "sum_normal"])
+def test_threads_change_no_number_and_parts_no_answer(
+    monkeypatch: pytest.MonkeyPatch, objective: str
+) -> None:
+    more: dict[str, Any] = {"objective": objective, "tolerance": 1e-9}
+    more |= {} if objective == "force" else {"max_force": None}
+    (one, rounds), (two, _) = on(1, monkeypatch, **more), on(2, monkeypatch, **more)
+    assert rounds
+    assert one.to_dict() == two.to_dict()
+    assert 0 < len(one.certificate.children) <= MOST
+    assert one.gap > 0
+    assert rg.verify(rg.ChosenGrasp.from_dict(one.to_dict()))
+    monkeypatch.setattr(parts.Queue, "is_for_parts", False)
+    alone = chosen(**more)
+    assert one.value == pytest.approx(alone.value, rel=1e-3)
+    for first, second in ((one, alone), (alone, one)):
+        low, high = (first.value, second.bound) if objective == "force" else (first.bound, second.value)
+        assert low <= high * (1 + 1e-9)
+
+
+def test_an_interrupt_within_a_round_leaves_a_whole_proof(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[float] = []
+
+    def interrupt(bound: float, best: float) -> None:
+        calls.append(bound)
+        if len(calls) == 12:
+            Timer(0.01, interrupt_main).start()
+
+    cut, rounds = on(2, monkeypatch, most_boxes=200_000, progress=interrupt)
+    assert rounds
+    assert cut.gap > 1e-6
+    assert rg.verify(cut)
