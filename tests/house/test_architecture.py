@@ -37,6 +37,7 @@ FLOORS: dict[str, Set[str]] = {
         "programs",
         "plans",
         "planning",
+        "threads",
     },
     "motions": {"errors", "mechanics", "outline", "mesh", "plans", "planning", "motions"},
     "execution": {"errors", "display", "mechanics", "outline", "mesh", "plans", "motions", "execution"},
