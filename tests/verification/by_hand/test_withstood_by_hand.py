@@ -250,6 +250,11 @@ def test_loads_that_tilt_are_looked_at_from_outside(contact) -> None:
     assert np.linalg.norm(over.member.force) == pytest.approx(1)
     near = found(edge * (1 - 1e-5))
     assert near is None if d == 2 else (near.how, near.member) == (CONE, None)
+    for bound, good in (1 + 1e-9, True), (1 - 1e-9, False):  # a row along the normal: the farthest member
+        row = contact.changed(limits=rg.ForceLimits([[1.0, *[0.0] * (d - 1)]], [bound]))
+        judged = Touch(row, ONE, d).broken([Fraction(0)] * d, answer, Body(rg.LoadSet.tilted(push, 0.2)))
+        assert (judged is None) == good
+        assert good or (judged.how, judged.member.force[0]) == (ROW, pytest.approx(1))
     assert found(0.2, limit=1.1) is None
     assert (found(0.2, limit=1 + 1e-9).how, found(0.2, limit=1 + 1e-9).member) == (LIMIT, None)
     assert found(0.2, limit=0.999).how == LIMIT

@@ -139,6 +139,10 @@ def test_equilibrium_at_its_limit(scale) -> None:
             regions.max_force, regions.moments = regions.max_force * scale, regions.moments * scale
             found = said(regions)
             assert ("out of equilibrium" not in found) == good, (finger, axis, found)
+    for part, signs, good in (0.6, [0], True), (0.8, [0], False), (0.6, [0, 1], True), (0.8, [1], False):
+        regions = made()  # of both components together, and of each direction of the torque by itself
+        regions.forces[0, 2, signs, 0, :2] += part * float(RESOLUTION) * 8.0 * (0.999 if good else 1.001)
+        assert ("out of equilibrium" not in said(regions)) == good
     lever = np.linalg.norm([*REST, SQUARE[0]], axis=1).max()
     arm = np.linalg.norm(np.cross(REST[0] - REST[1], UP))
     for part, good in (0.95, True), (1.05, False):  # of two fingers, as much the other way: a torque alone

@@ -230,3 +230,15 @@ def test_children_share_out_fingers_of_one_patch() -> None:
         [(1, 1), (1, 2), (2, 0)], [(0, 1), (1, 2), (2, 2)],
     ):  # fmt: skip
         assert "is not covered by the boxes it is split into" in told(*wrong), wrong
+
+
+def test_boxes_are_of_patches_that_are_there() -> None:
+    rng, seen = np.random.default_rng(4), 0
+    while seen < 3:
+        proof, most = random_proof(rng, "normal", "sum", splits=1, bound=1e-9)
+        if most < 1e-6 or len(proof.boxes) < 2:
+            continue
+        seen += 1
+        for patch in (-1, len(proof.halves), 10**6):
+            proof.boxes[-1, -1] = patch
+            assert "all boxes patches" in said(proof)
