@@ -290,3 +290,17 @@ def test_what_is_promised_is_judged_but_where_more_is_asked() -> None:
     assert any(v.startswith("record: ") for v in rg.verify(plan, disturbance=small).violations)
     same = rg.verify(plan, disturbance=ball).violations  # said once
     assert same == tuple(v.removeprefix("record: ") for v in told)
+    off = rg.verify(
+        plan, disturbance=ball, position=[0.0] * 4
+    ).violations  # of other contacts than the plan's
+    assert any(v.startswith("record: ") for v in off)
+
+
+def test_what_was_asked_is_said() -> None:
+    grasp, forces = cross((0.75,) * 4)
+    state = rg.GraspState(grasp, rg.Wrench([0, 0]), forces)
+    plan = Plan("rotation", None, state, state)
+    friction, lost = "0.9 times the friction", "the early loss of a finger that leaves or arrives"
+    assert rg.verify(plan, friction=0.9, early_loss=True).withstood == f"{friction}, with {lost}"
+    assert rg.verify(plan, friction=0.9).withstood == friction
+    assert rg.verify(plan, early_loss=True).withstood == lost
