@@ -163,6 +163,12 @@ def test_ends_of_a_turn_are_less_than_half_a_turn_apart() -> None:
         assert ("half a turn apart" not in found) == good, turned
 
 
+def test_sizes_of_loads_count_under_limits_alone() -> None:
+    for limits, good in ({}, True), ({"max_force": 9.0}, False), ({"min_normal": 0.1}, False):
+        found = said(outline_cut(turned=np.array([1.0, -2.0]), **limits))
+        assert ("are of different sizes" not in found) == good, limits
+
+
 def covering(boxes, **changes) -> str:
     """What is said of these boxes on sides 1 and 3, of a load to the left that both sides do not hold."""
     given = {
