@@ -1,5 +1,6 @@
 """Regrasps of which an end is left open, against those between every two grasps."""
 
+from itertools import combinations
 from math import pi
 
 import numpy as np
@@ -55,6 +56,13 @@ def test_a_goal_left_out_is_chosen_and_holds_in_the_orientation_asked_for(angle:
     last = found.steps[-1].end
     assert len([f for f in last.forces if f.any()]) >= 2
     assert last.load.force == pytest.approx(LOAD.rotated(-angle).force)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1.8])
+def test_a_goal_that_is_chosen_keeps_its_distance(apart: float) -> None:
+    plan = rg.plan_regrasp(ELLIPSE, START, None, LOAD, friction=0.5, candidates=16, min_distance=apart)
+    least = min(np.linalg.norm(p - q) for p, q in combinations(plan.steps[-1].grasp.positions[-3:], 2))
+    assert (least >= 1.8 - 1e-9) == (apart > 0)
 
 
 def test_fingers_move_through_the_air_to_the_goal_that_is_taken() -> None:

@@ -127,6 +127,7 @@ def _chosen(what: str, shape: Any, load: Wrench, options: dict[str, Any]) -> lis
         friction=options["friction"],
         objective="peak_normal",
         max_force=limit,
+        min_distance=options.get("min_distance") or None,
         tolerance=0.01,
     )
     return [found.grasp, *(other.grasp for other in found.others)]
