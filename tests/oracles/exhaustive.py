@@ -34,7 +34,8 @@ def least_cost(
     table = graph.margins.T.tolist()
     prices = None if worth is None else worth.tolist()
     apart = turns(graph).tolist()
-    near = [[m for m in orientations if apart[k][m] < 3.1415] for k in orientations]
+    reach = 3.15 if hasattr(graph, "angles") else 3.1415  # half a turn in the plane
+    near = [[m for m in orientations if apart[k][m] < reach] for k in orientations]
 
     def turned(k, m, first=1.0):  # steps and angle of a turn; the first step may be free
         pieces = max(np.ceil(apart[k][m] / max_turn - 1e-9), 1.0)

@@ -29,7 +29,7 @@ def walked(graph, sequence, o, max_turn):
     """Steps beyond the removal and the addition, and the turning from the first orientation to the last."""
     ways = graph.angles[[0, *(h[2] for h in sequence.holds), o]]
     turns = abs((np.diff(ways) + np.pi) % (2 * np.pi) - np.pi)
-    assert (turns < np.pi - 1e-7).all()
+    assert (turns < np.pi + 1e-9).all()
     pieces = np.maximum(np.ceil(turns / max_turn - 1e-9), 1)
     return int(pieces.sum()) - 2, turns.sum()
 
@@ -88,9 +88,13 @@ def test_ends_that_no_two_fingers_hold_are_left_and_reached_just_where_brute_for
     rng = np.random.default_rng(1)
     seen = set()
     for k in range(90):
-        graph = small_graph(rng, 7, 1 if k % 4 == 0 else int(rng.integers(2, 6)))
+        graph = small_graph(
+            rng, 7, 1 if k % 4 == 0 else int(rng.integers(2, 6)), rng.choice([0.06, 0.2, 0.4])
+        )
         o = int(rng.integers(len(graph.angles)))
         start, goal = (tuple(rng.choice(7, 3, replace=False).tolist()) for _ in range(2))
+        if k % 4 == 1:  # both held, and often nothing between
+            start, goal = ends_of(rng, graph, o)
         able = [
             any(graph.margins[at, graph.pair(i, j)] >= 0 for i, j in combinations(sorted(end), 2))
             for end, at in ((start, 0), (goal, o))
@@ -144,7 +148,7 @@ def test_no_sequence_costs_less(weights, labelled):
     rng = np.random.default_rng(11)
     seen = {"found": 0, "impossible": 0}
     for _ in range(15):
-        graph = small_graph(rng, 6)
+        graph = small_graph(rng, 6, share=rng.uniform(0.06, 0.4))
         o, least = int(rng.integers(len(graph.angles))), float(rng.choice([0.0, 0.05]))
         start, goal = ends_of(rng, graph, o)
         allowed = arcs_of(rng, 6, start) if labelled else None

@@ -186,7 +186,7 @@ def test_the_verifier_finds_bad_joints():
     [
         ({"friction": 0.01}, rg.InvalidInput, None),
         ({"start": START.without(0)}, rg.InvalidInput, "start must be a Grasp of three planar contacts"),
-        ({"load": rg.Wrench([0, -1], 0.2)}, rg.InvalidInput, "is a force through the centre of mass"),
+        ({"load": rg.Wrench([0, -1], 0.2)}, rg.InvalidInput, "a planar force through the centre of mass"),
         ({"orientations": 0}, rg.InvalidInput, "orientations must be a whole number of at least 1, got 0"),
         ({"goal_orientation": np.nan}, rg.InvalidInput, "goal_orientation must be finite"),
         ({"load": [0, -1]}, rg.InvalidInput, "load must be a Wrench"),

@@ -78,3 +78,19 @@ def test_four_fingers_turn_in_space():
     assert len(plan.moves) == 4
     with pytest.raises(rg.Infeasible, match="no three fingers of the start hold the load there"):
         rg.plan_regrasp(BOX, tight, GOAL, WEIGHT, friction=MU, candidates=12, orientations=1)
+
+
+def test_holds_half_a_turn_apart_follow_one_another():
+    """Where all orientations but six are left out, the widest way turns by half a turn between two holds."""
+    places = (0.43436173, 0.45102840, 0.20102840, 0.91769507, 0.78436173, 0.16769507)
+    outline = rg.Outline([[0, 0], [3, 0], [4, 2], [1, 3], [-1, 1]])
+    length = outline.length
+    contacts = [outline.contact_at(s * length, friction=0.6) for s in places]
+    plan = rg.plan_regrasp(
+        outline, rg.Grasp(contacts[:3]), rg.Grasp(contacts[3:]), rg.Wrench([-1.973813, -2.0]), friction=0.6,
+        orientations=6, goal_orientation=5 * np.pi / 3, candidates=[places[0] * length], min_normal=0,
+        peak_ratio=1e9,
+    )  # fmt: skip
+    assert rg.verify(plan).ok
+    assert (len(plan.moves), len(plan.steps)) == (3, 5)
+    assert plan.margin == pytest.approx(0.421297, abs=2e-6)  # 0.2874 with turns of less alone

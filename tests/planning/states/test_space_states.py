@@ -211,3 +211,16 @@ def test_forces_many_times_the_load_are_found():
         assert rg.choose_state(grasp, load, objective).value == pytest.approx(
             best_by_cvxpy(grasp, load, objective), rel=1e-5
         )
+
+
+def test_wider_limits_choose_no_worse_where_rounding_hides_the_best():
+    """Of the angle, to a hundred-thousandth: a wide limit may add no more than that."""
+    at = (-0.01861, -0.002975, 0.006628), (-0.01261, 0.003211, 0.006998), (0.04139, 0.001674, -0.01014)
+    ways = (1, 0, 0), (-1, 0, 0), (-1, 0, 0)
+    grasp = rg.Grasp(rg.Contact(p, normal=n, friction=0.7) for p, n in zip(at, ways, strict=True))
+    for objective in ("angle", "force"):
+        few = rg.choose_state(grasp, rg.Wrench([0, 0, -1.82]), objective, peak_ratio=1e3)
+        for ratio in (1e6, 1e9):
+            many = rg.choose_state(grasp, rg.Wrench([0, 0, -1.82]), objective, peak_ratio=ratio)
+            assert many.value >= few.value - 1e-5
+            assert max(many.force_limits) == pytest.approx(ratio / 1e3 * max(few.force_limits), rel=1e-3)

@@ -1,9 +1,9 @@
 """What limits the way between two grasps in the hold graph, however many finger moves it takes.
 
 Parts of holds and orientations are nodes: contacts in the plane, pairs of contacts in space. A hold joins its
-parts with its margin; a turn joins two orientations of a part, less than pi apart, with the smaller of the
-widest margins that the part has at both: all fingers hold everything between. The widest way is then the one
-in a maximum spanning tree.
+parts with its margin; a turn joins two orientations of a part, half a turn apart at most, with the smaller
+of the widest margins that the part has at both: all fingers hold everything between. The widest way is then
+the one in a maximum spanning tree.
 """
 
 from dataclasses import dataclass, field
@@ -18,6 +18,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, instance, number, whole
 from regrasp.planning.holds.graphs import AnyGraph, Part, Parts, holding, place_of, turns_between
 from regrasp.planning.holds.pairs import HoldGraph
+from regrasp.planning.holds.planar_stances import HALF_TURN
 from regrasp.planning.holds.sequences import Hold
 from regrasp.planning.holds.stances import REACH
 from regrasp.planning.holds.triples import TripleGraph
@@ -70,7 +71,7 @@ def bottleneck(
     goal: tuple[int, ...],
     goal_orientation: int = 0,
     *,
-    max_turn: float = REACH,
+    max_turn: float | None = None,
 ) -> Bottleneck | None:
     """What limits the way from a hold of three contacts to a hold of three; None where there is no way.
 
@@ -82,7 +83,8 @@ def bottleneck(
         start: three contacts, in space four, by their places in the graph, held at its first angle or load.
         goal: as many, held at the angle or under the load of place ``goal_orientation``.
         goal_orientation: the place of the last angle in the graph's angles, or of the last load.
-        max_turn: largest turn of the object from one hold to the next, in however many steps, below pi [rad].
+        max_turn: largest turn of the object from one hold to the next, in however many steps, below pi [rad];
+            if not given half a turn in the plane, and a little less in space.
 
     Raises:
         InvalidInput: For what are no places.
@@ -91,7 +93,7 @@ def bottleneck(
         instance(graph, "graph", HoldGraph)
     fingers = 3 if isinstance(graph, HoldGraph) else 4
     whole(goal_orientation, "goal_orientation", least=0, most=len(graph.loads) - 1)
-    if not 0 < number(max_turn, "max_turn") < pi:
+    if max_turn is not None and not 0 < number(max_turn, "max_turn") < pi:
         raise InvalidInput(f"max_turn must be above 0 and below pi, got {shown(max_turn)}")
     for what, places in (("start", start), ("goal", goal)):
         try:
@@ -104,7 +106,8 @@ def bottleneck(
                 f"{what} must be {'three' if fingers == 3 else 'four'} contacts by their places in the "
                 f"graph, 0 to {len(graph.contacts) - 1}, got {shown(places)}"
             )
-    ends = _Ends(graph, start, goal, goal_orientation, max_turn)
+    reach = max_turn or (HALF_TURN if isinstance(graph, HoldGraph) else REACH)
+    ends = _Ends(graph, start, goal, goal_orientation, reach)
     way = ends.widest(graph.margins)
     if way is None:
         return None

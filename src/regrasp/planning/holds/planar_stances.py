@@ -12,10 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regrasp.planning.holds.pairs import HoldGraph
-from regrasp.planning.holds.stances import REACH, Holds, Places, Stances
+from regrasp.planning.holds.stances import Holds, Places, Stances
 
 if TYPE_CHECKING:
     from regrasp.closed_form.compiled.hold_paths import Moves
+
+HALF_TURN = pi
+"""Between two holds of one stance, sampled [rad].
+
+Each holds all loads about its own where it has a margin, and loads about f and about -f add up to all loads:
+the three fingers hold every one. Without a margin, or within limits on forces, they may not, and a plan that
+meets such a load keeps to ``REACH``.
+"""
 
 _FINGERS = ((0, 1), (0, 2), (1, 2))
 """The two fingers of a hold, by its slot."""
@@ -37,7 +45,7 @@ class Fingering(Stances):
         max_turn: float,
         least: float = 0.0,
         allowed: NDArray[np.bool_] | None = None,
-        reach: float = REACH,
+        reach: float = HALF_TURN,
     ) -> None:
         self.allowed, self.least = allowed, max(least, 0.0)
         self.margins = graph.margins.T.copy(order="C")

@@ -1,12 +1,12 @@
 """Sequences of holds from a start to a goal, in the order in which they are preferred.
 
 While two fingers hold, the third moves to another point; then the hold is exchanged for another one of the
-three points, or the object turns, by less than pi at a time, for two holds under loads that far apart hold
-everything between them (docs/facts.md, 6). A *step* is an exchange, while the object may turn, or a turn in
-one hold, or with all three: a larger turn than one step may make is made in several, all three holding in
-between. So it is before the first finger leaves and after the last one arrives. A *finger move* takes the
-free finger to another point: exchanges among the three points where the fingers already stand need none, nor
-do turns.
+three points, or the object turns, by half a turn at most, for two holds under loads less far apart hold
+everything between them (docs/facts.md, 6; of half a turn see ``HALF_TURN``). A *step* is an exchange, while
+the object may turn, or a turn in one hold, or with all three: a larger turn than one step may make is made in
+several, all three holding in between. So it is before the first finger leaves and after the last one arrives.
+A *finger move* takes the free finger to another point: exchanges among the three points where the fingers
+already stand need none, nor do turns.
 """
 
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from regrasp.planning.holds.cost_search import Cheapest, Costs, cheapest
 from regrasp.planning.holds.margin_search import ALIKE, Widest, widest_by_moves
 from regrasp.planning.holds.pairs import HoldGraph
-from regrasp.planning.holds.planar_stances import Fingering
-from regrasp.planning.holds.stances import REACH, Places, Stances
+from regrasp.planning.holds.planar_stances import HALF_TURN, Fingering
+from regrasp.planning.holds.stances import Places, Stances
 
 Hold = tuple[int, ...]
 """The contacts and the orientation of a hold, by their places in the graph."""
@@ -56,7 +56,7 @@ def sequences(
     least_margin: float = 0.0,
     allowed: NDArray[np.bool_] | None = None,
     extra: int = 0,
-    reach: float = REACH,
+    reach: float = HALF_TURN,
 ) -> list[Sequence]:
     """The sequence of fewest finger moves from three contacts to three, and of these of the widest margin.
 
@@ -64,7 +64,7 @@ def sequences(
     allowed, also one for each higher number of moves with a wider margin. Empty where none is.
     start, goal: places in the graph, of fingers 1, 2, 3 at the start. least_margin: [rad] that every hold
     must have. allowed: (3, V) which finger may touch which contact; by default all may touch all. max_turn:
-    in one step; reach: of turns that take several, with all three fingers in between, below pi [rad].
+    in one step; reach: of turns that take several, with all three fingers in between, at most pi [rad].
     """
     fingers = Fingering(graph, max_turn, least_margin, allowed, reach)
     return preferred(fingers, start, goal, goal_orientation, extra)

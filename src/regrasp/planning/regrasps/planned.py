@@ -69,7 +69,7 @@ def _planned(problem: Asked, extra: int, barred: Barred | None) -> Plans:
                 return _turning_plans(problem, exact)
             except Infeasible:
                 return _sampled_plans(problem, extra)
-        sampled = sampled_sequences(problem, extra, problem.largest_turn, REACH)
+        sampled = sampled_sequences(problem, extra, problem.largest_turn, problem.setting.reach)
         if not sampled or _order(exact[0].sequence) <= _order(sampled[0]):
             try:
                 return _turning_plans(problem, exact)
@@ -88,7 +88,7 @@ def _turning_plans(problem: Asked, found: list[TurningSequence]) -> Plans:
 
 
 def _sampled_plans(problem: Asked, extra: int, barred: Barred | None = None) -> Plans:
-    turn, reach = problem.largest_turn, REACH
+    turn, reach = problem.largest_turn, problem.setting.reach
     known: dict[Hold, float] = {}
     found = sampled_sequences(problem, extra, turn, reach, known, barred)
     if not found:
@@ -106,6 +106,8 @@ def _sampled_plans(problem: Asked, extra: int, barred: Barred | None = None) -> 
             if more and isinstance(error, Refused):  # a state between holds that hold: another way
                 more -= 1
                 known[sequence.holds[error.hold(len(sequence.holds))]] = -1.0
+            elif reach > REACH:
+                reach = REACH  # half a turn holds nothing where a hold has no margin, or forces no room
             else:
                 turn = turn / 2 if reach == turn else turn
                 reach = turn

@@ -23,7 +23,7 @@ from regrasp.planning.holds.bottleneck import Bottleneck, bottleneck
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import MOST_ORIENTATIONS, Filter, HoldGraph
 from regrasp.planning.holds.sequences import MAX_TURN, Sequence
-from regrasp.planning.holds.stances import REACH, Places
+from regrasp.planning.holds.stances import Places
 from regrasp.planning.holds.triples import TripleFilter
 from regrasp.planning.holds.turning.search import TurningSequence
 from regrasp.planning.holds.weights import RegraspWeights
@@ -253,7 +253,7 @@ class RegraspProblem(ArrayValue):
         """
         whole(extra, "extra", least=0, most=MOST_EXTRA)
         turn = self.largest_turn if max_turn is None else turn_below_pi(max_turn)
-        return sampled_sequences(self, extra, turn, REACH)
+        return sampled_sequences(self, extra, turn, self.setting.reach)
 
     @property
     def is_exact(self) -> bool:

@@ -17,7 +17,7 @@ from regrasp.planning.holds.bottleneck import bottleneck, connected
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import HoldGraph
 from regrasp.planning.holds.sequences import preferred
-from regrasp.planning.holds.stances import REACH, Stances
+from regrasp.planning.holds.stances import Stances
 from regrasp.planning.regrasps.asked import Asked
 from regrasp.planning.regrasps.turning import turning_sequences
 from regrasp.planning.states.refusals.least_values import MOST_FRICTION, least_value, rounded_up
@@ -34,7 +34,7 @@ def possible_on(problem: Asked, graph: AnyGraph, arcs: bool = True) -> bool:
 
 
 def _stances(problem: Asked, graph: AnyGraph) -> Stances:
-    return problem.setting.stances(graph, problem.largest_turn, REACH, problem.allowed, 0.0)
+    return problem.setting.stances(graph, problem.largest_turn, problem.setting.reach, problem.allowed, 0.0)
 
 
 def widest_margin(problem: Asked) -> float:

@@ -80,14 +80,18 @@ def choose_forces(
             found, refused = None, reason  # without proof: contacts next to one another, or at the edge
         if found is not None:
             return found
+    from regrasp.planning.states.levels.wide_limits import of_wide_limits
     from regrasp.planning.states.many_contacts import solved_forces
     from regrasp.programs.facts import available_backends, is_available
 
     if method != "auto" and not is_available(method):
         known = ", ".join(("auto", "closed-form", *available_backends()))
         raise InvalidInput(f"method must be one of {known}; got {shown(method)}")
+    backend = DEFAULT_BACKEND if method == "auto" else method
     try:
-        return solved_forces(grasp, load, criteria, DEFAULT_BACKEND if method == "auto" else method, facets)
+        return of_wide_limits(
+            grasp, load, criteria, lambda some: solved_forces(grasp, load, some, backend, facets)
+        )
     except RegraspError:
         if refused is not None:
             raise refused from None

@@ -131,8 +131,10 @@ def _pressed(
     if found is None:
         raise _too_weak(grasp, load, criteria)
     if isinstance(objective, LevelObjective):
+        narrowing = Narrowing(grasp, objective, frictions)
+        found = Found(found.forces, max(narrowing.top - narrowing.level(found.forces), 0.0))
         with suppress(SolverFailed):
-            found = highest(chooser, Narrowing(grasp, objective, frictions), found.forces, limits)
+            found = highest(chooser, narrowing, found.forces, limits)
     return ChosenForces(grasp.cones.forces(found.forces), tuple(limits), backend, found.gap)
 
 

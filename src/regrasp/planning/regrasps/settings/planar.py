@@ -17,7 +17,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.outline import Outline
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.pairs import HoldGraph, evenly
-from regrasp.planning.holds.planar_stances import Fingering
+from regrasp.planning.holds.planar_stances import HALF_TURN, Fingering
 from regrasp.planning.regrasps.asked import Asked, without_limits
 from regrasp.planning.regrasps.settings.arcs import arc_lengths, on_arcs
 from regrasp.planning.regrasps.steps import Chosen, least_margin, step_between
@@ -35,6 +35,7 @@ _SAME_ANGLE = 1e-9
 class PlanarSetting:
     """The plane, as ``Setting`` says."""
 
+    reach = HALF_TURN
     fingers, shape, grasp = 3, "outline", "three planar contacts"
 
     def __init__(self, problem: Asked) -> None:

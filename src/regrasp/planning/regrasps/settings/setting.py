@@ -31,6 +31,10 @@ class Setting(Protocol):
         """Of the shape [m]."""
 
     @property
+    def reach(self) -> float:
+        """How far the object turns at most from one hold to the next, all fingers between them [rad]."""
+
+    @property
     def shape(self) -> str:
         """What it is called."""
 

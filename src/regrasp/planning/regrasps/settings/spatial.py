@@ -16,6 +16,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.holds.graphs import AnyGraph
 from regrasp.planning.holds.spatial_stances import Quads
+from regrasp.planning.holds.stances import REACH
 from regrasp.planning.holds.triples import FACETS, TripleGraph, directions
 from regrasp.planning.regrasps.asked import Asked, without_limits
 from regrasp.planning.regrasps.settings.regions import on_regions
@@ -40,6 +41,7 @@ _SAME = 1e-9
 class SpatialSetting:
     """Space, as ``Setting`` says."""
 
+    reach = REACH
     fingers, shape, grasp = 4, "mesh", "four contacts in space"
 
     def __init__(self, problem: Asked, mesh: "Mesh") -> None:
