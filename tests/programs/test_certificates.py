@@ -196,10 +196,12 @@ def test_duals_outside_of_the_cone_prove_nothing():
     assert judged(claim, 1e-7, lambda _: claim).status is Status.UNSOUND
 
 
+@pytest.mark.parametrize("size", [0.0, 1.0])
 @pytest.mark.parametrize("large", [1.0, 1e3, 1e9, 1e15])
-def test_rows_that_cancel_hide_no_others(large) -> None:
+def test_rows_that_cancel_hide_no_others(large, size) -> None:
     """x + y = 0, x + y <= 0 and y >= 1 have a point, (-1, 1), whatever the first two weigh."""
     p = program(np.zeros((2, 2)), [0, 0], [[1, 1], [1, 1], [0, -1]], [0, 0, -1], zero(1), nonnegative(2))
+    p = replace(p, size=size)
     z = np.array([-large, large, 1.0])
     assert infeasibility_residual(p, z) >= 1e-2
     nothing = np.full(2, np.nan)

@@ -40,6 +40,23 @@ def test_a_sound_answer_comes_back_and_a_polished_one_does() -> None:
     assert all(np.array_equal(a, b) for a, b in zip(once, twice, strict=True))
 
 
+@pytest.mark.parametrize(("noise", "quiet"), [(0.9e-6, True), (1.1e-6, False)])
+def test_duals_that_are_noise_are_left_out(noise, quiet) -> None:
+    """max t below 1 beside y = w, which cost nothing: the columns of y and w have noise alone.
+
+    Too many others for steps. The row of noise has terms 2 noise for the objective's one.
+    """
+    n = 300
+    A = np.zeros((2, 3 + n))
+    A[0, 0], A[1, 1:3] = 1, (1, -1)
+    p = program(np.zeros((3 + n, 3 + n)), [-1.0] + [0.0] * (2 + n), A, [1, 0], nonnegative(1), zero(1))
+    x = np.r_[1.0, 1.0, 1.0, np.zeros(n)]
+    found = polished(p, x, np.array([1.0, noise / 2]), 1e-9)
+    assert (found is not None) is quiet
+    if found is not None:
+        assert found[1].tolist() == [1.0, 0.0]
+
+
 def test_a_measure_at_its_limit_is_sound_and_above_is_not() -> None:
     """Too many unknowns and rows for steps, so that the answer stands or falls as it is."""
     n = 151

@@ -24,6 +24,8 @@ from regrasp.programs.program import Program
 _STEPS = 5
 _NEAR = 1e-3
 """Largest measure of what steps are taken from: what is farther off was no answer."""
+_NOISE = 1e-6
+"""Terms that are a smaller part of the objective's are a solver's noise."""
 _LARGEST = 300
 """Unknowns and rows up to which steps are taken."""
 
@@ -35,8 +37,8 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
     unit, are at most ``allowed``. The duals that are returned lie in K*. An x that is not finite is refused;
     duals that are not count as zero. Without an objective nothing pulls, and all duals are zero. The first
     that is sound is taken of the answer as it is; x = 0, the best point where rows and objective grow with x;
-    and ``_STEPS`` steps from an answer whose measures are at most ``_NEAR``, in programs of at most
-    ``_LARGEST`` unknowns and rows.
+    the answer without duals that are noise; and ``_STEPS`` steps from an answer whose measures are at most
+    ``_NEAR``, in programs of at most ``_LARGEST`` unknowns and rows.
     """
     if not np.isfinite(x).all():
         return None
@@ -44,9 +46,9 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
     if not program.q.any() and not program.P.nnz:
         z = np.zeros(z.size)
     with np.errstate(all="ignore"):
-        for point in (x, np.zeros(x.size)):
-            if _is_sound(program, point, z, allowed):
-                return point, z
+        for first in ((x, z), (np.zeros(x.size), z), (x, _without_noise(program, x, z))):
+            if _is_sound(program, *first, allowed):
+                return first
         if sum(program.A.shape) > _LARGEST or not _is_sound(program, x, z, _NEAR):
             return None
         answer: tuple[Array, Array] | None = (x, z)
@@ -55,6 +57,13 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
             if answer is None or _is_sound(program, *answer, allowed):
                 return answer
     return None
+
+
+def _without_noise(program: Program, x: Array, z: Array) -> Array:
+    """Duals (m,) but those whose rows, weighted by them, have terms next to none of the objective's."""
+    terms, cones, sizes = program.terms, program.cones, np.abs(x)
+    of_rows = cones.units(np.abs(z)) * cones.units(terms.abs_A @ sizes + np.abs(program.b))
+    return np.where(of_rows > _NOISE * (sizes @ (terms.abs_P @ sizes + np.abs(program.q))), z, 0.0)
 
 
 def _is_sound(program: Program, x: Array, z: Array, allowed: float) -> bool:

@@ -10,8 +10,8 @@ be 1 / residual times those of b. Rows of which b has none, and that cancel, hid
 leave. So the residual is at least a hundredth of sum_j |A'z|_j X_j / -b'z, with X the units of the unknowns:
 a feasible point would have one that is so many times its unit. Likewise a direction d with P d = 0, -A d in K
 and q'd < 0 along which the objective falls for ever from any feasible point, if there is one. Where
-``Program.size`` says that all unknowns are in one unit, columns are too, and each is measured by the largest,
-with no other bound.
+``Program.size`` says that all unknowns are in one unit, that is X, columns are in one, too, and each is
+measured by the largest.
 """
 
 from math import inf
@@ -40,9 +40,10 @@ def infeasibility_residual(program: Program, z: Array) -> float:
         left = np.abs(terms.A.T @ inside)
         value, size = float(b @ inside), float(np.abs(b) @ np.abs(inside))
         residual = _per(largest(left, of_columns), value, size)
-        if program.size > 0 or not residual < inf:
+        if not residual < inf:
             return residual
-        grown = float(left @ units_of_unknowns(program)[0]) / -value
+        units = np.full(left.size, program.size) if program.size > 0 else units_of_unknowns(program)[0]
+        grown = float(left @ units) / -value
         return float(np.maximum(residual, _GROWN * grown))
 
 
