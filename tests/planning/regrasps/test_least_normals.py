@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.outline.parts import bracket
 from regrasp.planning.holds.pairs import HoldGraph, evenly, named
 from values import problem
 
@@ -173,3 +174,18 @@ def test_asking_for_more_leaves_the_problem_as_it_was() -> None:
     pushed = asked.asking(0.1)
     assert (asked.min_normal, pushed.min_normal) == (None, 0.1)
     assert asked.graph is not pushed.graph
+
+
+def test_a_share_of_the_load_is_not_asked_for_where_it_costs_the_margin() -> None:
+    """On two sides in one line a finger's normal force is set by the angle: at 1 % no room is left."""
+    part = bracket()
+    start, goal = (
+        rg.Grasp(part.contact_at(s * part.length, friction=0.5) for s in shares)
+        for shares in ((0.316, 0.714, 0.619), (0.134, 0.437, 0.958))
+    )
+    given, none = (
+        rg.plan_regrasp(part, start, goal, WEIGHT, friction=0.5, candidates=1, min_normal=least)
+        for least in (None, 0.0)
+    )
+    assert given.margin >= 0.5 * none.margin > 0.05
+    assert rg.verify(given).ok

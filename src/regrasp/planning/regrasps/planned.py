@@ -35,7 +35,8 @@ def planned(problem: Asked, extra: int, barred: Barred | None = None) -> Plans:
     """The plan of the best sequence, and of those of up to ``extra`` more moves; or ``Infeasible``.
 
     Where no least normal force is asked for, and none is ruled out, that of a share of the load is, if it
-    takes no more moves. With ``barred`` moves sampled orientations are looked at, and nothing ``extra``.
+    takes no more moves and leaves half of the margin. With ``barred`` moves sampled orientations are looked
+    at, and nothing ``extra``.
     """
     try:
         found = _planned(problem, extra, barred)
@@ -45,18 +46,24 @@ def planned(problem: Asked, extra: int, barred: Barred | None = None) -> Plans:
         raise why_not(problem) from None
     usual = problem.min_normal is None and not problem.one_finger
     if usual and any(hardly_pushes(plan.steps) for plan in found):
-        return _pushing(problem, extra, barred, len(found[0].moves)) or found
+        return _pushing(problem, extra, barred, found[0]) or found
     return found
 
 
-def _pushing(problem: Asked, extra: int, barred: Barred | None, moves: int) -> Plans:
-    """Plans in which all fingers push with a share of the load; none where that takes more moves."""
+def _pushing(problem: Asked, extra: int, barred: Barred | None, free: RegraspPlan) -> Plans:
+    """Plans in which all fingers push with a share of the load; none where that takes more moves than free.
+
+    Nor where it leaves less than half of the margin: a finger at the edge of its cone is no safer.
+    """
     share = LEAST_SHARE * float(np.linalg.norm(problem.load.force))
     try:
         found = _planned(problem.asking(share), extra, barred)
     except Infeasible:
         return []
-    return found if len(found[0].moves) <= moves or problem.weights is not None else []
+    if problem.weights is not None:
+        return found
+    first = found[0]
+    return found if len(first.moves) <= len(free.moves) and first.margin >= 0.5 * free.margin else []
 
 
 def _planned(problem: Asked, extra: int, barred: Barred | None) -> Plans:
