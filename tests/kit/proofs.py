@@ -1,9 +1,11 @@
 """Proofs about placements as plain values, made by hand, and to which bound they prove, to fifty digits."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -278,3 +280,29 @@ def random_planar(rng, size, norm, splits, **changes):
         "centre_of_mass": np.array(rng.integers(-2, 9, size=2), dtype=float),
     }  # fmt: skip
     return planar(vertices, loads, nodes, **given | changes)
+
+
+def tree_changes(proof: Any, parents: Any, last: int) -> list[tuple[str, Any, Any]]:
+    """By name, place and amount: what spoils the tree of boxes, its numbers and its twists."""
+    return [
+        ("children", (parents[0], 1), -1), ("children", (parents[-1], 1), 1),
+        ("children", (parents[-1], 0), -1), ("children", parents[0], -proof.children[parents[0]]),
+        ("number", last, 2), ("number", last, -1 - proof.number[last]),
+        ("number", last, -2 - proof.number[last]), ("twists", last, -2 * proof.twists[last]),
+        ("twists", last, -proof.twists[last]),
+    ]  # fmt: skip
+
+
+def said_of_changes(
+    proof: Any, changes: list[tuple[str, Any, Any]], said: Callable[[Any], str]
+) -> Iterator[str]:
+    """What is said of a proof with each change by itself; never nothing."""
+    for name, at, add in changes:
+        kept = getattr(proof, name)
+        other = kept.copy()
+        other[at] += add
+        setattr(proof, name, other)
+        found = said(proof)
+        assert found, (name, at)
+        setattr(proof, name, kept)
+        yield found

@@ -4,24 +4,17 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from test_turns_and_forbidden_arcs import BOWL, DOWN, GOAL, START
+from test_turns_and_forbidden_arcs import asked as task
 
 import regrasp as rg
 from regrasp.files import read_plan, write_plan
 
 pytestmark = pytest.mark.laws
 
-BOWL = rg.Outline([[0, 0], [4, 0], [6, 4], [5, 4], [2, 1], [-1, 4], [-2, 4]])
-DOWN = rg.Wrench([-1.0, -3.0])
-START, GOAL = (3.39, 9.01, 12.0), (0.44, 18.46, 12.0)
 
-
-def on_bowl(friction, *places):
-    return rg.Grasp(BOWL.contact_at(s, friction=friction) for s in places)
-
-
-def asked(friction=0.4, start=START, goal=GOAL, load=DOWN, **options):
-    ends = (on_bowl(friction, *places) for places in (start, goal))
-    return rg.regrasps_on_outline(BOWL, *ends, load, friction=friction, **options)
+def asked(friction=0.4, *more, **options):
+    return task(friction, *more, **options)
 
 
 def holds_of(plan):

@@ -7,7 +7,17 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from proofs import SHAPES, everything, limit, most_work, planar, planar_points, random_planar
+from proofs import (
+    SHAPES,
+    everything,
+    limit,
+    most_work,
+    planar,
+    planar_points,
+    random_planar,
+    said_of_changes,
+    tree_changes,
+)  # fmt: skip
 from regrasp.verification.placed.straight import StraightEdges
 
 pytestmark = pytest.mark.oracle
@@ -115,23 +125,13 @@ def test_every_part_of_a_tree_counts() -> None:
         n, k = len(proof.children), proof.fingers
         box, finger = int(rng.integers(n)), int(rng.integers(k))
         last = n - 1
-        for name, at, add in (
+        changes = [
             ("ends", (box, finger, 0), 1e-9), ("ends", (box, finger, 1), -1e-9),
             ("arcs", (box, finger, 1), 1), ("arcs", (box, finger, 0), -1),
-            ("children", (parents[0], 1), -1), ("children", (parents[-1], 1), 1),
-            ("children", (parents[-1], 0), -1), ("children", parents[0], -proof.children[parents[0]]),
-            ("number", last, 2), ("number", last, -1 - proof.number[last]),
-            ("number", last, -2 - proof.number[last]), ("twists", last, -2 * proof.twists[last]),
-            ("twists", last, -proof.twists[last]),
-        ):  # fmt: skip
-            kept = getattr(proof, name)
-            other = kept.copy()
-            other[at] += add
-            setattr(proof, name, other)
-            found = said(proof)
+            *tree_changes(proof, parents, last),
+        ]  # fmt: skip
+        for found in said_of_changes(proof, changes, said):
             seen.update(words for words in WORDS if words in found)
-            assert found, (name, box, finger)
-            setattr(proof, name, kept)
     assert seen == set(WORDS)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from proofs import Patches, limit, solid
+from proofs import Patches, limit, said_of_changes, solid, tree_changes
 
 pytestmark = pytest.mark.oracle
 
@@ -78,22 +78,12 @@ def test_every_part_of_a_tree_counts() -> None:
         assert said(proof) == ""
         n, k = proof.boxes.shape
         parents, box, finger, last = np.flatnonzero(proof.children[:, 1]), *rng.integers((n, k)), n - 1
-        for name, at, add in (
-            ("boxes", (box, finger), 1), ("boxes", (box, finger), -1), ("children", (parents[0], 1), -1),
-            ("children", (parents[-1], 1), 1), ("children", (parents[-1], 0), -1),
-            ("children", (parents[-1], 0), 1), ("children", parents[0], -proof.children[parents[0]]),
-            ("number", last, 2), ("number", last, -1 - proof.number[last]),
-            ("number", last, -2 - proof.number[last]), ("twists", last, -2 * proof.twists[last]),
-            ("twists", last, -proof.twists[last]),
-        ):  # fmt: skip
-            kept = getattr(proof, name)
-            other = kept.copy()
-            other[at] += add
-            setattr(proof, name, other)
-            found = said(proof)
+        changes = [
+            ("boxes", (box, finger), 1), ("boxes", (box, finger), -1), ("children", (parents[-1], 0), 1),
+            *tree_changes(proof, parents, last),
+        ]  # fmt: skip
+        for found in said_of_changes(proof, changes, said):
             seen.update(words for words in WORDS if words in found)
-            assert found, (name, box, finger)
-            setattr(proof, name, kept)
     assert seen == set(WORDS)
 
 
