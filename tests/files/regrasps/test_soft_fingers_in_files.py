@@ -9,26 +9,13 @@ from places import EXAMPLES
 from regrasp.files import (
     parse_scenario,
     plan_scenario,
-    read_scenario,
     write_setpoints,
 )
 from regrasp.files.plans.setpoints import checked, read_setpoints
-from regrasp.plans.regrasp_plan import RegraspPlan
 from scenarios import changed
 from spoiling import table_of
 
 pytestmark = pytest.mark.contract
-
-EXAMPLE = EXAMPLES / "space-regrasp.toml"
-SCENARIO = read_scenario(EXAMPLE)
-
-
-@pytest.fixture(scope="module")
-def plan() -> RegraspPlan:
-    planned = plan_scenario(SCENARIO)
-    assert planned.rotations is not None
-    return planned
-
 
 SOFT = """
 [load]
