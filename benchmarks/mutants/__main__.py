@@ -78,7 +78,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         ["verification/withstood/*.py"],
         [
             "verification/by_hand/test_withstood*.py",
-            "verification/test_withstood_plans.py",
+            "verification/test_withstood_*.py",
             "planning/**/test_tolerances.py",
             "planning/**/test_regrasps_that_withstand.py",
         ],

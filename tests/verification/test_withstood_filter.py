@@ -7,10 +7,10 @@ import pytest
 
 import regrasp as rg
 from paper import GRASP, LOAD
-from regrasp.verification.withstood import plans
+from regrasp.verification.withstood import judge
 from regrasp.verification.withstood.contacts import Body, Touch
-from regrasp.verification.withstood.float_filter import Sized, doubt, in_doubles, surely_withstood
-from regrasp.verification.withstood.matrices import rational
+from regrasp.verification.withstood.float_filter import Sized, doubt, surely_withstood
+from regrasp.verification.withstood.matrices import in_doubles, rational
 from values import WEIGHT, shaken, space_grasp
 
 pytestmark = pytest.mark.oracle
@@ -106,7 +106,7 @@ def test_verdicts_are_those_without_the_filter(monkeypatch: pytest.MonkeyPatch) 
         asked += [(plan, {"stiffness": springs, **more}) for more in found]
     verdicts = [rg.verify(plan, **more) for plan, more in asked]
     monkeypatch.setattr(
-        plans, "surely_withstood", lambda touch, forces, *_: np.zeros(len(forces.values), bool)
+        judge, "surely_withstood", lambda touch, forces, *_: np.zeros(len(forces.values), bool)
     )
     for (plan, more), found in zip(asked, verdicts, strict=True):
         assert rg.verify(plan, **more) == found

@@ -11,7 +11,6 @@ the z of that lambda is the worst member, and refutes it exactly. In the plane t
 g . f >= sigma(-R' g), and of any set.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -21,20 +20,22 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
-from regrasp.verification.exact import RESOLUTION, Vector, dot, exact
+from regrasp.verification.exact import RESOLUTION, Vector, dot, exact, rounded
 from regrasp.verification.withstood.matrices import (
     Matrix,
+    doubles,
+    in_doubles,
     is_semidefinite,
     product,
     rational,
     times,
     transposed,
 )
+from regrasp.verification.withstood.multipliers import multipliers
 
-_ROUNDING = 1e-12
-"""Of the size of a set: more than its support function in doubles is off."""
-_STEPS = 200
-_ABOVE = [Fraction(0), *(Fraction(1, 10**k) for k in (15, 13, 11, 9, 7, 5))]
+_ROUNDING, _ABOVE = 2.0**-40, 2.0**-46
+"""More than a support function in doubles is off, of the size of its set; than a multiplier, of its form."""
+CONE, LIMIT = "leaves its friction cone", "exceeds its limit"
 
 
 @dataclass(frozen=True)
@@ -50,13 +51,12 @@ class Body:
 
     def __init__(self, loads: LoadSet) -> None:
         self.loads = loads
-        axes, around = loads.half_axes, loads.cover
-        self.is_exact = loads.vertices is not None
-        self.vertices = None if around is None else rational(around.tolist())
+        self.vertices, self.cover, columns = (
+            None if rows is None else rational(rows.tolist())
+            for rows in (loads.vertices, loads.cover, loads.half_axes)
+        )
+        self.axes = columns
         self.center = exact(loads.center.vector.tolist())
-        self.axes = None if axes is None else rational(axes.tolist())
-        unit = np.eye(self.loads.center.vector.size)
-        self.sizes = np.maximum(loads.support(unit), loads.support(-unit))
 
     def allows(self, room: Fraction, twist: Vector) -> bool:
         """Whether no member works more than ``room`` along a twist."""
@@ -64,11 +64,11 @@ class Body:
             left = room - dot(twist, self.center)
             work = times(transposed(self.axes), twist)
             return left >= 0 and left**2 >= dot(work, work)
-        if self.is_exact and self.vertices is not None:
+        if self.vertices is not None:
             return all(room >= dot(twist, v) for v in self.vertices)
-        y = np.array([float(x) for x in twist])
-        highest = float(self.loads.support(y)) + _ROUNDING * float(np.abs(y) @ self.sizes)
-        return room >= Fraction(highest)
+        y, unit = doubles(twist), np.eye(len(twist))
+        sizes = np.maximum(self.loads.support(unit), self.loads.support(-unit))
+        return room >= Fraction(float(self.loads.support(y) + _ROUNDING * (abs(y) @ sizes)))
 
 
 class Touch:
@@ -104,20 +104,19 @@ class Touch:
         found = self._by_rows(force, answer, body, limit_share)
         if found is None and len(force) == 2:
             found = self._edges(force, answer, body)
-        checks = [] if len(force) == 2 else [(self._in_cone, "leaves its friction cone")]
-        limit = None if self.limit is None else self.limit * limit_share
-        if limit is not None:
-            checks.append((lambda f: self._in_limit(f, limit), "exceeds its limit"))
-        if found is not None or not checks:
+        limits: list[Fraction | None] = [None] if len(force) > 2 else []  # none for the cone
+        if self.limit is not None:
+            limits.append(self.limit * limit_share)
+        if found is not None or not limits:
             return found
-        if body.vertices is not None:
-            return self._by_vertices(force, answer, body, checks)
-        return next(self._by_ball(force, answer, body, limit), None)
+        if body.cover is not None:
+            return self._by_vertices(force, answer, body, limits)
+        return self._by_ball(force, answer, body, limits)
 
-    def _in_cone(self, f: Vector) -> bool:
-        return dot(f, self.n) >= 0 and dot(f, times(self.cone, f)) >= 0
-
-    def _in_limit(self, f: Vector, limit: Fraction) -> bool:
+    def _keeps(self, f: Vector, limit: Fraction | None) -> bool:
+        """Whether a force is within a limit, or within the cone."""
+        if limit is None:
+            return dot(f, self.n) >= 0 and dot(f, times(self.cone, f)) >= 0
         return sum(w * x * x for w, x in zip(self.weights, f, strict=True)) <= limit**2
 
     def _edges(self, force: Vector, answer: Matrix, body: Body) -> Broken | None:
@@ -127,8 +126,7 @@ class Touch:
             g = [self.mu * a + sign * b if sign else a for a, b in zip(self.n, across, strict=True)]
             twist = [-dot(g, list(column)) for column in zip(*answer, strict=True)]
             if not body.allows(dot(g, force), twist):
-                y = np.array([float(x) for x in twist])
-                return self._with_member("leaves its friction cone", force, answer, body.loads.extreme(y))
+                return self._with_member(force, answer, body.loads.extreme(doubles(twist)), None)
         return None
 
     def _by_rows(self, force: Vector, answer: Matrix, body: Body, share: Fraction) -> Broken | None:
@@ -137,137 +135,88 @@ class Touch:
             twist = [dot(a, list(column)) for column in zip(*answer, strict=True)]
             if body.allows(b * share - dot(a, force), twist):
                 continue
-            member = body.loads.extreme(np.array([float(x) for x in twist]))
+            member = body.loads.extreme(doubles(twist))
             after = _changed(force, answer, exact(member.vector.tolist()))
             return Broken("breaks a linear limit", None if dot(a, after) <= b * share else member)
         return None
 
-    def _with_member(
-        self, how: str, force: Vector, answer: Matrix, member: Wrench, limit: Fraction | None = None
-    ) -> Broken:
+    def _with_member(self, force: Vector, answer: Matrix, member: Wrench, limit: Fraction | None) -> Broken:
         """The member, where it breaks the condition exactly."""
         after = _changed(force, answer, exact(member.vector.tolist()))
-        held = self._in_cone(after) if limit is None else self._in_limit(after, limit)
-        return Broken(how, None if held else member)
+        return Broken(CONE if limit is None else LIMIT, None if self._keeps(after, limit) else member)
 
-    def _by_vertices(self, force: Vector, answer: Matrix, body: Body, checks) -> Broken | None:  # type: ignore[no-untyped-def]
-        assert body.vertices is not None
-        for vertex in body.vertices:
+    def _by_vertices(
+        self, force: Vector, answer: Matrix, body: Body, limits: list[Fraction | None]
+    ) -> Broken | None:
+        for vertex in body.cover or ():
             after = _changed(force, answer, vertex)
-            for holds, how in checks:
-                if holds(after):
+            for limit in limits:
+                if self._keeps(after, limit):
                     continue
-                if body.is_exact:
-                    return Broken(how, Wrench.from_vector([float(x) for x in vertex]))
-                twist = np.array([float(x) for x in _outward(self, after, answer, how)])
-                member = body.loads.extreme(twist)
-                inside = holds(_changed(force, answer, exact(member.vector.tolist())))
-                return Broken(how, None if inside else member)
+                if body.vertices is not None:
+                    return self._with_member(force, answer, Wrench.from_vector(doubles(vertex)), limit)
+                twist = self._outward(after, limit) @ in_doubles(answer)
+                return self._with_member(force, answer, body.loads.extreme(twist), limit)
         return None
 
-    def _by_ball(self, force: Vector, answer: Matrix, body: Body, limit: Fraction | None) -> Iterator[Broken]:
-        assert body.axes is not None
-        b, m = _changed(force, answer, body.center), product(answer, body.axes)
-        none = Fraction(0)
-        forms = [] if len(force) == 2 else [(self.cone, none, "leaves its friction cone")]
+    def _outward(self, after: Vector, limit: Fraction | None) -> Array:
+        """The direction in which a force outside goes farther out."""
+        f, n, weights = (doubles(x) for x in (after, self.n, self.weights))
         if limit is not None:
-            inner = [[-w if i == j else none for j in range(len(force))] for i, w in enumerate(self.weights)]
-            forms.append((inner, limit**2, "exceeds its limit"))
-        for form, constant, how in forms:
-            is_cone = constant == 0
-            along = times(transposed(m), self.n)
-            pushing = dot(b, self.n)
-            if is_cone and (pushing < 0 or pushing**2 < dot(along, along)):
-                z = _opposite(along)
-                yield self._at(how, force, answer, body, z, None)
-                return
-            qm = product(form, m)
-            qb = times(form, b)
-            s = [
-                [*row, x] for row, x in zip(product(transposed(m), qm), times(transposed(m), qb), strict=True)
-            ]
-            s.append([*times(transposed(m), qb), dot(b, qb) + constant])
-            multiplier, z = _multiplier(s)
-            step = max(abs(x) for row in s for x in row)
-            # In the hard case the multiplier is an end of what there is, where rounding decides: a little
-            # above.
-            if any(is_semidefinite(_shifted(s, multiplier + share * step)) for share in _ABOVE):
-                continue
-            yield self._at(how, force, answer, body, z, None if is_cone else limit)
-            return
+            return weights * f
+        side = f - (f @ n) * n
+        across = weights * side
+        return across / (np.sqrt(across @ side) or 1.0) - rounded(self.mu) * n
 
-    def _at(
-        self, how: str, force: Vector, answer: Matrix, body: Body, z: Array, limit: Fraction | None
-    ) -> Broken:
-        axes = body.loads.half_axes
-        assert axes is not None
-        member = Wrench.from_vector(body.loads.center.vector + axes @ z)
-        return self._with_member(how, force, answer, member, limit)
+    def _by_ball(
+        self, force: Vector, answer: Matrix, body: Body, limits: list[Fraction | None]
+    ) -> Broken | None:
+        """S-lemma, in which a proof's multiplier and a member are guessed in doubles."""
+        loads, axes = body.loads, body.axes or []
+        b, m = _changed(force, answer, body.center), product(answer, axes)
+        along, pushing = times(transposed(m), self.n), dot(b, self.n)
+        for limit in limits:
+            if limit is None and (pushing < 0 or pushing**2 < dot(along, along)):
+                z = -doubles(along)
+                z /= np.linalg.norm(z) or 1.0
+            else:
+                found = _worst(self._form(b, m, limit))
+                if found is None:
+                    continue
+                z = found
+            member = loads.center.vector + np.asarray(loads.half_axes) @ z
+            return self._with_member(force, answer, Wrench.from_vector(member), limit)
+        return None
+
+    def _form(self, b: Vector, m: Matrix, limit: Fraction | None) -> Matrix:
+        """S, of the cone or the limit at b + m z."""
+        columns = [[*row, x] for row, x in zip(m, b, strict=True)]
+        if limit is None:
+            return product(transposed(columns), product(self.cone, columns))
+        weighted = [[-w * x for x in row] for w, row in zip(self.weights, columns, strict=True)]
+        s = product(transposed(columns), weighted)
+        s[-1][-1] += limit**2
+        return s
 
 
 def _changed(force: Vector, answer: Matrix, d: Vector) -> Vector:
     return [f + x for f, x in zip(force, times(answer, d), strict=True)]
 
 
-def _outward(touch: Touch, after: Vector, answer: Matrix, how: str) -> Vector:
-    """The twist along which a member takes the force farthest out, from a force outside."""
-    f = np.array([float(x) for x in after])
-    n = np.array([float(x) for x in touch.n])
-    weights = np.array([float(x) for x in touch.weights])
-    if how == "exceeds its limit":
-        g = -weights * f
-    else:
-        across = np.sqrt(weights) * (f - (f @ n) * n)
-        g = float(touch.mu) * n - np.sqrt(weights) * across / (np.linalg.norm(across) or 1.0)
-    return [-dot(exact(g.tolist()), list(column)) for column in zip(*answer, strict=True)]
-
-
-def _shifted(s: Matrix, multiplier: Fraction) -> Matrix:
-    k = len(s) - 1
-    return [
-        [x + (0 if i != j else (multiplier if i < k else -multiplier)) for j, x in enumerate(row)]
-        for i, row in enumerate(s)
-    ]
-
-
-def _opposite(along: Vector) -> Array:
-    z = np.array([-float(x) for x in along])
-    size = float(np.linalg.norm(z))
-    return z / size if size else z
-
-
-def _multiplier(s: Matrix) -> tuple[Fraction, Array]:
-    """The lambda that makes the least of q over the ball largest from below, and its z; in floating point.
-
-    maximise c - lambda - sum b_i^2 / (e_i + lambda) over lambda >= 0, lambda >= -e_i: the derivative falls.
-    """
-    whole = np.array([[float(x) for x in row] for row in s])
-    scale = float(np.abs(whole).max()) or 1.0
-    values, vectors = np.linalg.eigh(whole[:-1, :-1] / scale)
-    b, c = vectors.T @ (whole[:-1, -1] / scale), float(whole[-1, -1] / scale)
-    least = max(0.0, -float(values.min()))
-    low, high = least, max(least, abs(c)) + float(np.linalg.norm(b)) + 1.0
-
-    def slope(x: float) -> float:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            parts = np.where(b == 0, 0.0, (b / (values + x)) ** 2)
-        return float(parts.sum()) - 1.0
-
-    if slope(low * (1 + 1e-15) + 1e-300) > 0:
-        for _ in range(_STEPS):
-            middle = (low + high) / 2
-            if slope(middle) > 0:
-                low = middle
-            else:
-                high = middle
-    chosen = high if low > least else least
+def _worst(s: Matrix) -> Array | None:
+    """A z, |z| <= 1, that makes (z, 1)'S (z, 1) least; None where none makes it negative, proven."""
+    size = max(abs(x) for row in s for x in row) or Fraction(1)
+    s = [[x / size for x in row] for row in s]
+    whole = in_doubles(s)
+    values, vectors = np.linalg.eigh(whole[:-1, :-1])
+    b = vectors.T @ whole[:-1, -1]
+    multiplier = float(multipliers(values, b, np.maximum(0.0, -values.min(initial=0.0))))
+    for shift in Fraction(multiplier), Fraction(multiplier + _ABOVE):  # at an end rounding decides: above it
+        shifts = [*[shift] * len(values), -shift]
+        if is_semidefinite([[*row[:k], row[k] + shifts[k], *row[k + 1 :]] for k, row in enumerate(s)]):
+            return None
     with np.errstate(divide="ignore", invalid="ignore"):
-        z = np.where(b == 0, 0.0, -b / (values + chosen))
-    z = np.where(np.isfinite(z), z, 0.0)
-    size = float(np.linalg.norm(z))
-    if size > 1:
-        z = z / size
-    elif chosen > 0:  # the hard case: the rest along the lowest curvature
-        z[int(values.argmin())] += np.sqrt(max(1 - size**2, 0.0))
-        z = z / np.linalg.norm(z)
-    return Fraction(chosen) * Fraction(scale), vectors @ z
+        z = np.nan_to_num(-b / (values + multiplier), posinf=0.0, neginf=0.0)
+    if multiplier > 0:  # on the sphere: what is left, along the lowest curvature
+        z[values.argmin()] += max(1 - float(z @ z), 0.0) ** 0.5
+    return np.asarray(vectors @ z / max(1.0, float(np.linalg.norm(z))))

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from regrasp.mechanics.checks import Array
 from regrasp.verification.exact import root, rounded
 from regrasp.verification.withstood.contacts import Body, Touch
-from regrasp.verification.withstood.matrices import Matrix
+from regrasp.verification.withstood.matrices import doubles
+from regrasp.verification.withstood.multipliers import multipliers
 
 _LEAST, _MOST = 2.0**-400, 2.0**400
-_STEPS = 60
 
 Sure = NDArray[np.bool_]
 
@@ -43,11 +43,6 @@ class Sized(NamedTuple):
         return Sized(self.values[:, rows], self.sizes[:, rows])
 
 
-def in_doubles(a: Matrix) -> Array:
-    """Rationals as the nearest doubles, infinite where there is none."""
-    return np.array([[rounded(x) for x in row] for row in a])
-
-
 def doubt(terms: int) -> float:
     """More than all rounding, relative to the sizes, for sums of so many terms."""
     return 2.0**-45 * (terms + 8)
@@ -63,24 +58,21 @@ def surely_withstood(
     """
     count, width = forces.values.shape
     sure = np.ones(count, dtype=bool)
-    normal, mu = np.array([float(x) for x in touch.n]), rounded(touch.mu)
-    conditions = [(-np.array([float(x) for x in a]), float(b) * share) for a, b in touch.rows]
+    normal, mu = doubles(touch.n), rounded(touch.mu)
+    conditions = [(-doubles(a), float(b) * share) for a, b in touch.rows]
     if width == 2:
         across = np.array([-normal[1], normal[0]])
-        conditions += [(mu * normal + sign * across, 0.0) for sign in (-1, 1)] + [(mu * normal, 0.0)]
+        conditions += [(mu * normal + sign * across, 0.0) for sign in (-1, 1)]
     for g, room in conditions:
         sure &= _keeps(g, room, forces, answer, body, off)
     limit = None if touch.limit is None else rounded(touch.limit) * share
-    forms = [] if width == 2 else [((1 + mu**2) * np.outer(normal, normal), normal @ normal, 0.0)]
+    forms = [] if width == 2 else [((1 + mu**2) * np.outer(normal, normal), float(normal @ normal), 0.0)]
     if limit is not None:
         forms.append((np.zeros((width, width)), 1.0, limit))
-    if not forms or not sure.any():
+    if not forms:
         return sure
     lift = np.array([root(x) for x in touch.weights])
-    columns = _columns(forces, answer, body, lift)
-    if columns is None:
-        return np.zeros(count, dtype=bool)
-    values, sizes = columns
+    values, sizes = _columns(forces, answer, body, lift)
     size = np.maximum(np.sqrt(np.einsum("...wk,...wk->...", sizes, sizes)), limit or 0.0)
     known = (size > _LEAST) & (size < _MOST)
     unit = -np.frexp(np.where(known, size, 1.0))[1]  # an exact change of units, in which sizes are about 1
@@ -106,8 +98,8 @@ def _keeps(g: Array, room: float, forces: Sized, answer: Array, body: Body, off:
         center = loads.center.vector
         least = float(twist @ center - _length(twist @ loads.half_axes))
         most = float(sizes @ abs(center) + _length(sizes @ abs(loads.half_axes)))
-    elif body.is_exact and loads.cover is not None:
-        least, most = float((loads.cover @ twist).min()), float((abs(loads.cover) @ sizes).max())
+    elif loads.vertices is not None:
+        least, most = float((loads.vertices @ twist).min()), float((abs(loads.vertices) @ sizes).max())
     else:
         return np.zeros(len(forces.values), dtype=bool)
     size = forces.sizes @ abs(g) + abs(room) + most
@@ -115,7 +107,7 @@ def _keeps(g: Array, room: float, forces: Sized, answer: Array, body: Body, off:
     return sure
 
 
-def _columns(forces: Sized, answer: Array, body: Body, lift: Array) -> tuple[Array, Array] | None:
+def _columns(forces: Sized, answer: Array, body: Body, lift: Array) -> tuple[Array, Array]:
     """[R A, f + R c] of each instant, (m, 1, w, k + 1), or f + R v of each vertex, (m, v, w, 1); with sizes.
 
     ``lift``: the weights that a limit measures its components with.
@@ -125,9 +117,7 @@ def _columns(forces: Sized, answer: Array, body: Body, lift: Array) -> tuple[Arr
     if loads.cover is not None:
         members = (f[:, None] + loads.cover @ answer.T)[..., None]
         return members, (s[:, None] + abs(loads.cover) @ abs(answer).T)[..., None]
-    if loads.half_axes is None:
-        return None
-    center, axes = loads.center.vector, loads.half_axes
+    center, axes = loads.center.vector, np.asarray(loads.half_axes)
     values = np.empty((len(f), 1, len(lift), axes.shape[1] + 1))
     sizes = np.empty(values.shape)
     values[..., :-1], sizes[..., :-1] = answer @ axes, abs(answer) @ abs(axes)
@@ -140,7 +130,12 @@ def _surely_positive(s: Array, delta: Array, off: float) -> Sure:
     known = np.isfinite(s).all(axis=(-1, -2)) & np.isfinite(delta)
     s = np.where(known[..., None, None], s, 0.0)
     k = s.shape[-1] - 1
-    multiplier = _multipliers(s, delta) if k else np.zeros(s.shape[:-2])
+    multiplier = np.zeros(s.shape[:-2])
+    if k:
+        values, vectors = np.linalg.eigh(s[..., :-1, :-1])
+        values = values - 2 * delta[..., None]
+        b = np.einsum("...ij,...i->...j", vectors, s[..., :-1, -1])
+        multiplier = multipliers(values, b, delta - values.min(axis=-1, initial=0.0))
     delta = delta + off * multiplier
     diagonal = np.arange(k)
     shifted = s.copy()
@@ -148,21 +143,6 @@ def _surely_positive(s: Array, delta: Array, off: float) -> Sure:
     shifted[..., -1, -1] -= multiplier + delta
     positive: Sure = known & _is_definite(shifted)
     return positive
-
-
-def _multipliers(s: Array, delta: Array) -> Array:
-    """The lambda that makes c - lambda - sum b_i^2 / (e_i + lambda) largest, by its slope, which falls."""
-    values, vectors = np.linalg.eigh(s[..., :-1, :-1])
-    b = np.einsum("...ij,...i->...j", vectors, s[..., :-1, -1])
-    values = values - 2 * delta[..., None]
-    low = np.maximum(0.0, -values.min(axis=-1)) + delta
-    high = low + _length(b)
-    for _ in range(_STEPS):
-        middle = (low + high) / 2
-        rises = ((b / (values + middle[..., None])) ** 2).sum(axis=-1) > 1
-        low, high = np.where(rises, middle, low), np.where(rises, high, middle)
-    chosen: Array = high
-    return chosen
 
 
 def _is_definite(a: Array) -> Sure:

@@ -2,7 +2,10 @@
 
 from fractions import Fraction
 
-from regrasp.verification.exact import Vector, dot, exact
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.verification.exact import Vector, dot, exact, rounded
 
 Matrix = list[Vector]
 
@@ -14,6 +17,16 @@ _BITS = 100
 def rational(rows: list[list[float]]) -> Matrix:
     """Doubles as the rationals they are."""
     return [exact(row) for row in rows]
+
+
+def doubles(x: Vector) -> Array:
+    """Rationals as the nearest doubles, infinite where there is none."""
+    return np.array([rounded(value) for value in x])
+
+
+def in_doubles(a: Matrix) -> Array:
+    """The same of a matrix."""
+    return np.array([doubles(row) for row in a])
 
 
 def times(a: Matrix, x: Vector) -> Vector:
