@@ -66,11 +66,10 @@ class Split(NamedTuple):
     equal: NDArray[np.bool_]
 
     def joined(self, of_inequalities: Any, of_equalities: Any) -> Array:
-        """(m,) duals in the order of the program's rows."""
-        duals = np.full(self.equal.size, np.nan)
+        """(m,) duals in the order of the program's rows; NaN for None."""
+        duals = np.empty(self.equal.size)
         for part, values in ((~self.equal, of_inequalities), (self.equal, of_equalities)):
-            if part.any() and values is not None:
-                duals[part] = values
+            duals[part] = np.nan if values is None else values
         return duals
 
 
