@@ -26,6 +26,7 @@ from regrasp.plots.look.units import SI, Units
 _TICKS = 12  # at most
 _TICK, _NORMAL = 0.02, 0.06  # lengths, as fractions of the outline's size
 _DETAIL = 2e-4
+_BESIDE = 1e-6  # of the length, from a mark
 
 
 def plot_outline(
@@ -77,7 +78,10 @@ def _ticks(ax: Axes, outline: Outline, size: float) -> None:
     """Marks outside the boundary at round arc lengths, numbers beside them."""
     step = round_below(2 * outline.length / _TICKS)
     s = step * np.arange(floor(outline.length / step * (1 - 0.3 / _TICKS)) + 1)
-    for at, r, n in zip(s, outline.points(s), outline.normals(s), strict=True):
+    # at a corner along its bisector: beside a concave one the normal of either side is the other side
+    off = _BESIDE * outline.length
+    normals = outline.normals((s - off) % outline.length) + outline.normals(s + off)
+    for at, r, n in zip(s, outline.points(s), normals / np.hypot(*normals.T)[:, None], strict=True):
         ax.plot(*np.array([r, r - _TICK * size * n]).T, color=GREY, linewidth=0.8, zorder=2, gid="tick")
         note(ax, f"{short(float(at))}", r - _TICK * size * n, -n, gap=1.5, color=GREY)
 
