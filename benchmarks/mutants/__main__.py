@@ -84,8 +84,8 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         ],
         0.95,
     ),
-    "programs": (["programs/*.py"], ["programs/test_*.py"], 0.95),
-    "judging": (["programs/judging/*.py"], ["programs/test_*.py"], 0.95),
+    "programs": (["programs/*.py"], ["programs/test_*.py", "programs/asked/test_*.py"], 0.95),
+    "judging": (["programs/judging/*.py"], ["programs/test_*.py", "programs/asked/test_*.py"], 0.95),
     "calls": (["programs/calls/*.py"], ["programs/**/test_*.py", "peers/test_*.py"], 0.95),
     "path": (
         ["planning/changes/path_search.py", "planning/changes/path_program.py"],

@@ -16,6 +16,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
+from inspect import CO_NEWLOCALS
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -57,7 +58,8 @@ class Engine:
         running: dict[int, tuple[str, Change, int]] = {}
         for path in self.modules:
             name = str(path)
-            functions = {code.co_qualname.replace("<locals>.", "") for code in _all_codes(_compiled(path))}
+            codes = [code for code in _all_codes(_compiled(path)) if code.co_flags & CO_NEWLOCALS]
+            functions = {code.co_qualname.replace("<locals>.", "") for code in codes}
             for change, key in named(changes(path.read_text(encoding="utf-8")), name):
                 if not self.wanted(key):
                     continue
@@ -244,12 +246,27 @@ def _swap_constants(module: ModuleType, new: CodeType) -> bool:
     changed = False
     for name, value in values.items():
         old = getattr(module, name, None)
+        if isinstance(value, type) and isinstance(old, type) and old.__module__ == module.__name__:
+            changed |= _swap_defaults(old, value)
         if name.startswith("__") or not _is_plain(value) or not _is_plain(old) or value == old:
             continue
         for other in list(sys.modules.values()):
             if isinstance(other, ModuleType) and vars(other).get(name) is old:
                 setattr(other, name, value)
         changed = True
+    return changed
+
+
+def _swap_defaults(old: type, new: type) -> bool:
+    """Put changed plain defaults of a class's fields in its place; they are its constructor's."""
+    changed = False
+    for name in ("__init__", "__new__"):
+        one, other = getattr(old, name), getattr(new, name)
+        if isinstance(one, FunctionType) and isinstance(other, FunctionType):
+            pairs = zip(one.__defaults__ or (), other.__defaults__ or (), strict=True)
+            if any(a != b for a, b in pairs if _is_plain(a) and _is_plain(b)):
+                one.__defaults__ = other.__defaults__
+                changed = True
     return changed
 
 

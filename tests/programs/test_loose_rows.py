@@ -65,6 +65,17 @@ def test_a_far_bound_below_is_no_loose_one() -> None:
     assert solve(program).status is Status.INFEASIBLE
 
 
+@pytest.mark.parametrize("size", [1, 3])
+def test_rows_of_a_block_are_left_out_one_by_one(size) -> None:
+    rows, b = sparse.csc_matrix([[1.0], [1.0], [-1.0]]), np.array([1.0, 1e9, 2.0])
+    program = Program(
+        sparse.csc_matrix(np.eye(1)), np.zeros(1), rows, b, (Block(Cone.NONNEGATIVE, size, 3 // size),)
+    )
+    rest, kept = without_loose_rows(program)
+    assert kept.tolist() == [True, False, True]
+    assert rest.blocks == (Block(Cone.NONNEGATIVE, 1, 2),)
+
+
 def test_far_is_told_by_sides_beside_each_other_whatever_their_size() -> None:
     for unit in (2.0**-30, 1.0, 2.0**30):
         rows, b = sparse.csc_matrix([[1.0], [-1.0]]), unit * np.array([1e5, 1.0])

@@ -10,7 +10,7 @@ from typing import Any
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
 from regrasp.programs.blocks import Array
 from regrasp.programs.calls.deadline import Deadline
-from regrasp.programs.facts import BACKENDS, Backend, available_backends, is_installed
+from regrasp.programs.facts import BACKENDS, Backend, available_backends, is_installed, named
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import PROVEN, judged
@@ -111,7 +111,7 @@ def _asked(
 ) -> Solution:
     """The back end's answer, not audited; an error of the solver's own is an answer, too."""
     time_limit = limit.left
-    if time_limit is not None and entry.time_limit and not backend.startswith("cvxpy"):
+    if time_limit is not None and entry.time_limit:
         options = {entry.time_limit: time_limit, **options}
         time_limit = None
     if isolated or time_limit is not None:
@@ -198,15 +198,14 @@ def _module(entry: Backend) -> str:
 
 
 def _entry(backend: str) -> Backend:
-    name = backend.partition(":")[0] if backend.startswith("cvxpy:") else backend
-    if name not in BACKENDS:
+    entry = named(backend)
+    if entry is None:
         raise SolverUnavailable(
             f"no back end {shown(backend)}; known: auto, {', '.join(BACKENDS)}, cvxpy:<SOLVER>"
         )
-    entry = BACKENDS[name]
     if not is_installed(entry):
         raise SolverUnavailable(
-            f"back end {shown(name)} needs the package {entry.needs}: pip install 'regrasp[solvers]'"
+            f"back end {shown(backend)} needs the package {entry.needs}: pip install 'regrasp[solvers]'"
         )
     return entry
 
@@ -237,7 +236,7 @@ def _first_sound(
 
         found = _first_sound(rest, False, limit, isolated, options)
         whole = judged(with_loose_rows(found, program, kept), _WHOLE, anyhow)
-        if found.status in _CLAIMS and whole.status in _CLAIMS:
+        if whole.status in _CLAIMS:
             return whole
     if throw:
         raise SolverFailed(

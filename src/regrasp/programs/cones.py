@@ -28,7 +28,7 @@ class Cones:
         self._round: list[tuple[slice, int]] = []  # rows of a run of second-order cones, and their size
         row = 0
         for block in blocks:
-            if block.cone is Cone.SECOND_ORDER and block.rows:
+            if block.cone is Cone.SECOND_ORDER:
                 self._round.append((slice(row, row + block.rows), block.size))
             row += block.rows
 
@@ -39,11 +39,15 @@ class Cones:
             for first in range(rows.start, rows.stop, size):
                 yield slice(first, first + size)
 
+    def _each(self, values: Array) -> Iterator[Array]:
+        """Of values (m,) those of the second-order cones, (k, size) of each run of them; they are shared."""
+        for rows, size in self._round:
+            yield values[rows].reshape(-1, size)
+
     def excess(self, s: Array) -> Array:
         """(m,) how far s (m,) lies outside: |s| of zero rows, -s of negative ones, |v| - t of a cone."""
         outside: Array = np.maximum(-s, np.where(self.zero, s, 0.0))
-        for rows, size in self._round:
-            each, out = s[rows].reshape(-1, size), outside[rows].reshape(-1, size)
+        for each, out in zip(self._each(s), self._each(outside), strict=True):
             out[:] = 0.0
             out[:, 0] = np.maximum(_length(each[:, 1:]) - each[:, 0], 0.0)
         return outside
@@ -52,19 +56,14 @@ class Cones:
         """Whether z (m,) lies in the dual cone; the zero cone's dual is everything."""
         if not np.logical_and.reduce(z >= self._least):
             return False
-        for rows, size in self._round:
-            each = z[rows].reshape(-1, size)
-            if not np.logical_and.reduce(_length(each[:, 1:]) <= each[:, 0]):
-                return False
-        return True
+        return all(np.logical_and.reduce(_length(each[:, 1:]) <= each[:, 0]) for each in self._each(z))
 
     def units(self, sizes: Array) -> Array:
         """(m,) the unit of every row: its own of ``sizes`` (m,), of a cone the length of all of its rows'."""
         if not self.has_round:
             return sizes
         units = sizes.copy()
-        for rows, size in self._round:
-            each = units[rows].reshape(-1, size)
+        for each in self._each(units):
             each[:] = _length(each)[:, None]
         return units
 
@@ -73,16 +72,14 @@ class Cones:
         if not self.has_round:
             return values
         largest = values.copy()
-        for rows, size in self._round:
-            each = largest[rows].reshape(-1, size)
+        for each in self._each(largest):
             each[:] = each.max(axis=1)[:, None]
         return largest
 
     def products(self, s: Array, z: Array) -> Array:
         """(m,) s z of every row; of a cone s'z, at its first row."""
         product = s * z
-        for rows, size in self._round:
-            each = product[rows].reshape(-1, size)
+        for each in self._each(product):
             each[:, 0] = each.sum(axis=1)
             each[:, 1:] = 0.0
         return product
@@ -92,8 +89,7 @@ class Cones:
         if self.has_round and _HUGE < (size := float(np.abs(z).max())) < np.inf:
             return size * self.dual(z / size)
         nearest: Array = np.where(z > -np.inf, np.maximum(z, self._least), z)
-        for rows, size in self._round:
-            each = nearest[rows].reshape(-1, size)
+        for each in self._each(nearest):
             t, length = each[:, 0], _length(each[:, 1:])
             along = np.maximum((t + length) / 2, 0.0)
             out = length > t
@@ -105,7 +101,5 @@ class Cones:
 
 
 def _length(rows: Array) -> Array:
-    if not rows.shape[1]:
-        return np.zeros(rows.shape[0])
     length: Array = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     return length

@@ -59,9 +59,14 @@ BACKENDS = {
 }  # fmt: skip
 
 
+def named(name: str) -> Backend | None:
+    """The back end of a name, of ``cvxpy:<SOLVER>`` cvxpy; None for any other."""
+    return BACKENDS.get("cvxpy" if name.startswith("cvxpy:") else name)
+
+
 def is_available(name: str) -> bool:
     """Whether a back end is installed here, one of cvxpy's solvers if cvxpy is."""
-    backend = BACKENDS.get(name.partition(":")[0])
+    backend = named(name)
     return backend is not None and is_installed(backend)
 
 

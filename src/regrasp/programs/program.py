@@ -56,7 +56,8 @@ class Program:
             raise InvalidInput(
                 f"P and A must have shapes {(n, n)} and {(m, n)}, got {self.P.shape} and {self.A.shape}"
             )
-        if sum(block.rows for block in self.blocks) != m:
+        is_whole = all(block.size >= 1 and block.count >= 0 for block in self.blocks)
+        if not is_whole or sum(block.rows for block in self.blocks) != m:
             raise InvalidInput(f"the cones must cover the {m} rows of A, got {self.blocks}")
         for name, values in (("P", self.P.data), ("q", self.q), ("A", self.A.data), ("b", self.b)):
             _check_finite(name, values)
@@ -108,13 +109,13 @@ class Program:
             InvalidInput: For a file that holds none.
         """
         arrays, matrices = read_arrays(Path(path))
-        kinds = list(Cone)
+        kinds = dict(enumerate(Cone))
         try:
             blocks = [
                 Block(kinds[kind], int(size), int(count)) for kind, size, count in arrays["cones"].tolist()
             ]
             size = float(arrays["size"])
-        except (ValueError, TypeError, IndexError) as error:
+        except (ValueError, TypeError, LookupError) as error:
             raise InvalidInput(f"{path}: not the cones or the size of a program: {error}") from None
         return Program(matrices["P"], arrays["q"], matrices["A"], arrays["b"], tuple(blocks), size)
 

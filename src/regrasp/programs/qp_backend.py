@@ -23,7 +23,7 @@ _STATUS = {
     Claim.UNBOUNDED: Status.UNBOUNDED,
 }
 # Weights of the proximal steps beside the linear objective: near it first, then far at one stride.
-_WEIGHTS = np.repeat([1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7], [2, 2, 10, 4, 3, 3, 3])
+_WEIGHTS = np.repeat(1 / 10.0 ** np.arange(1, 8), [2, 2, 10, 4, 3, 3, 3])
 # The last step's pull on the dual equation, relative to the objective.
 _PULL = 1e-10
 # A last step that is nearly a direction of descent is taken for one.
@@ -47,8 +47,8 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     took = perf_counter() - started
     solving = took if answer.solve_time is None else answer.solve_time
     claim = Claim(answer.status)
-    x = None if claim in (Claim.FAILED, Claim.REFUSED, Claim.INFEASIBLE) else answer.x
-    z = None if claim in (Claim.FAILED, Claim.REFUSED, Claim.UNBOUNDED) else answer.duals
+    x = answer.x if claim in (Claim.FOUND, Claim.UNBOUNDED) else None
+    z = answer.duals if claim in (Claim.FOUND, Claim.INFEASIBLE) else None
     status, said = _STATUS.get(claim, Status.NOT_FOUND), answer.said
     if (claim is Claim.INFEASIBLE and z is None) or (claim is Claim.UNBOUNDED and x is None):
         status, said = Status.NOT_FOUND, f"{said}, without a certificate"
@@ -66,25 +66,29 @@ def _filled(values: Array | None, size: int) -> Array:
 def _by_steps(program: Program, ask: Callable[[Program], Answer]) -> Answer:
     """The answer of a solver that needs a strictly convex objective, by steps that have one.
 
-    The proximal point method (Rockafellar, SIAM J. Control and Optimization 14, 1976) minimises the objective
-    plus w/2 |x - x_k|^2 from x_k to x_k+1. On linear programs it ends after finitely many steps, and where it
-    stands still its duals are those of the program. Where it never does, its steps turn into the direction
-    along which the objective falls.
+    The proximal point method (Rockafellar, SIAM J. Control and Optimization 14, 1976): from x_0 = 0 step k
+    minimises the objective plus s w_k / 2 |x - x_k|^2, w_k of ``_WEIGHTS`` in turn and s the largest entry of
+    q, or 1 if q = 0. On linear programs it ends after finitely many steps.
+
+    Returns:
+        Where P's diagonal is positive, what is answered to the program as it is. Else, of the steps, the
+        first answer that is no point, or that moved by so little that its duals miss those of the
+        program by at most ``_PULL`` s. Where all steps move on, the last answer: it falls for ever along the
+        last step where that is a direction of descent to ``_FALLING``, and is a point to be judged elsewhere.
     """
     P, q = program.P, program.q
     if P.diagonal().min(initial=np.inf) > 0:
         return ask(program)
-    size = float(abs(q).max(initial=0.0)) or 1.0
+    size = float(abs(q).max()) or 1.0
     identity = sparse.identity(q.size, format="csc")
-    x = step = np.zeros(q.size)
+    x = np.zeros(q.size)
     for weight in size * _WEIGHTS:
         answer = ask(replace(program, P=sparse.csc_matrix(P + weight * identity), q=q - weight * x))
         if answer.status != Claim.FOUND.value or answer.x is None:
-            break
-        moved, before, x = float(abs(answer.x - x).max()), x, answer.x
-        if weight * moved <= _PULL * size:
             return answer
-        step = answer.x - before
-    if answer.status == Claim.FOUND.value and unboundedness_residual(program, step) <= _FALLING:
+        step, x = answer.x - x, answer.x
+        if weight * abs(step).max() <= _PULL * size:
+            return answer
+    if unboundedness_residual(program, step) <= _FALLING:
         return replace(answer, status=Claim.UNBOUNDED.value, x=step, said=f"{answer.said}, falling for ever")
     return answer

@@ -32,10 +32,10 @@ def without_loose_rows(program: Program) -> tuple[Program, NDArray[np.bool_]] | 
         return None
     first, blocks = 0, []
     for block in program.blocks:
-        count = int(kept[first : first + block.rows].sum()) // block.size
+        count = int(kept[first : first + block.rows].sum())
         first += block.rows
         if count:
-            blocks.append(Block(block.cone, block.size, count))
+            blocks.append(block if count == block.rows else Block(block.cone, 1, count))
     rest = Program(program.P, program.q, program.A[kept].tocsc(), program.b[kept], tuple(blocks))
     return rest, kept
 

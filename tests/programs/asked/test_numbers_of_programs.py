@@ -1,0 +1,315 @@
+"""Cones, back ends and answers by numbers: at their limits, on both sides."""
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from regrasp.errors import InvalidInput
+from regrasp.programs import Block, Cone, Program, Rows, Solution, Status, solve
+from regrasp.programs import clarabel_backend as clarabel
+from regrasp.programs.backends import answered_quickly
+from regrasp.programs.cones import Cones
+from regrasp.programs.facts import BACKENDS
+from regrasp.programs.solution import failed
+
+pytestmark = pytest.mark.contract
+
+# -- cones: one equation, one inequality, two cones of three rows ------------------------------------------
+
+ALL = Cones((Block(Cone.ZERO, 1), Block(Cone.NONNEGATIVE, 1), Block(Cone.SECOND_ORDER, 3, 2)))
+STRAIGHT = Cones((Block(Cone.ZERO, 1), Block(Cone.NONNEGATIVE, 2)))
+
+
+def array(*numbers: float) -> np.ndarray:
+    return np.array(numbers, dtype=float)
+
+
+def test_each_cone_is_a_unit_of_its_own() -> None:
+    sizes = array(1, 2, 3, 4, 12, 2, 1, 2)
+    assert ALL.units(sizes).tolist() == [1, 2, 13, 13, 13, 3, 3, 3]
+    assert ALL.largest(sizes).tolist() == [1, 2, 12, 12, 12, 2, 2, 2]
+    assert sizes.tolist() == [1, 2, 3, 4, 12, 2, 1, 2]
+    assert [(part.start, part.stop) for part in ALL.round] == [(2, 5), (5, 8)]
+    assert ALL.excess(array(-3, -2, 1, 3, 4, 9, 3, 4)).tolist() == [3, 2, 4, 0, 0, 0, 0, 0]
+    assert ALL.excess(array(3, 2, -1, 3, 4, -2, 0, 0)).tolist() == [3, 0, 6, 0, 0, 2, 0, 0]
+    products = ALL.products(array(2, 3, 1, 2, 3, 4, 5, 6), array(5, 7, 1, 1, 2, 2, 1, 1))
+    assert products.tolist() == [10, 21, 9, 0, 0, 19, 0, 0]
+    assert (ALL.has_round, STRAIGHT.has_round) == (True, False)
+    assert Cones(()).excess(np.zeros(0)).tolist() == []
+    assert Cones((Block(Cone.SECOND_ORDER, 3, 0),)).dual(np.zeros(0)).tolist() == []
+
+
+def test_points_inside_are_their_own_nearest_to_the_last_bit() -> None:
+    """49 (1 / 49) is not 1 in doubles."""
+    for z in (array(-1, 1, 49, 3, 1, 5, 3, 4), array(7, 0, 49, 0, 0, 0, 0, 0)):
+        assert ALL.has_dual(z)
+        assert ALL.dual(z).tolist() == z.tolist()
+    far = 2.0**600 * array(-49, 49, 1)
+    assert (far / far[1] * far[1] != far).any()
+    assert STRAIGHT.dual(far).tolist() == far.tolist()
+
+
+@pytest.mark.parametrize("size", [1.0, 1e160, -1.0, -1e160])
+def test_far_points_have_a_nearest_one_whichever_of_their_numbers_is_large(size) -> None:
+    nearest = ALL.dual(array(0, 0, 0, size, 0, 0, 0, 0))
+    assert nearest == pytest.approx(array(0, 0, abs(size) / 2, size / 2, 0, 0, 0, 0))
+
+
+@pytest.mark.parametrize("cones", [ALL, STRAIGHT])
+def test_what_is_no_number_is_not_made_one(cones) -> None:
+    for bad in (-inf, nan):
+        z = np.zeros(cones.zero.size)
+        z[1] = bad
+        assert not cones.has_dual(z)
+        np.testing.assert_array_equal(cones.dual(z), z)
+    z = np.zeros(cones.zero.size)
+    z[2] = inf
+    np.testing.assert_array_equal(cones.dual(z), z)
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        (Block(Cone.ZERO, 1, 1),),
+        (Block(Cone.ZERO, 1, 3),),
+        (Block(Cone.ZERO, -2, -1),),
+        (Block(Cone.ZERO, 1, 3), Block(Cone.NONNEGATIVE, 1, -1)),
+        (Block(Cone.ZERO, 1, 2), Block(Cone.SECOND_ORDER, 0, 1)),
+    ],
+)
+def test_cones_cover_the_rows_and_have_rows_themselves(blocks) -> None:
+    parts = sparse.csc_matrix((1, 1)), np.zeros(1), sparse.csc_matrix((2, 1)), np.zeros(2)
+    assert Program(*parts, (Block(Cone.ZERO, 1, 2), Block(Cone.SECOND_ORDER, 1, 0))).b.size == 2
+    with pytest.raises(InvalidInput, match="the cones must cover the 2 rows of A"):
+        Program(*parts, blocks)
+
+
+@pytest.mark.parametrize("kind", [-1, 3])
+def test_a_kind_of_cone_that_there_is_not_is_not_read(tmp_path, kind) -> None:
+    rows = Rows(1)
+    rows.equal([[1.0]])
+    path = rows.program([1.0]).save(tmp_path / "p.npz")
+    with np.load(path) as file:
+        parts = dict(file)
+    np.savez(path, **(parts | {"cones": np.array([[kind, 1, 1]])}))
+    with pytest.raises(InvalidInput, match="not the cones"):
+        Program.load(path)
+
+
+@pytest.mark.parametrize("size", [0, -1])
+def test_a_cone_has_a_row_at_least(size) -> None:
+    rows = Rows(1)
+    with pytest.raises(InvalidInput, match=f"2 rows cannot be split into cones of {size}"):
+        rows.second_order([[1.0], [1.0]], size=size)
+    rows.second_order([[1.0], [1.0]], size=1)
+    assert rows.program([1.0]).blocks == (Block(Cone.SECOND_ORDER, 1, 2),)
+
+
+def test_dense_and_sparse_rows_stand_in_the_order_of_their_demands() -> None:
+    rows = Rows(2)
+    rows.equal([[1.0, 2.0]])
+    rows.equal(sparse.coo_array(np.array([[0.0, 3.0]])))
+    rows.at_least_zero([4.0, 0.0], 5.0)
+    assert len(rows) == 3
+    assert rows.program([0.0, 0.0]).A.toarray().tolist() == [[-1, -2], [0, -3], [-4, 0]]
+
+
+# -- programs and answers ----------------------------------------------------------------------------------
+
+
+def test_a_program_says_what_it_is() -> None:
+    none = Program(sparse.csc_matrix((2, 2)), np.zeros(2), sparse.csc_matrix((0, 2)), np.zeros(0), ())
+    assert str(none) == "program of 2 unknowns, no rows"
+    assert none.codes.shape == (0, 3)
+    assert none.slices == ()
+    rows = Rows(1)
+    for demand in (rows.equal, rows.at_least_zero, rows.equal, rows.second_order):
+        demand([[1.0], [0.0]])
+    whole = rows.program([0.0])
+    assert str(whole) == "program of 1 unknowns, rows 4 zero, 2 non-negative, 2 second-order"
+    assert whole.codes.tolist() == [[0, 2, 1], [1, 2, 1], [0, 2, 1], [2, 2, 1]]
+    assert [(part.start, part.stop) for _, part in whole.slices] == [(0, 2), (2, 4), (4, 6), (6, 8)]
+
+
+@pytest.mark.parametrize(("P", "size", "is_quick"), [
+    ([[0, 0], [0, 0]], 1, True), ([[0, 0], [0, 0]], 0, False), ([[0, 0], [0, 0]], 1e-9, True),
+    ([[1, 0], [0, 1]], 1, True), ([[0, 0], [0, -1]], 1, False), ([[1, 1], [1, 1]], 1, False),
+    ([[1, 0], [0, 0]], 1, True),
+])  # fmt: skip
+def test_what_a_kept_solver_may_answer(P, size, is_quick) -> None:
+    rows = Rows(2)
+    rows.at_least_zero(np.eye(2))
+    assert rows.program([1.0, 1.0], np.array(P, dtype=float), size=size).is_quick is is_quick
+    many = Rows(200)
+    many.at_least_zero(np.eye(200))
+    assert not many.program(np.ones(200), size=1.0).is_quick
+
+
+def test_an_answer_is_as_good_as_the_worst_of_its_measures() -> None:
+    """Of -x over x <= 1 at x = 1 + e, z = 1: outside by e of (1 + 1 + e), the worst of four."""
+    rows = Rows(1)
+    rows.at_least_zero([[-1.0]], 1.0)
+    program = rows.program([-1.0])
+    for e in (1e-3, 2e-3):
+        answer = Solution(program, "told", Status.SOLVED, array(1 + e), array(1), None, 0.0, 0.0, "so")
+        assert answer.residual == max(answer.audit[:4])
+        assert answer.residual < answer.absolute_gap
+    assert failed(program, "told", "no").residual == inf
+    half = Solution(program, "told", Status.SOLVED, array(1), array(nan), None, 0.0, 0.0, "so")
+    assert half.residual == inf
+    no = failed(program, "told", "no")
+    assert (no.build_time, no.solve_time) == (0, 0)
+
+
+# -- back ends ---------------------------------------------------------------------------------------------
+
+FINE = {"eps_abs": 1e-9, "eps_rel": 1e-9}
+TIGHT = ("tol_gap_abs", "tol_gap_rel", "tol_feas", "tol_infeas_abs", "tol_infeas_rel")
+
+
+def test_how_well_each_must_answer_and_how_it_is_asked_to() -> None:
+    assert {name: (backend.tolerance, backend.options) for name, backend in BACKENDS.items()} == {
+        "clarabel": (5e-7, dict.fromkeys(TIGHT, 1e-10)),
+        "daqp": (1e-7, {}),
+        "quadprog": (1e-7, {}),
+        "highs": (1e-6, {"presolve": "off"}),
+        "piqp": (1e-7, {"eps_abs": 1e-10, "eps_rel": 1e-10}),
+        "proxqp": (1e-6, {"eps_abs": 1e-10, "eps_rel": 0.0, "default_rho": 1e-2}),
+        "qpalm": (1e-5, {**FINE, "max_iter": 20_000}),
+        "osqp": (1e-5, {**FINE, "max_iter": 50_000}),
+        "scs": (1e-5, {**FINE, "max_iters": 200_000}),
+        "cvxpy": (1e-6, {}),
+    }
+
+
+def ticking(monkeypatch, module) -> None:
+    clock = iter([100.0, 103.0, 110.0])
+    monkeypatch.setattr(module, "perf_counter", lambda: next(clock))
+
+
+def half_line(b: float = 1.0, q: float = -1.0) -> Program:
+    rows = Rows(1)
+    rows.at_least_zero([[-1.0]], b)
+    return rows.program([q], size=1.0)
+
+
+def test_clarabel_tells_what_was_spent_on_what(monkeypatch) -> None:
+    ticking(monkeypatch, clarabel)
+    answer = clarabel.solve(half_line(), "clarabel")
+    assert (answer.build_time, answer.solve_time) == (3, 7)
+
+
+def test_clarabel_is_silent_and_has_the_settings_that_are_given() -> None:
+    settings = clarabel._settings(max_iter=7)
+    assert not settings.verbose
+    assert (settings.max_iter, settings.tol_feas) == (7, 1e-10)
+
+
+@pytest.mark.parametrize(
+    ("said", "x", "z"),
+    [("Solved", 2.0, 3.0), ("AlmostSolved", 2.0, 3.0), ("PrimalInfeasible", nan, 3.0),
+     ("DualInfeasible", None, None), ("MaxIterations", None, None), ("AlmostPrimalInfeasible", None, None)],
+)  # fmt: skip
+def test_what_a_kept_solver_says(monkeypatch, said, x, z) -> None:
+    made = []
+
+    class Solver:
+        def __init__(self, *given) -> None:
+            made.append(given)
+            self.status, self.x, self.z = said, [2.0], [3.0]
+
+        update = staticmethod(lambda **_: None)
+
+        def solve(self):
+            return self
+
+    monkeypatch.setattr(clarabel.clarabel, "DefaultSolver", Solver)
+    program = half_line()
+    answer = answered_quickly(program)
+    if x is None:
+        assert answer is None
+    else:
+        np.testing.assert_array_equal(answer, [[x], [z]])
+    lean = made[0][-1]
+    assert not lean.presolve_enable
+    assert not lean.equilibrate_enable
+    assert not lean.chordal_decomposition_enable
+    assert not lean.iterative_refinement_enable
+
+
+@pytest.fixture(scope="module")
+def through():
+    """The back end that asks through cvxpy."""
+    pytest.importorskip("cvxpy")
+    from regrasp.programs import cvxpy_backend
+
+    return cvxpy_backend
+
+
+def test_it_tells_what_was_spent_on_what(through, monkeypatch) -> None:
+    ticking(monkeypatch, through)
+    answer, own = through.timed_solve(half_line(), "cvxpy:CLARABEL")
+    assert (answer.build_time, answer.solve_time) == (3, 7)
+    assert 0 < own < 60
+    assert answer.iterations > 0
+
+
+def test_each_cone_is_laid_out_and_its_duals_are_ours(through) -> None:
+    """x0 = 1, x1 >= -2, |(x2, x3)| <= 5, |x4| <= 6, by squares and a pull."""
+    rows = Rows(5)
+    eye = np.eye(5)
+    rows.equal(eye[:1], -1.0)
+    rows.at_least_zero(eye[1:2], 2.0)
+    rows.second_order(np.vstack([0 * eye[0], eye[2], eye[3]]), [5.0, 0, 0])
+    rows.second_order(np.vstack([0 * eye[0], eye[4], 0 * eye[0]]), [6.0, 0, 0])
+    program = rows.program([-3.0, 4.0, -6.0, -8.0, -9.0], np.diag([2.0, 1, 1, 1, 1]))
+    answer = solve(program, "cvxpy:CLARABEL")
+    assert answer.value == pytest.approx([1, -2, 3, 4, 6], abs=1e-6)
+    assert answer.duals == pytest.approx([-1, 2, 5, -3, -4, 3, -3, 0], abs=1e-5)
+    assert answer.objective == pytest.approx(1 - 3 + 2 - 8 + 4.5 - 18 + 8 - 32 + 18 - 54, abs=1e-5)
+
+
+def test_without_rows_or_without_squares(through) -> None:
+    none = sparse.csc_matrix((0, 1)), np.zeros(0), ()
+    square = Program(sparse.csc_matrix([[2.0]]), -np.ones(1), *none)
+    assert solve(square, "cvxpy").value == pytest.approx([0.5])
+    answer = solve(half_line(), "cvxpy")
+    assert answer.value == pytest.approx([1.0])
+    assert answer.status is Status.SOLVED
+
+
+def test_it_has_no_numbers_where_there_is_no_answer(through) -> None:
+    empty = Rows(1)
+    empty.at_least_zero([[1.0], [-1.0]], [-2.0, 1.0])
+    for program in (empty.program([1.0]), half_line(q=1.0)):
+        answer = through.solve(program, "cvxpy:CLARABEL")
+        assert answer.status is Status.NOT_FOUND
+        assert np.isnan(answer.value).all()
+        assert np.isnan(answer.duals).all()
+
+
+def test_what_it_warns_of_is_in_its_word(through, recwarn) -> None:
+    answer = through.solve(half_line(), "cvxpy:CLARABEL", max_iter=1)
+    assert answer.status is Status.STOPPED
+    assert not recwarn.list
+
+
+def test_who_is_asked_where_nobody_is_named(through, monkeypatch) -> None:
+    asked = []
+
+    class Problem:
+        status, solver_stats = "optimal", None
+
+        def __init__(self, *_) -> None: ...
+
+        def solve(self, **options) -> None:
+            asked.append(options)
+
+    monkeypatch.setattr(through.cp, "Problem", Problem)
+    monkeypatch.setattr(through, "_dual", lambda *_: 0.0)
+    for name in ("cvxpy", "cvxpy:CLARABEL"):
+        answer, own = through.timed_solve(half_line(), name, speed=2)
+        assert (answer.iterations, own) == (None, None)
+    assert asked == [{"solver": None, "speed": 2}, {"solver": "CLARABEL", "speed": 2}]
