@@ -35,22 +35,37 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         0.95,
     ),
     "placed": (
-        ["verification/placed/**/*.py"],
         [
-            "verification/proofs/test_*.py",
+            f"verification/placed/{name}.py"
+            for name in ("chosen*", "touching", "arc_lengths", "re*", "whole_sets", "curved*", "protocol")
+        ],
+        [
+            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "co*", "regions*", "what*")),
             "verification/test_placement_proofs.py",
             *(
                 f"planning/**/test_{name}.py"
-                for name in (
-                    "choose_grasp",
-                    "constraints",
-                    "curves",
-                    "contact_regions",
-                    "grasps_on_meshes",
-                    "regions_on_*",
-                    "w*_placement",
-                )
+                for name in ("choose_grasp", "constraints", "curves", "contact_regions", "w*_placement")
             ),
+        ],
+        0.95,
+    ),
+    "boxes": (
+        [
+            f"verification/placed/{name}.py"
+            for name in ("placements", "straight", "cubic", "eroded", "clear_boxes", "roots")
+        ],
+        [
+            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "planar*", "proofs*")),
+            "verification/test_placement_proofs.py",
+        ],
+        0.95,
+    ),
+    "faces": (
+        ["verification/placed/faces/*.py", "verification/placed/surfaces.py", "verification/placed/areas.py"],
+        [
+            *(f"verification/proofs/test_{name}.py" for name in ("faces*", "solid*", "what_choices*")),
+            "planning/**/test_grasps_on_meshes.py",
+            "planning/**/test_regions_on_faces.py",
         ],
         0.95,
     ),

@@ -126,8 +126,11 @@ class Engine:
                 with self.kept.open("a") as file:
                     file.write(json.dumps(kept[key]) + "\n")
             found.append((item, set(kept[key]["entered"]), kept[key]["seconds"]))
+        _functions.cache_clear()
+        _caches.cache_clear()
         for path in self.modules:
             swap(path, ast.parse(path.read_text(encoding="utf-8")))
+        gc.freeze()  # forks share what is here
         return sorted(found, key=lambda entry: entry[2])
 
 
@@ -216,10 +219,7 @@ def swap(path: Path, tree: ast.Module) -> bool:
     new = compile(tree, str(path), "exec")
     codes = {(code.co_qualname, code.co_firstlineno): code for code in _all_codes(new)}
     changed = False
-    gc.unfreeze()  # a test of the command line may have hidden them all
-    for function in gc.get_objects():
-        if not isinstance(function, FunctionType) or function.__code__.co_filename != str(path):
-            continue
+    for function in _functions(path):
         code = codes.get((function.__code__.co_qualname, function.__code__.co_firstlineno))
         if code is not None and code != function.__code__:
             function.__code__ = code
@@ -229,6 +229,18 @@ def swap(path: Path, tree: ast.Module) -> bool:
     return _swap_constants(module, new) or changed
 
 
+@functools.cache
+def _functions(path: Path) -> list[FunctionType]:
+    """The functions of a module: looked for once, not in each fork."""
+    gc.unfreeze()  # a test of the command line may have hidden them all
+    return [
+        function
+        for function in gc.get_objects()
+        if isinstance(function, FunctionType) and function.__code__.co_filename == str(path)
+    ]
+
+
+@functools.cache
 def _caches(path: Path) -> list[Any]:
     """The functions of a module that remember what they returned."""
     return [

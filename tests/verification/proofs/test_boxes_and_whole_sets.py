@@ -47,6 +47,46 @@ def test_doubles_decide_what_is_beyond_rounding(size, norm) -> None:
     assert seen > 3
 
 
+@pytest.mark.parametrize("bound", [1e-6, 0.5, 1e6])
+@pytest.mark.parametrize("size", ["normal", "force", "margin"])
+def test_doubt_is_a_part_of_all_terms(size, bound) -> None:
+    """1e-13 of what the load does, of what a force may do at the farthest place, and of the bound."""
+    rng, seen = np.random.default_rng(9), set()
+    for k in range(9):
+        norm = "largest" if size == "margin" else ("sum", "squares", "largest")[k % 3]
+        proof = random_planar(rng, size, norm, splits=0, twists=np.zeros((1, 3)))
+        proof.bound, mu = bound, max(proof.friction, 0.25)
+        if size == "margin":
+            proof.friction, proof.margin = mu, 0.1 * proof.bound * mu / (1 + mu)
+        y = np.float_power(10, rng.integers(-3, 4, size=3)) * rng.choice([-1, 1], size=3)
+        proof.twists[0] = y
+        edges, most = StraightEdges(proof), []
+        for (first, last), ends in zip(proof.arcs[0].tolist(), proof.ends[0].tolist(), strict=True):
+            places = [[e, a, b] for e, a, b in proof.sides[first : last + 1].tolist()]
+            places[0][1], places[-1][2] = ends
+            stretches = [(int(e), Fraction(a - e), Fraction(b - e)) for e, a, b in places]
+            most.append(float(max(edges.most(*at, [Fraction(x) for x in y]) for at in stretches)))
+        reach = np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass)
+        room = 1e-13 * (abs(y[0]) + abs(y[1]) + abs(y[2]) * reach) * (1 + proof.friction)
+        dual = {"sum": np.max, "largest": np.sum, "squares": lambda a: np.sqrt((a**2).sum())}[norm]
+        if size == "margin":
+            done = sum(most) + len(most) * 4 * proof.bound * room
+        else:
+            done = proof.bound * dual(np.maximum(most, 0) + room) * (1 + 1e-13)
+        if not done > 100 * room * max(proof.bound, 1):
+            continue
+        for axis in range(3):  # by a load along one axis, and by one most of which cancels
+            for other in 0.0, 3.0:
+                load = np.zeros(3)
+                load[axis], load[axis - 1] = -1 / y[axis] * (1 + other), other / y[axis - 1]
+                lost = 1e-13 * (1 + 2 * other)
+                for factor, good in (1 + 1e-14, True), (1 - 1e-14, False):
+                    proof.loads[0] = load * (done / (1 - lost) * factor)
+                    assert clear_boxes(proof, edges).tolist() == [good], (k, axis, other, factor)
+                    seen.add(norm)
+    assert len(seen) == (1 if size == "margin" else 3)
+
+
 def test_boxes_of_no_form_are_not_clear(monkeypatch) -> None:
     rng, seen = np.random.default_rng(5), 0
     while seen < 6:

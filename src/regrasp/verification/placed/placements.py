@@ -182,7 +182,7 @@ class _Checked:
             dual = sum(most, start=Fraction(0))
         else:
             dual = root_above(sum((s * s for s in most), start=Fraction(0)))
-        if work < bound * dual or (dual == 0 and work <= 0):
+        if work <= 0 or work < bound * dual:
             return [f"proof: the twist of box {box} does not exclude it"]
         return []
 

@@ -236,7 +236,7 @@ def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
         dual = sum(most, start=Fraction(0))
     else:
         dual = root_above(sum((s * s for s in most), start=Fraction(0)))
-    return work >= Fraction(proof.bound) * dual and (dual > 0 or work > 0)
+    return work > Fraction(proof.bound) * dual
 
 
 def _upper(square: Fraction) -> Fraction:

@@ -7,7 +7,7 @@ from regrasp.mechanics.contact import Contact
 from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.placed.protocol import Proof, after_each
 
-_POINTS = 33  # of a curved side, from which Newton's method starts
+_POINTS = 33  # of a curved side, from which the method of Gauss and Newton starts
 _STEPS = 8
 
 
@@ -40,7 +40,7 @@ class Touching:
         return bool((near & (turned <= 4 * float(RESOLUTION))).any())
 
     def _nearest(self, control: Array, point: Array) -> Array:
-        """(m,) the parameters of the nearest points."""
+        """(m,) the parameters of the nearest points, to all digits of a point that is on a side."""
         lo, hi = self._lo, self._hi
         if self._straight:
             along = control[:, 3] - control[:, 0]
@@ -52,9 +52,7 @@ class Touching:
         t: Array = grid[away.argmin(axis=0), np.arange(len(lo))]
         for _ in range(_STEPS):
             slope, off = _slope(control, t), _at(control, t) - point
-            bent = (slope**2).sum(axis=1) + (off * _curving(control, t)).sum(axis=1)
-            step = np.where(bent > 0, (off * slope).sum(axis=1) / np.where(bent > 0, bent, 1.0), 0.0)
-            t = np.clip(t - step, lo, hi)
+            t = np.clip(t - (off * slope).sum(axis=1) / (slope**2).sum(axis=1), lo, hi)
         return t
 
     @property
@@ -83,10 +81,4 @@ def _slope(control: Array, t: Array) -> Array:
     s, t = (1 - t)[:, None], t[:, None]
     d = 3 * np.moveaxis(np.diff(control, axis=1), 1, 0)
     result: Array = s * s * d[0] + 2 * s * t * d[1] + t * t * d[2]
-    return result
-
-
-def _curving(control: Array, t: Array) -> Array:
-    d = 6 * np.moveaxis(np.diff(control, n=2, axis=1), 1, 0)
-    result: Array = (1 - t)[:, None] * d[0] + t[:, None] * d[1]
     return result
