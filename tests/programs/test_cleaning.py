@@ -43,14 +43,15 @@ def test_never_worse_whatever_comes(steps) -> None:
         assert unboundedness_residual(p, clean) <= unboundedness_residual(p, d)
 
 
-@pytest.mark.parametrize("noise", [1e-10, 1e-7, 1e-5, 1e-3])
-def test_noise_becomes_zero_and_the_rest_stays(noise) -> None:
-    """A guess is above the noise and below what is true; without steps nothing else is moved."""
-    z = np.array([1.0, 1.0, 0.7 * noise, 0.9 * noise])
-    assert np.array_equal(cleaned_duals(NONE, z, 0.0, steps=0), [1, 1, 0, 0])
-    falls = program(np.diag([0.0, 1, 1, 0]), [-1, 0, 0, 0], [[-1, 0, 0, 0]], [1], nonnegative(1))
-    d = np.array([1.0, 0.7 * noise, -0.9 * noise, 0.0])
-    assert np.array_equal(cleaned_direction(falls, d, 0.0, steps=0), [1, 0, 0, 0])
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+@pytest.mark.parametrize("noise", [1e-10, 1e-7, 1e-5, 1e-3, 1e-2 / 0.9])
+def test_noise_becomes_zero_and_the_rest_stays(noise, scale) -> None:
+    """A guess is above the noise, or the noise itself, and below what is true; the rest is not moved."""
+    z = scale * np.array([1.0, 1 + 1e-3, 0.7 * noise, 0.9 * noise])
+    assert np.array_equal(cleaned_duals(NONE, z, 0.0, steps=0), [*z[:2], 0, 0])
+    falls = program(np.diag([0.0, 1, 1, 0]), [1, 0, 0, 0], [[1, 0, 0, 0]], [1], nonnegative(1))
+    d = scale * np.array([-1.0, 0.7 * noise, -0.9 * noise, 0.0])
+    assert np.array_equal(cleaned_direction(falls, d, 0.0, steps=0), [d[0], 0, 0, 0])
 
 
 def test_what_is_larger_than_any_noise_is_not_put_at_zero() -> None:
@@ -86,6 +87,13 @@ def test_a_row_that_is_crossed_is_met_and_one_that_is_not_is_left() -> None:
     inside = program(np.diag([0, 0, 1.0]), [-1, 0, 0], [[1, -1, 0]], [0], nonnegative(1))
     clean = cleaned_direction(inside, np.array([1 - 1e-3, 1, 2e-2]), 0.0)
     np.testing.assert_allclose(clean[:2], [1 - 1e-3, 1], rtol=1e-12)  # its slack is its own
+
+
+def test_a_row_that_is_only_touched_is_none_that_is_crossed() -> None:
+    """x1 <= 0.9 x2 is crossed, x2 <= x3 not yet: the step is (-1, 0.9, 0), of length 0.1 / 1.81."""
+    p = program(np.zeros((3, 3)), [-1, 0, 0], [[1, -0.9, 0], [0, 1, -1]], [0, 0], nonnegative(2))
+    clean = cleaned_direction(p, np.ones(3), 0.0, 1)
+    np.testing.assert_allclose(clean, 1 + 0.1 / 1.81 * np.array([-1, 0.9, 0]), rtol=1e-12)
 
 
 @pytest.mark.parametrize("unit", [2.0**-10, 1.0, 2.0**10])

@@ -23,7 +23,7 @@ from regrasp.programs import (
 )
 from regrasp.programs import backends as table
 from regrasp.programs.facts import BACKENDS, is_available
-from regrasp.programs.judging.audit import audited
+from regrasp.programs.judging.audit import audited, missed
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.loose_rows import without_loose_rows
@@ -192,6 +192,12 @@ def test_a_sound_answer_is_left_as_it_is() -> None:
     assert answer.objective == pytest.approx(2)
     assert answer.residual < 1e-8
     assert "polished" not in answer.said
+
+
+def test_how_far_outside_counts_sides_of_either_sign() -> None:
+    """x >= 5 by 1: of a unit |b| + |a| X = 10."""
+    p = program([[0.0]], [0.0], [[-1.0]], [-5.0], nonnegative(1))
+    assert missed(p, np.array([4.0])) == pytest.approx(0.1)
 
 
 CONES = program(np.zeros((1, 1)), [0], np.zeros((5, 1)), np.zeros(5), zero(1), nonnegative(1),

@@ -41,20 +41,40 @@ def test_a_sound_answer_comes_back_and_a_polished_one_does() -> None:
 
 
 @pytest.mark.parametrize(("noise", "quiet"), [(0.9e-6, True), (1.1e-6, False)])
-def test_duals_that_are_noise_are_left_out(noise, quiet) -> None:
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("price", [1e-3, 1.0, 1e3])
+def test_duals_that_are_noise_are_left_out(noise, quiet, sign, price) -> None:
     """max t below 1 beside y = w, which cost nothing: the columns of y and w have noise alone.
 
-    Too many others for steps. The row of noise has terms 2 noise for the objective's one.
+    Too many others for steps. The row of noise has terms 2 noise for the objective's one; or min t with
+    t = -1 in its place.
     """
     n = 300
     A = np.zeros((2, 3 + n))
     A[0, 0], A[1, 1:3] = 1, (1, -1)
-    p = program(np.zeros((3 + n, 3 + n)), [-1.0] + [0.0] * (2 + n), A, [1, 0], nonnegative(1), zero(1))
-    x = np.r_[1.0, 1.0, 1.0, np.zeros(n)]
-    found = polished(p, x, np.array([1.0, noise / 2]), 1e-9)
+    row = nonnegative(1) if sign > 0 else zero(1)
+    p = program(np.zeros((3 + n, 3 + n)), [-price * sign] + [0.0] * (2 + n), A, [sign, 0], row, zero(1))
+    x = sign * np.r_[1.0, 1.0, 1.0, np.zeros(n)]
+    found = polished(p, x, price * np.array([sign, noise / 2]), 1e-9)
     assert (found is not None) is quiet
     if found is not None:
-        assert found[1].tolist() == [1.0, 0.0]
+        assert found[1].tolist() == [price * sign, 0.0]
+
+
+@pytest.mark.parametrize(("noise", "quiet"), [(0.9e-6, True), (1.1e-6, False)])
+def test_a_negative_side_is_a_term_of_noise(noise, quiet) -> None:
+    """Beside t, y >= 1 with y = 1: 2 noise again, half of it the right side's."""
+    n = 300
+    A = np.zeros((2, 2 + n))
+    A[0, 0], A[1, 1] = 1, -1
+    p = program(np.zeros((2 + n, 2 + n)), [-1.0] + [0.0] * (1 + n), A, [1, -1], nonnegative(2))
+    found = polished(p, np.r_[1.0, 1.0, np.zeros(n)], np.array([1.0, noise / 2]), 1e-9)
+    assert (found is not None) is quiet
+
+
+def test_what_nothing_pays_for_is_noise() -> None:
+    p = program([[1.0]], [0.0], [[1.0]], [0.0], nonnegative(1))
+    assert polished(p, np.zeros(1), np.ones(1), 1e-9)[1].tolist() == [0]
 
 
 def test_a_measure_at_its_limit_is_sound_and_above_is_not() -> None:
@@ -105,6 +125,16 @@ def test_numbers_too_large_for_a_step_are_refused() -> None:
         for x in (1 + 1e-5, 1 - 1e-5, 1e10):
             found = polished(q, np.array([x]), np.array([1e300]), 1e-12)
             assert found is None or worst(q, *found) <= 1e-12
+
+
+def test_a_curvature_too_large_ends_the_steps() -> None:
+    """min -u x1 with |u x| <= 1: all of it is a number but u u."""
+    u = 1e200
+    ball = program(np.zeros((2, 2)), [-u, 0], [[0, 0], [-u, 0], [0, -u]], [1, 0, 0], CONE)
+    x, z = np.array([1 / u, 0]), np.array([1.0, -1, 0])
+    assert polished(ball, x, z, 1e-12) is not None
+    assert worst(ball, x * (1 - 1e-6), z) < 1e-3
+    assert polished(ball, x * (1 - 1e-6), z, 1e-12) is None
 
 
 def test_duals_that_are_returned_lie_in_their_cone() -> None:

@@ -51,11 +51,11 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
                 return first
         if sum(program.A.shape) > _LARGEST or not _is_sound(program, x, z, _NEAR):
             return None
-        answer: tuple[Array, Array] | None = (x, z)
         for _ in range(_STEPS):
-            answer = answer and _step(program, *answer)
+            answer = _step(program, x, z)
             if answer is None or _is_sound(program, *answer, allowed):
                 return answer
+            x, z = answer
     return None
 
 
