@@ -73,7 +73,7 @@ def surely_withstood(
         return sure
     lift = np.array([root(x) for x in touch.weights])
     values, sizes = _columns(forces, answer, body, lift)
-    size = np.maximum(np.sqrt(np.einsum("...wk,...wk->...", sizes, sizes)), limit or 0.0)
+    size = np.sqrt(np.einsum("...wk,...wk->...", sizes, sizes))
     known = (size > _LEAST) & (size < _MOST)
     unit = -np.frexp(np.where(known, size, 1.0))[1]  # an exact change of units, in which sizes are about 1
     values, size = np.ldexp(values, unit[..., None, None]), np.ldexp(size, unit)

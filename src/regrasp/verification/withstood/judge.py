@@ -39,7 +39,6 @@ from regrasp.verification.withstood.matrices import (
     transposed,
 )
 
-_WHOLE = Fraction(1)
 _ROUNDING = Fraction(1, 10**12)
 """Of cosines in doubles: more than they are off."""
 
@@ -82,12 +81,11 @@ class Judge:
         states = [(label, _stacked(forces)) for label, forces in self._states()]
         yield from chain(*self._found(states, moving))
         yield from self._arcs(moving)
-        if moving:
-            for label, state, away in (("start", plan.start, arriving), ("end", plan.end, leaving)):
-                own = tuple(sorted({*away, *idle}))
-                if own != moving:
-                    said = f"{label}, all fingers at work answering"
-                    yield from chain(*self._found([(said, _stacked(state.forces))], own))
+        for label, state, away in (("start", plan.start, arriving), ("end", plan.end, leaving)):
+            own = tuple(sorted({*away, *idle}))
+            if own != moving:
+                said = f"{label}, all fingers at work answering"
+                yield from chain(*self._found([(said, _stacked(state.forces))], own))
 
     def _states(self) -> Iterator[tuple[str, Array]]:
         """Labels and forces of all states that decide."""
@@ -122,7 +120,7 @@ class Judge:
                 yield from found
 
     def _found(
-        self, states: list[tuple[str, Vector]], controlled: tuple[int, ...], share: Fraction = _WHOLE
+        self, states: list[tuple[str, Vector]], controlled: tuple[int, ...], share: Fraction = Fraction(1)
     ) -> list[list[str]]:
         """What breaks in each state; share: the part of limits that may be used."""
         answer, w = self._answer(controlled), self.grasp.width
