@@ -169,7 +169,7 @@ class Judge:
                 settled[:, i] = surely_withstood(
                     touch, after.part(rows), response[rows], self.body, float(share), off
                 )
-                if not touch.rows and not any(any(row) for row in answer[rows]):
+                if not any(any(row) for row in answer[rows]):
                     settled[:, i] |= [not any(stacked[rows]) for stacked in states]  # the apex
             found.append(settled)
         return found
