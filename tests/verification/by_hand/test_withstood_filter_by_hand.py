@@ -139,7 +139,7 @@ def test_factorisations_complete_where_all_minors_are_positive() -> None:
 
 def least(s: np.ndarray) -> float:
     """The least of a quadratic of one or two unknowns over the ball, sampled."""
-    angle, r = np.meshgrid(np.linspace(0, 2 * np.pi, 721), np.linspace(0, 1, 101))
+    angle, r = np.meshgrid(np.linspace(0, 2 * np.pi, 241), np.linspace(0, 1, 41))
     z = np.stack([r * np.cos(angle), r * np.sin(angle)])[: len(s) - 1]
     full = np.concatenate([z, np.ones((1, *angle.shape))])
     return float(np.einsum("i...,ij,j...->...", full, s, full).min())
