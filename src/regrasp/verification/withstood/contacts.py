@@ -219,5 +219,5 @@ def _worst(s: Matrix) -> Array | None:
         z = np.nan_to_num(-b / (values + multiplier), posinf=0.0, neginf=0.0)
     if multiplier > 0:  # on the sphere: what is left, along the lowest curvature
         k = values.argmin()
-        z[k] += np.copysign(max(1 - z @ z, 0.0) ** 0.5, z[k])
+        z[k] += np.copysign(max(1 - float(z @ z), 0.0) ** 0.5, z[k])
     return np.asarray(vectors @ z / max(1.0, float(np.linalg.norm(z))))
