@@ -1,4 +1,4 @@
-"""Cones, back ends and answers by numbers: at their limits, on both sides."""
+"""Cones, programs and answers by numbers: at their limits, on both sides."""
 
 from math import inf, nan
 
@@ -7,11 +7,8 @@ import pytest
 from scipy import sparse
 
 from regrasp.errors import InvalidInput
-from regrasp.programs import Block, Cone, Program, Rows, Solution, Status, solve
-from regrasp.programs import clarabel_backend as clarabel
-from regrasp.programs.backends import answered_quickly
+from regrasp.programs import Block, Cone, Program, Rows, Solution, Status
 from regrasp.programs.cones import Cones
-from regrasp.programs.facts import BACKENDS
 from regrasp.programs.solution import failed
 
 pytestmark = pytest.mark.contract
@@ -161,155 +158,3 @@ def test_an_answer_is_as_good_as_the_worst_of_its_measures() -> None:
     assert half.residual == inf
     no = failed(program, "told", "no")
     assert (no.build_time, no.solve_time) == (0, 0)
-
-
-# -- back ends ---------------------------------------------------------------------------------------------
-
-FINE = {"eps_abs": 1e-9, "eps_rel": 1e-9}
-TIGHT = ("tol_gap_abs", "tol_gap_rel", "tol_feas", "tol_infeas_abs", "tol_infeas_rel")
-
-
-def test_how_well_each_must_answer_and_how_it_is_asked_to() -> None:
-    assert {name: (backend.tolerance, backend.options) for name, backend in BACKENDS.items()} == {
-        "clarabel": (5e-7, dict.fromkeys(TIGHT, 1e-10)),
-        "daqp": (1e-7, {}),
-        "quadprog": (1e-7, {}),
-        "highs": (1e-6, {"presolve": "off"}),
-        "piqp": (1e-7, {"eps_abs": 1e-10, "eps_rel": 1e-10}),
-        "proxqp": (1e-6, {"eps_abs": 1e-10, "eps_rel": 0.0, "default_rho": 1e-2}),
-        "qpalm": (1e-5, {**FINE, "max_iter": 20_000}),
-        "osqp": (1e-5, {**FINE, "max_iter": 50_000}),
-        "scs": (1e-5, {**FINE, "max_iters": 200_000}),
-        "cvxpy": (1e-6, {}),
-    }
-
-
-def ticking(monkeypatch, module) -> None:
-    clock = iter([100.0, 103.0, 110.0])
-    monkeypatch.setattr(module, "perf_counter", lambda: next(clock))
-
-
-def half_line(b: float = 1.0, q: float = -1.0) -> Program:
-    rows = Rows(1)
-    rows.at_least_zero([[-1.0]], b)
-    return rows.program([q], size=1.0)
-
-
-def test_clarabel_tells_what_was_spent_on_what(monkeypatch) -> None:
-    ticking(monkeypatch, clarabel)
-    answer = clarabel.solve(half_line(), "clarabel")
-    assert (answer.build_time, answer.solve_time) == (3, 7)
-
-
-def test_clarabel_is_silent_and_has_the_settings_that_are_given() -> None:
-    settings = clarabel._settings(max_iter=7)
-    assert not settings.verbose
-    assert (settings.max_iter, settings.tol_feas) == (7, 1e-10)
-
-
-@pytest.mark.parametrize(
-    ("said", "x", "z"),
-    [("Solved", 2.0, 3.0), ("AlmostSolved", 2.0, 3.0), ("PrimalInfeasible", nan, 3.0),
-     ("DualInfeasible", None, None), ("MaxIterations", None, None), ("AlmostPrimalInfeasible", None, None)],
-)  # fmt: skip
-def test_what_a_kept_solver_says(monkeypatch, said, x, z) -> None:
-    made = []
-
-    class Solver:
-        def __init__(self, *given) -> None:
-            made.append(given)
-            self.status, self.x, self.z = said, [2.0], [3.0]
-
-        update = staticmethod(lambda **_: None)
-
-        def solve(self):
-            return self
-
-    monkeypatch.setattr(clarabel.clarabel, "DefaultSolver", Solver)
-    program = half_line()
-    answer = answered_quickly(program)
-    if x is None:
-        assert answer is None
-    else:
-        np.testing.assert_array_equal(answer, [[x], [z]])
-    lean = made[0][-1]
-    assert not lean.presolve_enable
-    assert not lean.equilibrate_enable
-    assert not lean.chordal_decomposition_enable
-    assert not lean.iterative_refinement_enable
-
-
-@pytest.fixture(scope="module")
-def through():
-    """The back end that asks through cvxpy."""
-    pytest.importorskip("cvxpy")
-    from regrasp.programs import cvxpy_backend
-
-    return cvxpy_backend
-
-
-def test_it_tells_what_was_spent_on_what(through, monkeypatch) -> None:
-    ticking(monkeypatch, through)
-    answer, own = through.timed_solve(half_line(), "cvxpy:CLARABEL")
-    assert (answer.build_time, answer.solve_time) == (3, 7)
-    assert 0 < own < 60
-    assert answer.iterations > 0
-
-
-def test_each_cone_is_laid_out_and_its_duals_are_ours(through) -> None:
-    """x0 = 1, x1 >= -2, |(x2, x3)| <= 5, |x4| <= 6, by squares and a pull."""
-    rows = Rows(5)
-    eye = np.eye(5)
-    rows.equal(eye[:1], -1.0)
-    rows.at_least_zero(eye[1:2], 2.0)
-    rows.second_order(np.vstack([0 * eye[0], eye[2], eye[3]]), [5.0, 0, 0])
-    rows.second_order(np.vstack([0 * eye[0], eye[4], 0 * eye[0]]), [6.0, 0, 0])
-    program = rows.program([-3.0, 4.0, -6.0, -8.0, -9.0], np.diag([2.0, 1, 1, 1, 1]))
-    answer = solve(program, "cvxpy:CLARABEL")
-    assert answer.value == pytest.approx([1, -2, 3, 4, 6], abs=1e-6)
-    assert answer.duals == pytest.approx([-1, 2, 5, -3, -4, 3, -3, 0], abs=1e-5)
-    assert answer.objective == pytest.approx(1 - 3 + 2 - 8 + 4.5 - 18 + 8 - 32 + 18 - 54, abs=1e-5)
-
-
-def test_without_rows_or_without_squares(through) -> None:
-    none = sparse.csc_matrix((0, 1)), np.zeros(0), ()
-    square = Program(sparse.csc_matrix([[2.0]]), -np.ones(1), *none)
-    assert solve(square, "cvxpy").value == pytest.approx([0.5])
-    answer = solve(half_line(), "cvxpy")
-    assert answer.value == pytest.approx([1.0])
-    assert answer.status is Status.SOLVED
-
-
-def test_it_has_no_numbers_where_there_is_no_answer(through) -> None:
-    empty = Rows(1)
-    empty.at_least_zero([[1.0], [-1.0]], [-2.0, 1.0])
-    for program in (empty.program([1.0]), half_line(q=1.0)):
-        answer = through.solve(program, "cvxpy:CLARABEL")
-        assert answer.status is Status.NOT_FOUND
-        assert np.isnan(answer.value).all()
-        assert np.isnan(answer.duals).all()
-
-
-def test_what_it_warns_of_is_in_its_word(through, recwarn) -> None:
-    answer = through.solve(half_line(), "cvxpy:CLARABEL", max_iter=1)
-    assert answer.status is Status.STOPPED
-    assert not recwarn.list
-
-
-def test_who_is_asked_where_nobody_is_named(through, monkeypatch) -> None:
-    asked = []
-
-    class Problem:
-        status, solver_stats = "optimal", None
-
-        def __init__(self, *_) -> None: ...
-
-        def solve(self, **options) -> None:
-            asked.append(options)
-
-    monkeypatch.setattr(through.cp, "Problem", Problem)
-    monkeypatch.setattr(through, "_dual", lambda *_: 0.0)
-    for name in ("cvxpy", "cvxpy:CLARABEL"):
-        answer, own = through.timed_solve(half_line(), name, speed=2)
-        assert (answer.iterations, own) == (None, None)
-    assert asked == [{"solver": None, "speed": 2}, {"solver": "CLARABEL", "speed": 2}]
