@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.sampling import verify_setpoints
+from regrasp.verification.ways.held import Bools, contacts_of, jumps, lost, touched
 from regrasp.verification.ways.verdict import Moving
 
 _ROUNDING = 1e-12  # of the duration
@@ -83,10 +84,16 @@ def verify_motion_rows(plan: Any, rows: MovedRows, ways: Moving | None = None) -
         ways: of the fingers, as ``plan_motions`` or ``files.read_ways`` returns them; not compared with if
             not given.
     """
-    steps = plan.steps if hasattr(plan, "steps") else (plan,)
+    steps = getattr(plan, "steps", (plan,))
     near = _SAME * max(step.grasp.size for step in steps)
-    radius, on = _touched(steps, rows, near)
-    violations = [*_jumps(rows, near), *_contacts(steps, rows, on), *_forces(steps, rows, on)]
+    radius = _radius(steps, rows, near)
+    on = touched(steps, rows.positions, rows.touching, radius, near)
+    during = [_during(rows, s) for s in range(len(steps))]
+    violations = [
+        *jumps(rows.times, rows.positions, rows.velocities, near),
+        *lost(rows.times, steps, during, rows.touching, on, rows.positions.shape[2]),
+        *_forces(steps, rows, on),
+    ]
     if ways is not None:
         violations += _off_ways(rows, ways, near)
     apart = [
@@ -111,62 +118,16 @@ def _off_ways(rows: MovedRows, ways: Moving, near: float) -> Iterator[str]:
         yield f"finger {i + 1} is {off[k, i]:.3g} off its way at {rows.times[k]:.6g} s"
 
 
-_On = dict[str, NDArray[np.bool_]]
-"""(m, k) by the name of a contact: which finger touches there."""
-
-
-def _touched(steps: Any, rows: MovedRows, near: float) -> tuple[float, _On]:
-    """The tips' radius, and who touches where."""
-    contacts = {str(c.name): c for step in steps for c in step.grasp}
-    touches = np.argwhere(rows.touching)
-    radius = (
-        _radius(list(contacts.values()), rows.positions[tuple(touches[0])], near) if touches.size else 0.0
-    )
-    on: _On = {}
-    for name, contact in contacts.items():
-        off = rows.positions - (contact.position - radius * contact.normal)
-        on[name] = rows.touching & (np.linalg.norm(off, axis=2) <= near)
-    return radius, on
-
-
-def _radius(contacts: list[Any], tip: Array, near: float) -> float:
-    """How far a tip is off the nearest contact on whose normal it is; not a number where it is on none's."""
+def _radius(steps: Any, rows: MovedRows, near: float) -> float:
+    """How far the first tip that touches is off the nearest contact on whose normal it is; else no number."""
     found = []
-    for contact in contacts:
-        off = contact.position - tip
-        away = float(off @ contact.normal)
-        if away >= -near and np.linalg.norm(off - away * contact.normal) <= near:
-            found.append(max(away, 0.0))
+    for tip in rows.positions[rows.touching][:1]:
+        for contact in contacts_of(steps).values():
+            off = contact.position - tip
+            away = float(off @ contact.normal)
+            if away >= -near and np.linalg.norm(off - away * contact.normal) <= near:
+                found.append(max(away, 0.0))
     return min(found, default=float("nan"))
-
-
-def _jumps(rows: MovedRows, near: float) -> Iterator[str]:
-    """Where positions are not what velocities say: between rows a velocity is one between those at both."""
-    passed = np.diff(rows.times)[:, None]
-    said = (rows.velocities[1:] + rows.velocities[:-1]) / 2 * passed[..., None]
-    off = np.linalg.norm(np.diff(rows.positions, axis=0) - said, axis=2)
-    change = np.linalg.norm(np.diff(rows.velocities, axis=0), axis=2)
-    around = np.maximum(change, np.maximum(np.roll(change, 1, axis=0), np.roll(change, -1, axis=0)))
-    bad = ~(off <= passed * around + near)
-    if bad.any():
-        k, i = np.argwhere(bad)[0]
-        yield f"finger {i + 1} moves otherwise than its velocity says at {rows.times[k]:.6g} s"
-
-
-def _contacts(steps: Any, rows: MovedRows, on: _On) -> Iterator[str]:
-    """Fingers that touch off contacts, contacts of a step without a finger, too few fingers that touch."""
-    stray = rows.touching & ~np.logical_or.reduce(list(on.values()))
-    if stray.any():
-        k, i = np.argwhere(stray)[0]
-        yield f"finger {i + 1} is said to touch off every contact at {rows.times[k]:.6g} s"
-    for s, step in enumerate(steps):
-        for name in step.grasp.names:
-            if not on[str(name)][_during(rows, s)].any(axis=1).all():
-                yield f"during step {s + 1} no finger is at {name}"
-    least = min(rows.positions.shape[2], *(len(step.grasp) for step in steps))
-    few = rows.touching.sum(axis=1) < least
-    if few.any():
-        yield f"fewer than {least} fingers touch at {rows.times[few.argmax()]:.6g} s"
 
 
 def _during(rows: MovedRows, step: int) -> NDArray[np.intp]:
@@ -177,7 +138,7 @@ def _during(rows: MovedRows, step: int) -> NDArray[np.intp]:
     return np.asarray(own[begin : end + 1])
 
 
-def _forces(steps: Any, rows: MovedRows, on: _On) -> Iterator[str]:
+def _forces(steps: Any, rows: MovedRows, on: dict[str, Bools]) -> Iterator[str]:
     """Forces in the air, such as do not hold the object or are not the plan's, or change in pauses."""
     pushes = rows.forces.any(axis=2) & ~np.logical_or.reduce(list(on.values()))
     if pushes.any():

@@ -15,6 +15,7 @@ from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, items, number, point
 from regrasp.mechanics.value import ArrayValue
 from regrasp.verification.ways.distances import points_of_axis, to_axis, to_boundary, to_faces
+from regrasp.verification.ways.held import contacts_of, jumps, lost, touched
 
 _PART = 10  # of the clearance: how far fingers move between samples
 _MOST = 1_000_000  # samples
@@ -95,9 +96,19 @@ def verify_motions(motions: Moving, shape: Any) -> MotionsVerification:
         raise InvalidInput(f"verify_motions needs an Outline or a Mesh, got {shown(shape)}")
     _check_numbers(motions)
     t, at = _sampled(motions)
+    if len(motions.capsules) != at.shape[1]:
+        raise InvalidInput(
+            f"motions of {at.shape[1]} fingers need as many capsules, got {len(motions.capsules)}"
+        )
     touching, keep = motions.touching(t), motions.clearance
-    reach, slack = motions.tip_radius, _NEAR * keep
-    violations = [*_jumps(motions, t, at), *_contacts(motions, t, at, touching)]
+    reach, slack, near = motions.tip_radius, _NEAR * keep, _SAME * keep
+    on, ends = touched(motions.steps, at, touching, reach, near), _ends(motions)
+    during = [(t >= begin) & (t <= end) for begin, end in ends]
+    violations = [
+        *jumps(t, at, motions.velocities(t), near),
+        *_late(ends, float(t[-1])),
+        *lost(t, motions.steps, during, touching, on, at.shape[2]),
+    ]
     still = np.linalg.norm(np.diff(at, axis=0), axis=2) == 0
     moving = np.ones(at.shape[:2], dtype=bool)
     moving[1:-1] = ~(still[1:] & still[:-1])
@@ -146,48 +157,19 @@ def _sampled(motions: Moving) -> tuple[Array, Array]:
     raise InvalidInput(f"ways move or jump by more than a tenth of the clearance between {_MOST} instants")
 
 
-def _jumps(motions: Moving, t: Array, at: Array) -> Iterator[str]:
-    """Where positions are not what velocities say."""
-    velocity = motions.velocities(t)
-    passed = np.diff(t)[:, None]
-    said = (velocity[1:] + velocity[:-1]) / 2 * passed[..., None]
-    off = np.linalg.norm(np.diff(at, axis=0) - said, axis=2)
-    change = np.linalg.norm(np.diff(velocity, axis=0), axis=2)  # of speed
-    around = np.maximum(change, np.maximum(np.roll(change, 1, axis=0), np.roll(change, -1, axis=0)))
-    bad = ~(off <= passed * around + _SAME * motions.clearance)  # which no number fails, too
-    if bad.any():
-        k, i = np.argwhere(bad)[0]
-        yield f"finger {i + 1} moves otherwise than its velocity says at {t[k]:.6g} s"
+def _ends(motions: Moving) -> list[tuple[float, float]]:
+    """When each step begins and ends."""
+    return [(motions.starts[k], motions.starts[k] + step.duration) for k, step in enumerate(motions.steps)]
 
 
-def _touch_points(motions: Moving) -> dict[str, Array]:
-    contacts = {str(c.name): c for step in motions.steps for c in step.grasp}
-    return {name: c.position - motions.tip_radius * c.normal for name, c in contacts.items()}
-
-
-def _contacts(motions: Moving, t: Array, at: Array, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Fingers that touch off contacts, contacts of a step without a finger, too few fingers that touch."""
-    points, near = _touch_points(motions), _SAME * motions.clearance
-    on = {name: touching & (np.linalg.norm(at - p, axis=2) <= near) for name, p in points.items()}
-    stray = touching & ~np.logical_or.reduce(list(on.values()))
-    if stray.any():
-        k, i = np.argwhere(stray)[0]
-        yield f"finger {i + 1} is said to touch off every contact at {t[k]:.6g} s"
-    over, whole = 0.0, float(t[-1])
-    room = _ROUNDING * whole
-    for k, step in enumerate(motions.steps):
-        begin, end = motions.starts[k], motions.starts[k] + step.duration
+def _late(ends: list[tuple[float, float]], whole: float) -> Iterator[str]:
+    """Steps that begin before the last one ends, or end after the ways."""
+    over, room = 0.0, _ROUNDING * whole
+    for k, (begin, end) in enumerate(ends):
         if not over - room <= begin < end <= whole + room:  # which no number fails, too
             between = f"after {over:.6g} and until {whole:.6g} s"
             yield f"step {k + 1} lasts from {begin:.6g} to {end:.6g} s, not {between}"
-        over, during = end, (t >= begin) & (t <= end)
-        for name in step.grasp.names:
-            if not on[str(name)][during].any(axis=1).all():
-                yield f"during step {k + 1} no finger is at {name}"
-    least = at.shape[2]
-    few = touching.sum(axis=1) < min(least, min(len(step.grasp) for step in motions.steps))
-    if few.any():
-        yield f"fewer than {least} fingers touch at {t[few.argmax()]:.6g} s"
+        over = end
 
 
 def _away(shape: Any, axis: Array, slack: float) -> Array:
@@ -211,7 +193,7 @@ def _lifting(motions: Moving, tips: Array) -> NDArray[np.bool_]:
     """(m,) whether tips (m, d) are on the normal of a contact, no farther off than a lift is high."""
     high = 4 * (motions.tip_radius + 2 * motions.clearance)
     result = np.zeros(len(tips), dtype=bool)
-    for contact in {str(c.name): c for step in motions.steps for c in step.grasp}.values():
+    for contact in contacts_of(motions.steps).values():
         off = tips - (contact.position - motions.tip_radius * contact.normal)
         h = -off @ contact.normal
         aside = np.linalg.norm(off + h[:, None] * contact.normal, axis=1)
