@@ -1,4 +1,4 @@
-"""What is believed, at its limits, on both sides: quick audits, verdicts, cones, far rows, rooms."""
+"""What is believed, at its limits, on both sides: quick audits, verdicts, far rows, rooms."""
 
 from dataclasses import replace
 
@@ -10,7 +10,6 @@ from regrasp.programs import Block, Cone, Program, Status, solve
 from regrasp.programs import backends as table
 from regrasp.programs.backends import least_room, solved_at_once, solved_quickly
 from regrasp.programs.judging.audit import audited, missed
-from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.elastic import elastic, proven_anyway
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
 from regrasp.programs.judging.proofs import infeasibility_residual
@@ -255,39 +254,7 @@ def test_the_residual_of_a_direction_is_what_decides(status) -> None:
     assert claim(p, Status.STOPPED, [0, 1]).residual == np.inf
 
 
-# -- convexity, rows left out, room --------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("P", "words"),
-    [
-        ([[0, 0.5], [0.5, 1]], "P[1, 0] is 0.5 and P[0, 1] is 0.5 beside 1 and 0"),
-        ([[1, 2], [2, 1]], "P[1, 0] is 2 and P[0, 1] is 2 beside 1 and 1"),
-        ([[4, 4 + 1e-11], [4 + 1e-11, 4]], "P[1, 0] is 4 and P[0, 1] is 4 beside 4 and 4"),
-        ([[1, 0], [0, -1e-30]], "P[1, 1] is -1e-30"),
-    ],
-)
-def test_the_words_of_what_is_not_convex(P, words) -> None:
-    assert words in why_not_convex(sparse.csc_matrix(np.array(P, dtype=float)))
-
-
-def test_what_is_convex() -> None:
-    """Zeros that are stored, a row of ones at the edge of Gershgorin's discs and of a factor, rounding."""
-    stored = sparse.csc_matrix((np.array([1.0, 0, 0, 0]), ([0, 0, 1, 1], [0, 1, 0, 1])), (2, 2))
-    assert stored.nnz == 4
-    for P in (stored, np.ones((2, 2)), np.ones((3, 3)), [[4, 4 + 1e-13], [4 + 1e-13, 4]], [[1, 0], [0, 0]]):
-        assert why_not_convex(sparse.csc_matrix(P)) == ""
-    for count in (3, 401):
-        P = np.zeros((count, count))
-        P[:3, :3] = [[1, -0.5, -0.5], [-0.5, 1, -0.5], [-0.5, -0.5, 1]]
-        assert why_not_convex(sparse.csc_matrix(P)) == ""
-        P[0, 1] = P[1, 0] = -0.5 - 1e-6
-        assert why_not_convex(sparse.csc_matrix(P)) != ""
-
-
-def test_a_matrix_of_low_rank_is_convex_however_many_unknowns() -> None:
-    root = np.random.default_rng(0).normal(size=(390, 5))
-    assert why_not_convex(sparse.csc_matrix(root @ root.T)) == ""
+# -- rows left out, room --------------------------------------------------------------------------
 
 
 @BOTH

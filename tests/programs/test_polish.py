@@ -240,6 +240,21 @@ def test_optima_on_cones_are_made_right(seed) -> None:
     np.testing.assert_allclose(z, pull, rtol=1e-11)
 
 
+def test_the_shortest_step_is_so_in_the_units_of_rows_and_columns() -> None:
+    """x1 + x2 / 8 = 1 is met by both in halves, each in the unit in which its entry is one."""
+    p = program(np.zeros((2, 2)), [0, 0], [[1, 1 / 8]], [1], zero(1))
+    x, _ = polished(p, np.array([0.5, 4]) * (1 + 1e-5), np.zeros(1), 1e-12)
+    np.testing.assert_allclose(x, [0.5, 4], rtol=1e-12)
+    x, _ = polished(p, np.array([1 + 1e-5, 0]), np.zeros(1), 1e-12)
+    np.testing.assert_allclose(x, [1 + 0.5e-5, -4e-5], rtol=1e-9)
+
+
+def test_rows_that_are_one_to_rounding_count_as_one() -> None:
+    p = program(np.eye(2), [0, 0], [[1, 0], [1, 1e-14]], [1, 1 + 4 * 2.0**-52], zero(2))
+    x, _ = polished(p, np.array([1 + 1e-5, 1e-5]), np.array([-1.0, 0]), 1e-12)
+    np.testing.assert_allclose(x, [1, 0], atol=1e-9)
+
+
 def test_five_steps_are_enough_by_the_curvature_of_cones() -> None:
     """min -x1 - 2 x2 in an ellipse, and beside a plane: by nothing but the curvature is x found."""
     for width in (1.0, 3.0, 0.2):

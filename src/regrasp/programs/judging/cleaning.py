@@ -46,7 +46,9 @@ def cleaned_duals(program: Program, z: Array, enough: float, steps: int = STEPS)
                 equations.append(face)
         return cones.dual(_nearest(sparse.vstack(equations), y, cones.units(np.abs(y))))
 
-    return _best(cones.dual(z), moved, lambda y: infeasibility_residual(program, y), enough, steps)
+    with np.errstate(all="ignore"):
+        inside = cones.dual(z)
+    return _best(inside, moved, lambda y: infeasibility_residual(program, y), enough, steps)
 
 
 def cleaned_direction(program: Program, d: Array, enough: float, steps: int = STEPS) -> Array:

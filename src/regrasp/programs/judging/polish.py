@@ -42,10 +42,10 @@ def polished(program: Program, x: Array, z: Array, allowed: float) -> tuple[Arra
     """
     if not np.isfinite(x).all():
         return None
-    z = program.cones.dual(np.where(np.isfinite(z), z, 0.0))
-    if not program.q.any() and not program.P.nnz:
-        z = np.zeros(z.size)
     with np.errstate(all="ignore"):
+        z = program.cones.dual(np.where(np.isfinite(z), z, 0.0))
+        if not program.q.any() and not program.P.nnz:
+            z = np.zeros(z.size)
         for first in ((x, z), (np.zeros(x.size), z), (x, _without_noise(program, x, z))):
             if _is_sound(program, *first, allowed):
                 return first

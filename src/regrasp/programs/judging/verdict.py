@@ -75,7 +75,7 @@ def _hint(solution: Solution, feasibility: Callable[[Program], Solution]) -> Sol
 
 
 def _infeasible(solution: Solution) -> Solution:
-    if not solution.infeasibility_residual <= PROVEN and np.isfinite(solution.duals).all():
+    if not solution.infeasibility_residual <= PROVEN:
         from regrasp.programs.judging.cleaning import cleaned_duals
 
         z = cleaned_duals(solution.program, solution.duals, PROVEN)
@@ -85,7 +85,7 @@ def _infeasible(solution: Solution) -> Solution:
 
 
 def _unbounded(solution: Solution, feasibility: Callable[[Program], Solution]) -> Solution:
-    if not solution.unboundedness_residual <= PROVEN and np.isfinite(solution.value).all():
+    if not solution.unboundedness_residual <= PROVEN:
         from regrasp.programs.judging.cleaning import cleaned_direction
 
         d = cleaned_direction(solution.program, solution.value, PROVEN)
