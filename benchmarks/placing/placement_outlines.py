@@ -23,14 +23,12 @@ import numpy as np
 
 import regrasp as rg
 from fifty_outlines import outlines
-from random_pairs import pairs_hold
+from random_attack import attack
 
 OBJECTIVES = ("sum_normal", "peak_normal", "peak", "friction_use", "force", "answered")
 LIMITED = ("friction_use", "force", "answered")
 FRICTION, LIMIT, TOLERANCE, BESIDE = 0.4, 4.0, 1e-4, 0.05
-AT_ONCE = 20_000  # placements
 RESULTS = Path(__file__).parents[1] / "results" / "outlines.json"
-SLACK = 1e-6  # of a value, by which solvers may be off
 
 
 def loads(outline: rg.Outline) -> np.ndarray:
@@ -50,69 +48,56 @@ def asked(outline: rg.Outline, objective: str) -> dict[str, Any]:
     return {"load": rg.LoadSet.hull(each)} | more
 
 
-def row(outline: rg.Outline, objective: str, fingers: int, count: int) -> dict[str, Any]:
-    """How a search went, what ``verify`` says, and how near random placements come."""
+def row(outline: rg.Outline, objective: str, fingers: int, cap: float) -> dict[str, Any]:
+    """How a search of at most ``cap`` seconds went, and what ``verify`` says."""
     begin = perf_counter()
+    ended = False
+
+    def within_cap(*_: float) -> None:
+        nonlocal ended
+        if not ended and perf_counter() - begin > cap:
+            ended = True
+            raise KeyboardInterrupt
+
     try:
         chosen = rg.choose_grasp(
             outline, fingers, friction=FRICTION, objective=objective, tolerance=TOLERANCE, from_corners=0.0,
-            **asked(outline, objective),
+            progress=within_cap, **asked(outline, objective),
         )  # fmt: skip
     except rg.Infeasible as refusal:
         seconds, proof = perf_counter() - begin, refusal.certificate
         proven = proof is not None and "not proven" not in str(refusal) and rg.verify(proof).ok
-        better = beaten(outline, objective, fingers, count, None)
-        return {"refused": proven, "seconds": seconds, "random": count, "better": better}
+        return {"refused": proven, "seconds": seconds, "random": 0, "better": 0}
+    except KeyboardInterrupt:
+        if not ended:
+            raise
+        return {"refused": False, "seconds": perf_counter() - begin, "random": 0, "better": 0}
     seconds = perf_counter() - begin
     read = rg.ChosenGrasp.from_dict(json.loads(json.dumps(chosen.to_dict())))
     begin = perf_counter()
-    verdict, more = rg.verify(read), objective in ("force", "answered")
-    checked = perf_counter() - begin
+    verdict = rg.verify(read)
     return {
         "value": chosen.value, "bound": chosen.bound, "gap": chosen.gap, "seconds": seconds,
-        "boxes": chosen.certificate.leaves, "verified": verdict.ok, "verify_seconds": checked,
-        "random": count, "better": beaten(outline, objective, fingers, count, chosen.bound),
-        "near": beaten(outline, objective, fingers, count, chosen.value * (0.9 if more else 1.1)),
+        "boxes": chosen.certificate.leaves, "verified": verdict.ok, "verify_seconds": perf_counter() - begin,
+        "places": [round(s, 9) for s in chosen.places.tolist()], "random": 0, "near": 0, "better": 0,
     }  # fmt: skip
 
 
-def beaten(outline: rg.Outline, objective: str, fingers: int, count: int, bound: float | None) -> int:
-    """How many random placements are better than a bound; than none at all, without one."""
-    rng, better = np.random.default_rng(OBJECTIVES.index(objective)), 0
+def attacked(
+    outline: rg.Outline, objective: str, fingers: int, kept: dict[str, Any], count: int
+) -> dict[str, Any]:
+    """How near random placements come to the value of a row, and whether one is better than its bound."""
+    levels: list[float | None] = [None, None]
+    if "value" in kept:
+        more = objective in ("force", "answered")
+        levels = [kept["value"] * (0.9 if more else 1.1), kept["bound"]]
     limit = LIMIT if objective in LIMITED else np.inf
-    given, level = loads(outline), bound
-    if objective == "answered":  # whoever holds the deviations times a little more than the bound is better
-        factor = 0.0 if bound is None else bound * (1 + SLACK)
-        given, level = np.array([0, -1.0, 0]) + 0.1 * factor * given, None
-    elif bound is not None:
-        level = bound * (1 + SLACK) if objective == "force" else bound * (1 - SLACK)
-    for first in range(0, count, AT_ONCE):
-        s = rng.uniform(0, outline.length, (min(AT_ONCE, count - first), fingers))
-        positions, normals = outline.points(s), outline.normals(s)
-        judge = pairs_hold if fingers == 2 else _hold
-        for w in given:
-            good = judge(positions, normals, FRICTION, w, objective, level, limit)
-            positions, normals = positions[good], normals[good]
-            if not len(positions):
-                break
-        better += len(positions)
-    return better
-
-
-def _hold(
-    positions: np.ndarray, normals: np.ndarray, friction: float, load: np.ndarray, objective: str,
-    level: float | None, limit: float,
-) -> np.ndarray:  # fmt: skip
-    """Which grasps hold a load at a level, by ``choose_states``."""
-    judge = "peak" if objective == "answered" else objective
-    found = rg.choose_states(
-        positions, normals, friction, load[:2], load[2], objective=judge, max_force=limit
-    )
-    held = found.held.copy()
-    if level is not None:
-        values = found.values[held]
-        held[held] = values >= level if objective == "force" else values <= level
-    return held
+    begin = perf_counter()
+    found = attack(
+        outline, fingers, FRICTION, loads(outline), objective, levels[0], levels[1], limit, count,
+        np.array(kept.get("places", [])),
+    )  # fmt: skip
+    return found | {"attack_seconds": perf_counter() - begin}
 
 
 def table(kept: dict[str, Any]) -> str:
@@ -150,7 +135,8 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--objectives", nargs="+", default=OBJECTIVES, choices=OBJECTIVES)
     parser.add_argument("--fingers", nargs="+", type=int, default=(2, 3))
-    parser.add_argument("--random", nargs=2, type=int, default=(100_000, 2_000), help="pairs, triples")
+    parser.add_argument("--cap", type=float, default=60.0, help="of a search [s]")
+    parser.add_argument("--attack", type=int, default=0, metavar="RANDOM", help="kept rows, by so many each")
     parser.add_argument("--seconds", type=float, default=np.inf, help="after which no other row is begun")
     parser.add_argument("--table", action="store_true")
     parser.add_argument(
@@ -164,17 +150,24 @@ def main() -> None:
         print(table(kept))
         return
     begin, shapes = perf_counter(), list(outlines())[: given.count]
+
+    def keep(key: str, found: dict[str, Any]) -> None:
+        kept[key] = found
+        print(key, found, flush=True)
+        part = given.output.with_suffix(".part")
+        part.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        part.replace(given.output)
+
     for fingers in given.fingers:
-        for name, outline in shapes:
-            for objective in given.objectives:
+        for objective in given.objectives:
+            for name, outline in shapes:
                 key = f"{objective}, {fingers} fingers, {name}"
-                if key in kept or perf_counter() - begin > given.seconds:
-                    continue
-                kept[key] = row(outline, objective, fingers, given.random[fingers - 2])
-                print(key, kept[key], flush=True)
-                part = given.output.with_suffix(".part")
-                part.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-                part.replace(given.output)
+                if perf_counter() - begin > given.seconds:
+                    return
+                if key not in kept and not given.attack:
+                    keep(key, row(outline, objective, fingers, given.cap))
+                elif given.attack and kept.get(key, {"random": np.inf})["random"] < given.attack:
+                    keep(key, kept[key] | attacked(outline, objective, fingers, kept[key], given.attack))
 
 
 if __name__ == "__main__":

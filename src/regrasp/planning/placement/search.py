@@ -86,7 +86,7 @@ class Search:
             return int(search(
                 self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
                 self.narrow, queue.boxes, queue.heap, queue.state, queue.found, queue.tried, budget,
-                spare(self.fingers),
+                spare(self.fingers, len(self._wanted)),
             ))  # fmt: skip
 
         found = np.zeros_like(self._found) if only else self._found
@@ -122,7 +122,7 @@ class Search:
             search(
                 self._table, self._wanted, law, fixed / self.unit, 0.0, 0.0, 0.0, one, np.zeros(1, np.int64),
                 np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf), self._tried[:1], 0,
-                spare(self.fingers),
+                spare(self.fingers, len(self._wanted)),
             )  # fmt: skip
             if one[5][0] == 0:
                 return False
@@ -165,7 +165,7 @@ class Search:
         search(
             self._table, self._wanted, self._law(friction, friction, law or self.law), inf, 0.0, 0.0, 0.0,
             boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * k, inf),
-            np.zeros((1, 1 + 2 * k)), 0, spare(k),
+            np.zeros((1, 1 + 2 * k)), 0, spare(k, len(self._wanted)),
         )  # fmt: skip
         return float(boxes[2][0]) * self.unit
 
@@ -247,7 +247,7 @@ class Search:
         edges: (k, 2) vertices or (k, 4, 2) control points, and ``centre`` of mass, as they were given [m].
         """
         n = self.count
-        arcs, ends, _, twists, _, kinds, children, *_ = (values[:n] for values in self._boxes)
+        arcs, ends, _, twists, _, kinds, children, _, seconds, other, _ = (v[:n] for v in self._boxes)
         sides = np.column_stack([self.sides.edges, self.sides.ends])
         work = -(twists / [1, 1, self.sides.size]) @ self.loads.T
         number = np.where(kinds == 3, -1, work.argmax(axis=1))
@@ -256,6 +256,11 @@ class Search:
         given["children"] = np.where(split[:, None], children, 0)
         given["number"] = np.where(split, 0, number)
         given["twists"] = np.where(split[:, None], 0.0, twists / [1, 1, self.sides.size])
+        joined = np.flatnonzero((other >= 0) & (kinds != 2) & (kinds != 3))
+        if len(joined):
+            second = seconds[joined] / [1, 1, self.sides.size]
+            given["pairs"] = np.column_stack([joined, (-second @ self.loads.T).argmax(axis=1)])
+            given["seconds"] = second
         smooth = edges.ndim == 3
         return PlacementProof(
             _frozen(edges[:, 0]) if smooth else edges, centre, fingers=self.fingers, friction=self.friction,
@@ -278,5 +283,5 @@ def _memory(room: int, k: int) -> tuple[np.ndarray, ...]:
     return (
         np.zeros((room, k, 2), np.int64), np.zeros((room, k, 2)), np.zeros(room), np.zeros((room, 3)),
         np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2), np.int64),
-        np.zeros((room, k, 8)), np.zeros((1, 3)),
+        np.zeros((room, k, 8)), np.zeros((room, 3)), np.full(room, -1), np.zeros((1, 3)),
     )  # fmt: skip

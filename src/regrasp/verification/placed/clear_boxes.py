@@ -43,13 +43,17 @@ def clear_boxes(proof: Proof, boundary: Edges) -> np.ndarray:
 def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
     y = np.asarray(proof.twists)[boxes]
     terms = -np.asarray(proof.loads)[np.asarray(proof.number)[boxes]] * y
+    z = np.zeros_like(y)
+    if proof.pairs is not None:
+        z, more = _seconds(proof, boxes)
+        terms = np.column_stack([terms, more])
     lost = _ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
-    sizes = np.abs(y)
+    sizes = np.abs(y) + np.abs(z)
     room = _ROUNDING * (sizes[:, 0] + sizes[:, 1] + sizes[:, 2] * boundary.reach) * (1 + proof.friction)
     if proof.size == "margin":
         room *= 4 * proof.bound
-    most = _most(proof, boundary, boxes, y) + room[:, None]
+    most = _most(proof, boundary, boxes, y, z) + room[:, None]
     told = np.minimum(room, lost) > _SMALL
     if proof.size == "margin":
         return np.asarray(told & (work > most.sum(axis=1)))
@@ -60,8 +64,18 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
     return np.asarray(told & (work > proof.bound * dual * (1 + _ROUNDING)))
 
 
-def _most(proof: Proof, boundary: Edges, boxes: np.ndarray, y: Array) -> Array:
-    """(b, k) the most work on each arc, for all its sides at once."""
+def _seconds(proof: Proof, boxes: np.ndarray) -> tuple[Array, Array]:
+    """(b, 3) second twists, 0 for none, and the terms of their work."""
+    twists, terms = np.zeros((len(proof.children), 3)), np.zeros((len(proof.children), 3))
+    box, load = np.asarray(proof.pairs).T
+    good = (box >= 0) & (box < len(twists)) & (load >= 0) & (load < len(proof.loads))
+    box, second = box[good], np.asarray(proof.seconds)[good]
+    twists[box], terms[box] = second, -np.asarray(proof.loads)[load[good]] * second
+    return twists[boxes], terms[boxes]
+
+
+def _most(proof: Proof, boundary: Edges, boxes: np.ndarray, y: Array, z: Array) -> Array:
+    """(b, k) the most work on each arc, for all its sides at once, along two twists."""
     k = proof.fingers
     first, last = np.asarray(proof.arcs)[boxes].reshape(-1, 2).T
     ends = np.asarray(proof.ends)[boxes].reshape(-1, 2)
@@ -71,7 +85,15 @@ def _most(proof: Proof, boundary: Edges, boxes: np.ndarray, y: Array) -> Array:
     sides = np.asarray(proof.sides)
     edge, least, largest = sides[side].T
     least[starts], largest[starts + count - 1] = ends.T
-    along = np.repeat(np.repeat(y, k, axis=0), count, axis=0)
-    values = boundary.roughly(edge.astype(int), least - edge, largest - edge, along)
+    along, also = (np.repeat(np.repeat(twist, k, axis=0), count, axis=0) for twist in (y, z))
+    edge_of, lo, hi = edge.astype(int), least - edge, largest - edge
+    values = boundary.roughly(edge_of, lo, hi, along)
+    both = also.any(axis=1)
+    if both.any():
+        at = [
+            sum(boundary.roughly(edge_of[both], u[both], u[both], t[both]) for t in (along, also))
+            for u in (lo, hi)
+        ]
+        values[both] = np.maximum(*at)
     result: Array = np.maximum.reduceat(values, starts).reshape(-1, k)
     return result

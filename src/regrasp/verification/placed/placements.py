@@ -11,6 +11,8 @@ affine in p. With sigma(v) the most of v . f over f in K of size 1, a convex fun
 
 for the norm N and its dual N*: so N is at least (-w) . y / N*(largest sigma of each arc), and the largest
 sigma of an arc is at an end of one of its sides (``straight``); on curves there is a bound of it (``cubic``).
+Two twists, each with a load, bound a box together by the largest of each arc of the sum of their sigma, where
+N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
 box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``).
 Everything is decided in rationals; roots are rounded to the safe side.
@@ -54,6 +56,11 @@ def _shapes(proof: Proof) -> list[str]:
     ]  # fmt: skip
     if proof.control is not None:
         wanted.append(("control", proof.control, (len(proof.vertices), 4, 2)))
+    if proof.pairs is not None:
+        q = len(proof.pairs)
+        wanted += [("pairs", proof.pairs, (q, 2)), ("seconds", proof.seconds, (q, 3))]
+        if (proof.seconds is None) or proof.norm != "largest" or proof.control is not None:
+            return ["proof: second twists go with their boxes, a largest force and straight sides"]
     if proof.rings is not None:
         first = np.asarray(proof.rings)
         apart = np.diff(np.append(first, len(proof.vertices))) >= 3
@@ -83,6 +90,8 @@ class _Checked:
         self.proof = proof
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
         self.clear: np.ndarray = np.zeros(0, bool)  # boxes that doubles decide
+        pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
+        self.second = {box: (load, twist) for (box, load), twist in pairs}
         self.sides = [(int(e), Fraction(lo), Fraction(hi)) for e, lo, hi in proof.sides.tolist()]
 
     def violations(self) -> list[str]:
@@ -165,14 +174,20 @@ class _Checked:
         number, arcs = int(self.proof.number[box]), self._arcs(box)
         if number == -1:
             return [] if self._near(arcs) else [f"proof: fingers of box {box} may be far enough apart"]
-        if not 0 <= number < len(self.proof.loads):
+        told = [(number, self.proof.twists[box].tolist())]
+        told += [self.second[box]] if box in self.second else []
+        if not all(0 <= load < len(self.proof.loads) for load, _ in told):
             return [f"proof: box {box} has no load"]
-        y = [Fraction(c) for c in self.proof.twists[box].tolist()]
-        work = -sum(Fraction(w) * c for w, c in zip(self.proof.loads[number].tolist(), y, strict=True))
+        twists = [[Fraction(c) for c in twist] for _, twist in told]
+        work = -sum(
+            Fraction(w) * c
+            for (load, _), y in zip(told, twists, strict=True)
+            for w, c in zip(self.proof.loads[load].tolist(), y, strict=True)
+        )
         bound = Fraction(self.proof.bound)
         if bound <= 0 or self.clear[box]:
             return []
-        most = [self._most(arc, y) for arc in arcs]
+        most = [self._most(arc, twists) for arc in arcs]
         if self.proof.size == "margin":  # forces below the limit do no more than these together
             done = sum(most, start=Fraction(0))
             return [] if work > done else [f"proof: the twist of box {box} does not exclude it"]
@@ -186,14 +201,18 @@ class _Checked:
             return [f"proof: the twist of box {box} does not exclude it"]
         return []
 
-    def _most(self, arc: Arc, y: list[Fraction]) -> Fraction:
-        """An upper bound of sigma over an arc, 0 or more."""
+    def _most(self, arc: Arc, twists: list[list[Fraction]]) -> Fraction:
+        """An upper bound of sigma over an arc, 0 or more, or of the sum of that of two twists."""
         first, last, lo, hi = arc[0], arc[1], Fraction(arc[2]), Fraction(arc[3])
         most = Fraction(0)
         for j in range(first, last + 1):
             edge, least, largest = self.sides[j]
             lo_j, hi_j = lo if j == first else least, hi if j == last else largest
-            most = max(most, self.boundary.most(edge, lo_j - edge, hi_j - edge, y))
+            if len(twists) == 1:
+                most = max(most, self.boundary.most(edge, lo_j - edge, hi_j - edge, twists[0]))
+                continue
+            for u in (lo_j, hi_j):  # the sum is convex along the side
+                most = max(most, sum(self.boundary.most(edge, u - edge, u - edge, y) for y in twists))
         return most
 
     def _near(self, arcs: list[Arc]) -> bool:

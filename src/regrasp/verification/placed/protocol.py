@@ -76,6 +76,14 @@ class Proof(Protocol):
         """(n, 3)."""
 
     @property
+    def pairs(self) -> Any:
+        """(q, 2) boxes with a second twist, and its load; None for none."""
+
+    @property
+    def seconds(self) -> Array | None:
+        """(q, 3)."""
+
+    @property
     def control(self) -> Array | None:
         """(k, 4, 2) control points of the edges where they are cubics [m]."""
 

@@ -12,7 +12,14 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.places import cubic_arcs, eroded, placement_boxes, wrench_gauge
+from regrasp.closed_form.compiled.places import (
+    cubic_arcs,
+    eroded,
+    placement_boxes,
+    two_twists,
+    wrench_gauge,
+)
+from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL
 from regrasp.closed_form.compiled.places.placement_boxes import (
     alike,
     cut,
@@ -22,7 +29,8 @@ from regrasp.closed_form.compiled.places.placement_boxes import (
     too_near,
     write_child,
 )
-from regrasp.closed_form.compiled.places.wrench_gauge import bound_by, gauge, workspace
+from regrasp.closed_form.compiled.places.two_twists import bound_by_two, room_for_two
+from regrasp.closed_form.compiled.places.wrench_gauge import LARGEST, bound_by, gauge, workspace
 from regrasp.compilation import kept
 
 OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3
@@ -66,14 +74,16 @@ def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, 
     """
     k = len(arcs)
     worst, critical = -1.0, first
-    x, forces, best = work[1], work[2], work[8]
+    x, forces, best, every = work[1], work[2], work[8], work[11]
     for i in range(k):
         seen[i, 0], seen[i, 1] = np.inf, -np.inf
         seen[i, 2], seen[i, 4] = np.inf, -np.inf
         seen[i, 6] = -1.0
     for number in range(len(loads)):
         load = number if number > first else (number - 1 if number > 0 else first)
-        value = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work)
+        value = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work[:11])
+        for c in range(3):
+            every[load, c] = best[c]
         worse = value > worst
         if worse:
             worst, critical = value, load
@@ -105,23 +115,46 @@ def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, 
 
 
 @njit(**VIEWS)
+def _join(sides, loads, bounding, boxes, node, work):  # type: ignore[no-untyped-def]
+    """Raises the bound of a box to what two of the last twists prove together."""
+    arcs, ends, bounds, twists, critical, _, _, _, seconds, other, _ = boxes
+    best = work[12]
+    found, load, second = bound_by_two(
+        sides, arcs[node], ends[node], bounding, loads, work[11], best, work[13:]
+    )
+    if found > bounds[node]:
+        bounds[node], critical[node], other[node] = found, load, second
+        for c in range(3):
+            twists[node, c], seconds[node, c] = best[0, c], best[1, c]
+
+
+@njit(**VIEWS)
 def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-untyped-def]
     """Raises the bound of a box to what its loads prove, and notes where its forces press."""
-    arcs, ends, bounds, twists, critical, _, _, seen, twist = boxes
+    arcs, ends, bounds, twists, critical, _, _, seen, _, other, twist = boxes
     mu, _, size, norm, precision, limit, margin = law
+    bounding = (mu, size, norm, limit, margin)
     found, load = _judge(
-        sides, arcs[node], ends[node], loads, (mu, size, norm, limit, margin), precision, level,
-        critical[node], twist[0], work, seen[node],
+        sides, arcs[node], ends[node], loads, bounding, precision, level, critical[node], twist[0], work,
+        seen[node],
     )  # fmt: skip
     if found >= bounds[node]:
-        bounds[node], critical[node] = found, load
+        bounds[node], critical[node], other[node] = found, load, -1
         for c in range(3):
             twists[node, c] = twist[0, c]
+    if found < level:
+        _join(sides, loads, bounding, boxes, node, work)
 
 
-def spare(k: int) -> tuple[Any, ...]:
-    """Memory that a search of k fingers works in."""
-    return workspace(k), np.zeros((k, 2)), np.zeros((k, 8)), np.zeros((k, 2), np.int64), np.zeros((k, 2))
+def spare(k: int, loads: int) -> tuple[Any, ...]:
+    """Memory that a search of k fingers under so many loads works in."""
+    return (
+        (*workspace(k), *room_for_two(loads, k)),
+        np.zeros((k, 2)),
+        np.zeros((k, 8)),
+        np.zeros((k, 2), np.int64),
+        np.zeros((k, 2)),
+    )
 
 
 def _loop(digest: str) -> Any:
@@ -136,12 +169,13 @@ def _loop(digest: str) -> Any:
         fixed: a level, or infinite to follow the least value times 1 - tolerance. least: distance of fingers.
         narrow: arcs shorter than this are not split.
         boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), twists (N, 3), loads' numbers (N,), kinds (N,),
-        first children and their number (N, 2), where forces press (N, k, 8), scratch (1, 3). state: number of
+        first children and their number (N, 2), where forces press (N, k, 8), second twists (N, 3) and loads
+        (N,), -1 for none, scratch (1, 3). state: number of
         boxes, of those in the heap, of placements tried. found: (1 + 2 k) the least value so far, sides and u
         of its fingers. tried: (T, 1 + 2 k) the last placements tried.
         """
         _ = digest
-        arcs, ends, bounds, twists, critical, kinds, children, seen, twist = boxes
+        arcs, ends, bounds, twists, critical, kinds, children, seen, seconds, other, twist = boxes
         k = arcs.shape[1]
         work, places, nowhere, at_arcs, at_ends = spare
         mu, usable, size, norm, precision, limit, margin = law
@@ -165,9 +199,12 @@ def _loop(digest: str) -> Any:
             to_try(arcs[node], ends[node], seen[node], places)
             near = put(sides, places, least, at_arcs, at_ends)
             if not near:
+                flat = norm == LARGEST and sides.shape[1] <= CONTROL
+                for i in range(k):
+                    flat = flat and arcs[node, i, 0] == arcs[node, i, 1]
                 value, _ = _judge(
-                    sides, at_arcs, at_ends, loads, trying, precision, most, critical[node], twist[0], work,
-                    nowhere,
+                    sides, at_arcs, at_ends, loads, trying, precision, np.inf if flat else most,
+                    critical[node], twist[0], work, nowhere,
                 )  # fmt: skip
                 row = state[2] % len(tried)
                 state[2] += 1
@@ -182,6 +219,8 @@ def _loop(digest: str) -> Any:
                         state[1] += 1
                         return IMPROVED
                     level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
+                if flat:
+                    _join(sides, loads, bounding, boxes, node, work)
             if bounds[node] >= level:
                 kinds[node] = EXCLUDED
                 continue
@@ -201,15 +240,16 @@ def _loop(digest: str) -> Any:
                 state[0] += 1
                 write_child(sides, arcs[node], ends[node], i, same, left, at, u, arcs[child], ends[child])
                 bounds[child], critical[child], kinds[child] = bounds[node], critical[node], OPEN
+                other[child] = other[node]
                 for c in range(3):
-                    twists[child, c] = twists[node, c]
+                    twists[child, c], seconds[child, c] = twists[node, c], seconds[node, c]
                 if least > 0.0 and too_near(sides, arcs[child], ends[child], least):
                     kinds[child] = NEAR
                     continue
                 b = loads[critical[node]]
-                known = bound_by(sides, arcs[child], ends[child], bounding, b, twists[node], work)
+                known = bound_by(sides, arcs[child], ends[child], bounding, b, twists[node], work[:11])
                 if known >= level:
-                    bounds[child] = known
+                    bounds[child], other[child] = known, -1
                 else:
                     _assess(sides, loads, law, level, boxes, child, work)
                 if bounds[child] >= level:
@@ -226,4 +266,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-search = _loop(digest((cubic_arcs, eroded, placement_boxes, wrench_gauge)))
+search = _loop(digest((cubic_arcs, eroded, placement_boxes, two_twists, wrench_gauge)))

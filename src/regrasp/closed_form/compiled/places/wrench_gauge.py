@@ -41,7 +41,7 @@ _PIVOT = 1e-13
 
 
 @njit(**VIEWS)
-def _support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-untyped-def]
+def support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-untyped-def]
     """Writes sigma, the side, u, f_x, f_y, the torque and n . f of the best force on an arc; 0 for none."""
     mu, size = law[0], law[1]
     if size == ERODED:
@@ -88,7 +88,7 @@ def _support_of_box(sides, arcs, ends, law, y, g, force, out):  # type: ignore[n
     g[0] = g[1] = g[2] = 0.0
     for i in range(len(arcs)):
         force[i, 0] = 0.0
-        _support_of_arc(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], law, y, out)
+        support_of_arc(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], law, y, out)
         s = out[0]
         if (s <= 0.0 and size != ERODED) or (norm == SUM and s <= total):
             continue
@@ -151,7 +151,7 @@ def workspace(k: int) -> tuple[Any, ...]:
 
 
 @njit(**VIEWS)
-def _proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
+def proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
     """The bound b . y / H(y), less what rounding of both may have added; infinite beyond ``most``."""
     h += _ROUNDING * k * (1.0 + mu) * (abs(y[0]) + abs(y[1]) + abs(y[2]))
     done -= _ROUNDING * (abs(b[0] * y[0]) + abs(b[1] * y[1]) + abs(b[2] * y[2]))
@@ -161,7 +161,7 @@ def _proven(b, y, done, h, mu, k, most):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _seen_from_middle(sides, arcs, ends, law, b, middle, target):  # type: ignore[no-untyped-def]
+def seen_from_middle(sides, arcs, ends, law, b, middle, target):  # type: ignore[no-untyped-def]
     """Writes b as seen from a wrench in W where 0 is none, and that wrench; returns what 1 of it is worth."""
     for c in range(3):
         target[c], middle[c] = b[c], 0.0
@@ -178,7 +178,7 @@ def _seen_from_middle(sides, arcs, ends, law, b, middle, target):  # type: ignor
 def bound_by(sides, arcs, ends, law, b, y, work):  # type: ignore[no-untyped-def]
     """What the twist y proves: b . y / H(y), infinite beyond ``FAR`` |b|_1."""
     _, _, forces, _, _, new, _, out, _, middle, target = work
-    per = _seen_from_middle(sides, arcs, ends, law, b, middle, target)
+    per = seen_from_middle(sides, arcs, ends, law, b, middle, target)
     b, mu = target, law[0]
     most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
     done = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
@@ -186,7 +186,7 @@ def bound_by(sides, arcs, ends, law, b, y, work):  # type: ignore[no-untyped-def
         return 0.0
     h = _support_of_box(sides, arcs, ends, law, y, new, forces[3], out)
     h -= middle[0] * y[0] + middle[1] * y[1] + middle[2] * y[2]
-    return per * _proven(b, y, done, h, mu, len(arcs), most)
+    return per * proven(b, y, done, h, mu, len(arcs), most)
 
 
 @njit(**VIEWS)
@@ -200,7 +200,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
     x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2.
     """
     g, x, forces, y, d, new, spare, out, _, middle, target = work
-    per = _seen_from_middle(sides, arcs, ends, law, b, middle, target)
+    per = seen_from_middle(sides, arcs, ends, law, b, middle, target)
     b, mu = target, law[0]
     best[0] = best[1] = best[2] = 0.0
     most = FAR * (abs(b[0]) + abs(b[1]) + abs(b[2]))
@@ -223,7 +223,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
         for c in range(3):
             h -= middle[c] * y[c]
             new[c] -= middle[c]
-        value = per * _proven(b, y, upper, h, mu, len(arcs), most)
+        value = per * proven(b, y, upper, h, mu, len(arcs), most)
         if value > lower:
             lower = value
             best[0], best[1], best[2] = y[0], y[1], y[2]

@@ -39,6 +39,8 @@ class PlacementProof(BoxProof):
         margin: distance of forces from the edges of their cones, of size ``margin`` [N].
         rings: (r,) the first of the vertices of each ring, of the outline and of its holes; None of an
             outline alone.
+        pairs: (q, 2) boxes that two twists bound together, and the second one's load; None for none.
+        seconds: (q, 3) their second twists.
     """
 
     vertices: Array
@@ -59,6 +61,8 @@ class PlacementProof(BoxProof):
     control: Array | None = None
     margin: float = 0.0
     rings: np.ndarray | None = None
+    pairs: np.ndarray | None = None
+    seconds: Array | None = None
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
@@ -85,4 +89,6 @@ class PlacementProof(BoxProof):
             None if control is None else array(control, "control", (None, 4, 2)),
             number(given.get("margin", 0.0), "margin", least=0),
             None if given.get("rings") is None else integers(given["rings"], "rings", (None,)),
+            None if given.get("pairs") is None else integers(given["pairs"], "pairs", (None, 2)),
+            None if given.get("seconds") is None else array(given["seconds"], "seconds", (None, 3)),
         )
