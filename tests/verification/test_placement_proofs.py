@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 
 pytestmark = pytest.mark.contract
 
@@ -242,3 +243,32 @@ def test_the_verdict_says_which_part_of_the_outline_the_proof_is_of() -> None:
         words = f"no placement on the {part} of the outline that was asked about is better than"
         assert words in str(rg.verify(chosen))
         assert words in str(rg.verify(chosen.certificate))
+
+
+@cache
+def in_a_valley() -> PlacementProof:
+    """Of two fingers on parallel sides, where boxes need the twists of two loads."""
+    bar = rg.Outline([[0, 0], [3, 0], [3, 1], [0, 1]])
+    loads = rg.LoadSet.hull([rg.Wrench(f, 0.1 * sum(f)) for f in ([1, 0], [-1, 0], [0, 1], [0, -1])])
+    given = {"friction": 0.4, "objective": "peak", "from_corners": 0.0, "tolerance": 0.03}
+    return rg.choose_grasp(bar, 2, loads, **given).certificate  # type: ignore[arg-type]
+
+
+def test_two_twists_bound_a_box_together() -> None:
+    proof = in_a_valley()
+    assert rg.verify(type(proof).from_dict(json.loads(json.dumps(proof.to_dict())))).ok
+    assert proof.pairs is not None
+    assert proof.seconds is not None
+    broken = 0
+    for i in range(len(proof.pairs)):
+        changed = proof.seconds.copy()
+        changed[i] *= -1
+        broken += not rg.verify(replace(proof, seconds=changed)).ok
+    assert broken == len(proof.pairs) > 9  # each is needed
+    assert not rg.verify(replace(proof, pairs=np.add(proof.pairs, [0, 77]))).ok
+    assert rg.verify(replace(proof, seconds=0.5 * proof.seconds, twists=0.5 * proof.twists)).ok
+
+
+@pytest.mark.parametrize("change", [{"seconds": None}, {"norm": "sum"}, {"seconds": np.zeros((1, 3))}])
+def test_second_twists_without_a_meaning_prove_nothing(change: dict[str, Any]) -> None:
+    assert not rg.verify(replace(in_a_valley(), **change)).ok

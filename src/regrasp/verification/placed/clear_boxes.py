@@ -90,10 +90,11 @@ def _most(proof: Proof, boundary: Edges, boxes: np.ndarray, y: Array, z: Array) 
     values = boundary.roughly(edge_of, lo, hi, along)
     both = also.any(axis=1)
     if both.any():
-        at = [
-            sum(boundary.roughly(edge_of[both], u[both], u[both], t[both]) for t in (along, also))
-            for u in (lo, hi)
-        ]
-        values[both] = np.maximum(*at)
+        each = edge_of[both]
+        low, high = (
+            boundary.roughly(each, u, u, along[both]) + boundary.roughly(each, u, u, also[both])
+            for u in (lo[both], hi[both])
+        )
+        values[both] = np.maximum(low, high)
     result: Array = np.maximum.reduceat(values, starts).reshape(-1, k)
     return result

@@ -211,8 +211,9 @@ class _Checked:
             if len(twists) == 1:
                 most = max(most, self.boundary.most(edge, lo_j - edge, hi_j - edge, twists[0]))
                 continue
-            for u in (lo_j, hi_j):  # the sum is convex along the side
-                most = max(most, sum(self.boundary.most(edge, u - edge, u - edge, y) for y in twists))
+            for u in (lo_j - edge, hi_j - edge):  # the sum is convex along the side
+                both = [self.boundary.most(edge, u, u, y) for y in twists]
+                most = max(most, sum(both, start=Fraction(0)))
         return most
 
     def _near(self, arcs: list[Arc]) -> bool:
