@@ -55,11 +55,12 @@ def test_how_far_outside_is_close(share, inside, r) -> None:
 @BOTH
 @pytest.mark.parametrize("r", [1.0, 2.0**10, 2.0**-10])
 def test_how_bent_is_sound(share, inside, r) -> None:
-    audit = surely_sound(one(0.0, r), np.zeros(1), np.array([(1 + share * 4e-6) / r]), 1e-9, 1e-6)
-    assert (audit is not None) is inside
-    if audit is not None:
-        assert audit.dual == pytest.approx(share * 1e-6)
-        assert audit.stationarity == pytest.approx(share * 4e-6)
+    for more in (share * 4e-6, -share * 4e-6):
+        audit = surely_sound(one(0.0, r), np.zeros(1), np.array([(1 + more) / r]), 1e-9, 1e-6)
+        assert (audit is not None) is inside
+        if audit is not None:
+            assert audit.dual == pytest.approx(share * 1e-6)
+            assert audit.stationarity == pytest.approx(share * 4e-6)
 
 
 @BOTH
@@ -85,6 +86,26 @@ def test_what_is_outside_counts_three_times_with_all_duals() -> None:
     audit = surely_sound(one(0.0, 1.0, 3), np.array([e, 0, 0]), np.array([1 - e, 1, 1]), 1e-7, 1e-6)
     assert audit.complementarity == pytest.approx((e * (1 - e) + 3 * e * (3 - e)) / 4, rel=1e-9)
     assert audit.primal == audit.slack_violation == e
+
+
+@BOTH
+def test_a_gap_counts_below_zero_and_duals_of_equations_do(share, inside) -> None:
+    """x = 1 - e without a dual: the gap is -e (1 - e), of 2. And x = e of x = 0, where z = -1 - e."""
+    e = share * 2e-6
+    assert (surely_sound(one(1.0), np.array([1 - e]), np.zeros(1), 1e-9, 1e-6) is not None) is inside
+    p = program([[1.0]], [1.0], [[1.0]], [0.0], zero(1), size=1.0)
+    audit = surely_sound(p, np.array([e]), np.array([-1 - e]), 1e-5, 1e-5)
+    assert audit.complementarity == pytest.approx((1 + 3) * e * (1 + e) / 4)
+
+
+def test_what_is_as_much_as_it_may_be_is_sound() -> None:
+    """In numbers that doubles hold: of the row, of the column, of the gap, of products."""
+    e = 2.0**-10
+    assert surely_sound(one(1.0), np.array([1 + e]), np.zeros(1), e, 1.0) is not None
+    assert surely_sound(one(), np.zeros(1), np.array([1 + 4 * e]), 0.0, e) is not None
+    assert surely_sound(one(), -np.full(1, e), np.array([1 + e]), 0.0, e * (1 + e) / 2) is not None
+    x, z = np.array([-e, 0, 0]), np.array([1 + e, 1, 1])
+    assert surely_sound(one(0.0, 1.0, 3), x, z, 0.0, e * (1 + e) / 4) is not None
 
 
 def test_quick_audits_need_units_and_duals_of_the_cone() -> None:

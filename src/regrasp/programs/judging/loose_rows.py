@@ -28,7 +28,7 @@ def without_loose_rows(program: Program) -> tuple[Program, NDArray[np.bool_]] | 
     if not far.size:
         return None
     kept = ~(inequality.astype(bool) & (program.b > 0) & (sizes >= known[far[-1] + 1]))
-    if kept.all() or not kept.any():
+    if kept.all():
         return None
     first, blocks = 0, []
     for block in program.blocks:

@@ -42,8 +42,7 @@ def infeasibility_residual(program: Program, z: Array) -> float:
         residual = _per(largest(left, of_columns), value, size)
         if not residual < inf:
             return residual
-        units = np.full(left.size, program.size) if program.size > 0 else units_of_unknowns(program)[0]
-        grown = float(left @ units) / -value
+        grown = float(left @ units_of_unknowns(program)[0]) / -value
         return float(np.maximum(residual, _GROWN * grown))
 
 
