@@ -277,7 +277,7 @@ def test_the_last_step_is_the_direction_however_far_away_it_begins(monkeypatch, 
         assert answer.value[0] == 0 < answer.value[1]
 
 
-@pytest.mark.parametrize(("told", "times"), [(4.0, (6.0, 4.0)), (None, (0.0, 10.0))])
+@pytest.mark.parametrize(("told", "times"), [(4.0, (6.0, 4.0)), (12.0, (0.0, 12.0)), (None, (0.0, 10.0))])
 def test_what_a_solver_does_not_tell_of_is_all_its_own(monkeypatch, told, times) -> None:
     class Session:
         def __init__(self, *_, **__) -> None: ...

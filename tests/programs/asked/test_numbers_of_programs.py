@@ -77,6 +77,7 @@ def test_what_is_no_number_is_not_made_one(cones) -> None:
     ],
 )
 def test_cones_cover_the_rows_and_have_rows_themselves(blocks) -> None:
+    assert Block(Cone.ZERO, 3).rows == 3
     parts = sparse.csc_matrix((1, 1)), np.zeros(1), sparse.csc_matrix((2, 1)), np.zeros(2)
     assert Program(*parts, (Block(Cone.ZERO, 1, 2), Block(Cone.SECOND_ORDER, 1, 0))).b.size == 2
     with pytest.raises(InvalidInput, match="the cones must cover the 2 rows of A"):
@@ -139,6 +140,9 @@ def test_what_a_kept_solver_may_answer(P, size, is_quick) -> None:
     rows = Rows(2)
     rows.at_least_zero(np.eye(2))
     assert rows.program([1.0, 1.0], np.array(P, dtype=float), size=size).is_quick is is_quick
+    beside = Rows(3)
+    beside.at_least_zero(np.eye(3))
+    assert not beside.program(np.ones(3), [[1.0, 1, 0], [1, 1, 0], [0, 0, 1]], size=1.0).is_quick
     many = Rows(200)
     many.at_least_zero(np.eye(200))
     assert not many.program(np.ones(200), size=1.0).is_quick

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regrasp.errors import SolverFailed, SolverUnavailable
-from regrasp.programs import Program, Rows, Solution, Status, available_backends, facts, solve
+from regrasp.programs import Program, Rows, Solution, Status, available_backends, child, facts, solve
 from regrasp.programs import backends as table
 from regrasp.programs.calls import deadline
 from regrasp.programs.facts import BACKENDS, is_available
@@ -114,6 +114,33 @@ def test_what_a_back_end_needs_is_imported_before_its_time_runs(monkeypatch) -> 
     assert names[2:] == [place + "qp_backend", place + "calls.daqp_call"]
 
 
+@pytest.mark.parametrize(
+    ("backend", "isolated", "asked"),
+    [
+        ("piqp", False, ("apart", 50.0, {"speed": 2})),
+        ("piqp", True, ("apart", 50.0, {"speed": 2})),
+        ("daqp", False, ("here", None, {"speed": 2, "time_limit": 50.0})),
+        ("daqp", True, ("apart", None, {"speed": 2, "time_limit": 50.0})),
+    ],
+)
+def test_who_keeps_time_is_told_and_who_does_not_is_ended(monkeypatch, backend, isolated, asked) -> None:
+    calls = []
+
+    def here(program, name, options):
+        calls.append(("here", None, options))
+        return honest(program)
+
+    def apart(program, name, limit, options):
+        calls.append(("apart", limit, options))
+        return honest(program)
+
+    monkeypatch.setattr(deadline, "monotonic", lambda: 1.0)
+    monkeypatch.setattr(table, "asked", here)
+    monkeypatch.setattr(child, "solved_apart", apart)
+    solve(bounded(1.0), backend, time_limit=50.0, isolated=isolated, speed=2)
+    assert calls == [asked]
+
+
 @pytest.mark.parametrize(("backend", "who"), [("auto", "clarabel"), ("daqp", "daqp")])
 def test_who_is_asked_for_a_quick_word(monkeypatch, backend, who) -> None:
     asked = Asked(monkeypatch, honest)
@@ -172,6 +199,7 @@ def test_who_is_not_installed_is_passed_over_in_silence(monkeypatch, caplog) -> 
         assert solve(bounded(1.0)).backend == "daqp"
     assert not caplog.records
     monkeypatch.setattr(facts, "_has", lambda package: False)
+    assert not is_available("daqp")
     with pytest.raises(SolverUnavailable, match="none of clarabel, daqp, osqp, cvxpy is installed"):
         solve(bounded(1.0, 1e9))
 
