@@ -8,6 +8,7 @@ import pytest
 
 import regrasp as rg
 from placements import BRACKET, TILTED, star, value_of
+from regrasp.planning.placement.loads import inner_and_outer
 from regrasp.planning.placement.symmetries import images
 
 pytestmark = pytest.mark.oracle
@@ -24,6 +25,21 @@ def test_every_orientation_is_held_by_what_is_chosen() -> None:
     assert len(chosen.states) >= 8
     assert rg.verify(chosen).ok
     assert any("has no state" in v for v in rg.verify(replace(chosen, states=chosen.states[1:])).violations)
+
+
+@pytest.mark.parametrize("tolerance", [0.3, 0.02])
+def test_loads_around_a_round_set_are_near_it_and_cost_no_more_than_the_tolerance(tolerance: float) -> None:
+    """Every orientation is a set about the origin, however its first load points."""
+    load = rg.LoadSet.turned(rg.Wrench([0, -1]))
+    inner, outer = (np.hypot(*loads[:, :2].T) for loads in inner_and_outer(load, tolerance))
+    assert np.ptp(inner) < 1e-12
+    assert np.ptp(outer) < 1e-12
+    assert 1 + tolerance / 4 < outer[0] < 1 + tolerance or len(outer) == 8
+    for objective in ("peak", "effort"):
+        chosen = rg.choose_grasp(
+            rg.Outline.ellipse(2, 1), 2, load, friction=0.8, objective=objective, tolerance=tolerance
+        )
+        assert chosen.gap <= tolerance
 
 
 def test_the_states_hold_the_loads_of_a_hull_and_no_force_holds_no_load() -> None:

@@ -165,7 +165,7 @@ def choose_grasp(
     sides = sides_of(
         shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius, in_holes
     )
-    inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4))
+    inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4 / law.power))
     if isinstance(level, BallLevel):
         inner = outer = level.loads(level.max_force)
     distance = DISTINCT * sides.size if apart is None else apart
@@ -174,7 +174,8 @@ def choose_grasp(
     search = Search(sides, fingers, mu, inner, law, distance, narrow)
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.any)
     if level is not None:
-        best, beyond = run_level(search, level, tolerance, most, progress)
+        around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
+        best, beyond = run_level(search, level, around * tolerance, most, progress)
         if isinstance(level, WithstoodLevel) and best is not None:
             level.improve(search, tolerance)
         return chosen_at_level(search, asked, level, best, beyond)

@@ -22,16 +22,16 @@ def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Ar
     """Loads (m, 3) of the set, and loads (l, 3) whose hull contains it: the same for a point or a hull.
 
     A bound from loads of the set is one for the set, and a grasp that holds the outer ones holds the set. The
-    outer ones are farther from the center by a fraction of about ``tolerance`` at most.
+    outer ones are farther from its middle by a fraction of about ``tolerance`` at most.
     """
     if isinstance(load, Wrench):
         return load.vector[None], load.vector[None]
     if load.vertices is not None:
         points = np.unique(load.vertices, axis=0)
         return points, points
-    center, flat = load.center.vector, _flat_directions(load)
+    middle, flat = _middle_and_axes(load)
     if flat.shape[0] == 0:
-        return center[None], center[None]
+        return middle[None], middle[None]
     if flat.shape[0] == 3:
         raise InvalidInput(
             "a set of loads whose forces and torques are both round has no polygon near it; give the hull of "
@@ -45,13 +45,13 @@ def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Ar
     if flat.shape[0] == 1:
         return inner, inner
     # neighbouring tangents of the set meet outside it
-    reach = np.array([load.support(twist) - twist @ center for twist in twists])
+    reach = np.array([load.support(twist) - twist @ middle for twist in twists])
     step = 2 * pi / count
     after = np.roll(reach, -1)
     along = (after - reach * np.cos(step)) / np.sin(step)
     outer = reach[:, None] * around + along[:, None] * np.stack([-around[:, 1], around[:, 0]], axis=1)
     scale = flat / (flat**2).sum(axis=1)[:, None]
-    return inner, center + outer @ scale
+    return inner, middle + outer @ scale
 
 
 def offset_by(loads: Array, offset: float) -> Array:
@@ -62,11 +62,10 @@ def offset_by(loads: Array, offset: float) -> Array:
     return np.vstack([loads - torque, loads + torque])
 
 
-def _flat_directions(load: LoadSet) -> Array:
-    """(r, 3) the axes of forces and torque along which a set has a width, each scaled to it."""
-    axes = np.eye(3)
-    center = load.center.vector
-    wide = np.array([max(load.support(a) - a @ center, load.support(-a) + a @ center) for a in axes])
-    kept = wide > 1e-14 * np.abs(center)
-    result: Array = (axes / np.where(kept, wide, 1.0)[:, None])[kept]
-    return result
+def _middle_and_axes(load: LoadSet) -> tuple[Array, Array]:
+    """The middle of a set, and (r, 3) the axes along which it has a width, each scaled to half of it."""
+    ahead, back = (np.array([load.support(a) for a in axes]) for axes in (np.eye(3), -np.eye(3)))
+    wide, middle = 0.5 * (ahead + back), 0.5 * (ahead - back)
+    kept = wide > 1e-14 * (np.abs(middle) + wide)
+    axes: Array = (np.eye(3) / np.where(kept, wide, 1.0)[:, None])[kept]
+    return middle, axes

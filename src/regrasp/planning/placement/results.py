@@ -51,16 +51,20 @@ class Asked:
 
 def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     """The best grasp of a search for the least norm. ``Infeasible`` where there is none."""
-    power = asked.law.power
+    power, around = asked.law.power, search.anew()
+    around.under(asked.loads)
 
-    def judged(grasp: Grasp, norm: float) -> tuple[list[ChosenState], ChosenState] | None:
+    def judged(
+        grasp: Grasp, norm: float, places: np.ndarray, u: Array
+    ) -> tuple[list[ChosenState], ChosenState] | None:
         limits = {"max_force": asked.max_force, "min_normal": asked.min_normal or None}
         states = [
             choose_state(grasp, Wrench.from_vector(w), asked.objective, **limits)  # type: ignore[arg-type]
             for w in asked.loads
         ]
         worst = max(states, key=lambda state: state.value)
-        return (states, worst) if worst.value <= _AS_FOUND * norm**power else None
+        found = around.norm_at(places, u)  # of the loads around a round set: more than of those in it
+        return (states, worst) if worst.value <= _AS_FOUND * max(norm, found) ** power else None
 
     found = _first(search, asked, judged)
     if found is None:
@@ -93,7 +97,7 @@ def chosen_at_level(
             proof,
         )
 
-    def judged(grasp: Grasp, negative: float) -> Shown | None:
+    def judged(grasp: Grasp, negative: float, *_: Array) -> Shown | None:
         return level.shown(grasp, asked.objective, asked.loads, -negative)
 
     found = _first(search, asked, judged)
@@ -117,7 +121,9 @@ def chosen_at_level(
 
 
 def _first(
-    search: Search, asked: Asked, judged: Callable[[Grasp, float], tuple[Sequence[GraspState], T] | None]
+    search: Search,
+    asked: Asked,
+    judged: Callable[[Grasp, float, np.ndarray, Array], tuple[Sequence[GraspState], T] | None],
 ) -> tuple[Grasp, np.ndarray, Array, tuple[Sequence[GraspState], T]] | None:
     """The best placement tried whose forces come out as found, fingers in the order of the boundary."""
     for norm, places, u in search.placements()[:_ATTEMPTS]:
@@ -127,7 +133,7 @@ def _first(
             continue
         try:
             with np.errstate(all="ignore"):  # forces at the edge of what can be held
-                found = judged(grasp, norm)
+                found = judged(grasp, norm, places[order], u[order])
         except RegraspError:
             continue
         if found is not None:
