@@ -37,6 +37,8 @@ def planar(vertices, loads, nodes, **changes) -> SimpleNamespace:
             "control": None,
             "margin": 0.0,
             "rings": None,
+            "pairs": None,
+            "seconds": None,
         }
         | changes
     )
@@ -188,16 +190,28 @@ def limit(proof, points_of) -> Fraction:
     ``points_of(box, finger)``: (point, normal) of what decides.
     """
     least = None
+    pairs = getattr(proof, "pairs", None)
+    seconds = {} if pairs is None else {box: k for k, (box, _) in enumerate(pairs.tolist())}
     with localcontext() as context:
         context.prec = 60
         for box, (_, count) in enumerate(np.asarray(proof.children).tolist()):
             number = int(proof.number[box])
             if count or number < 0:
                 continue
-            y = [Decimal(x) for x in proof.twists[box].tolist()]
-            work = -sum(Decimal(a) * b for a, b in zip(proof.loads[number].tolist(), y, strict=True))
+            told = [(number, proof.twists[box])]
+            if box in seconds:
+                told.append((pairs[seconds[box]][1], proof.seconds[seconds[box]]))
+            twists = [[Decimal(x) for x in y.tolist()] for _, y in told]
+            work = -sum(
+                Decimal(a) * b
+                for (load, _), y in zip(told, twists, strict=True)
+                for a, b in zip(proof.loads[load].tolist(), y, strict=True)
+            )
             most = [
-                max(max(_sigma(proof, y, *place) for place in points_of(box, finger)), Decimal(0))
+                max(
+                    sum(max(_sigma(proof, y, *place), Decimal(0)) for y in twists)
+                    for place in points_of(box, finger)
+                )
                 for finger in range(proof.fingers)
             ]
             if proof.norm == "sum":

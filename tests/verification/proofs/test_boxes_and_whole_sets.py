@@ -10,6 +10,7 @@ import regrasp as rg
 from proofs import limit, planar_points, random_planar
 from regrasp.verification.placed import clear_boxes as of_boxes
 from regrasp.verification.placed.clear_boxes import clear_boxes
+from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.straight import StraightEdges
 from regrasp.verification.placed.whole_sets import answer_alike, makes_ball
 
@@ -49,10 +50,11 @@ def test_doubles_decide_what_is_beyond_rounding(size, norm) -> None:
 
 @pytest.mark.parametrize("bound", [1e-6, 0.5, 1e6])
 @pytest.mark.parametrize("size", ["normal", "force", "margin"])
-def test_doubt_is_a_part_of_all_terms(size, bound) -> None:
+@pytest.mark.parametrize("bent", [False, True])
+def test_doubt_is_a_part_of_all_terms(size, bound, bent) -> None:
     """1e-13 of what the load does, of what a force may do at the farthest place, and of the bound."""
     rng, seen = np.random.default_rng(9), set()
-    for k in range(9):
+    for k in range(6):
         norm = "largest" if size == "margin" else ("sum", "squares", "largest")[k % 3]
         proof = random_planar(rng, size, norm, splits=0, twists=np.zeros((1, 3)))
         proof.bound, mu = bound, max(proof.friction, 0.25)
@@ -60,7 +62,10 @@ def test_doubt_is_a_part_of_all_terms(size, bound) -> None:
             proof.friction, proof.margin = mu, 0.1 * proof.bound * mu / (1 + mu)
         y = np.float_power(10, rng.integers(-3, 4, size=3)) * rng.choice([-1, 1], size=3)
         proof.twists[0] = y
-        edges, most = StraightEdges(proof), []
+        if bent:
+            p, q = proof.vertices, np.roll(proof.vertices, -1, axis=0)
+            proof.control = np.stack([p, (2 * p + q) / 3, (p + 2 * q) / 3, q], axis=1)
+        edges, most = CubicEdges(proof) if bent else StraightEdges(proof), []
         for (first, last), ends in zip(proof.arcs[0].tolist(), proof.ends[0].tolist(), strict=True):
             places = [[e, a, b] for e, a, b in proof.sides[first : last + 1].tolist()]
             places[0][1], places[-1][2] = ends

@@ -65,6 +65,30 @@ def test_a_bound_is_proven_to_its_last_digit(size, norm) -> None:
     assert seen > 3
 
 
+@pytest.mark.parametrize("size", ["normal", "force"])
+def test_two_twists_prove_a_bound_to_its_last_digit(size) -> None:
+    """Of some boxes, in any order; each with the load of its own."""
+    rng, seen = np.random.default_rng(8), 0
+    for k in range(8):
+        proof = random_planar(rng, size, "largest", splits=k % 3)
+        boxes = rng.permutation(len(proof.children))[: 1 + k % 3]
+        proof.pairs = np.array([[box, rng.integers(2)] for box in boxes])
+        proof.seconds = rng.integers(-4, 5, size=(len(boxes), 3)) * 0.5
+        most = float(proven(proof))
+        if not most > 0:
+            continue
+        seen += 1
+        for factor, good in (0.999, True), (1 - 2.0**-50, True), (1 + 2.0**-50, False), (2, False):
+            proof.bound = most * factor
+            assert (said(proof) == "") == good, (k, factor)
+        proof.bound = most / 2
+        leaf = next((row for row, box in enumerate(boxes) if not proof.children[box, 1]), None)
+        for load in () if leaf is None else (-1, 2):
+            proof.pairs[leaf, 1] = load
+            assert "has no load" in said(proof)
+    assert seen > 3
+
+
 def test_scales_of_twists_and_of_lengths_do_not_count() -> None:
     rng = np.random.default_rng(1)
     proof = random_planar(rng, "force", "squares", 2)
@@ -172,6 +196,46 @@ def test_children_share_out_fingers_of_one_arc() -> None:
         assert "is not covered" in told((a, a), (a, b), (b, b))
 
 
+def test_fingers_on_different_arcs_are_not_shared_out_together() -> None:
+    sides = np.array([[0, 0, 1.0], [1, 1, 2.0], [2, 2, 3.0]])
+    root, left = everything(sides, 2), (0, 1, 0.0, 2.0)
+    right, a, b = (2, 2, 2.0, 3.0), (0, 0, 0.0, 1.0), (1, 1, 1.0, 2.0)
+
+    def told(whole, *inside) -> str:
+        parts = [(left, left), (left, right), (right, right)]
+        at = parts.index(whole)
+        nodes = [(root, (1, 3), 0, (0.0, 1.0, 0.0))]
+        nodes += [
+            (p, (4, len(inside)) if k == at else (0, 0), 0, (0.0, 1.0, 0.0)) for k, p in enumerate(parts)
+        ]
+        nodes += [(p, (0, 0), 0, (0.0, 1.0, 0.0)) for p in inside]
+        return said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides))
+
+    assert told((left, right), (a, right), (b, right)) == ""
+    assert told((left, left), (a, a), (a, b), (b, b)) == ""
+    assert "is not covered" in told((left, right), (a, a), (a, b), (b, b))
+    assert "is not covered" in told((left, right), (a, right), (a, right))
+    assert "is not covered" in told((left, left), (left, left))
+
+
+def test_arcs_go_on_with_the_next_side() -> None:
+    sides, twist = np.array([[0, 0, 1.0], [1, 1, 2.0], [2, 2, 3.0]]), (0.0, 1.0, 0.0)
+    for left, right, good in (
+        ((0, 0, 0.0, 1.0), (1, 2, 1.0, 3.0), True), ((0, 1, 0.0, 2.0), (2, 2, 2.0, 3.0), True),
+        ((0, 0, 0.0, 1.0), (2, 2, 1.0, 3.0), False), ((0, 0, 0.0, 1.0), (2, 2, 2.0, 3.0), False),
+        ((0, 0, 0.0, 1.0), (1, 2, 1.5, 3.0), False), ((0, 0, 0.0, 0.5), (1, 2, 1.0, 3.0), False),
+        ((0, 1, 0.0, 1.0), (2, 2, 2.0, 3.0), False), ((0, 2, 0.0, 3.0), (2, 2, 2.0, 3.0), False),
+        ((0, 0, 0.5, 1.0), (1, 2, 1.0, 3.0), False), ((0, 0, 0.0, 1.0), (1, 2, 1.0, 2.5), False),
+        ((1, 1, 0.0, 2.0), (2, 2, 2.0, 3.0), False), ((0, 0, 0.0, 1.0), (1, 1, 1.0, 3.0), False),
+    ):  # fmt: skip
+        nodes = [(everything(sides, 1), (1, 2), 0, twist), *(([x], (0, 0), 0, twist) for x in (left, right))]
+        found = said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides))
+        assert (found == "") == good, (left, right)
+    for first in -1, -2, 0, 2:  # the last boxes again, box 0, or beyond all
+        nodes[0] = (everything(sides, 1), (first, 2), 0, twist)
+        assert "boxes that are not there" in said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides))
+
+
 def test_halves_of_one_side_meet() -> None:
     vertices, sides, twist = SHAPES[1], np.array([[0, 0, 1.0]]), (0.0, 1.0, 0.0)
     for (a, b), good in (
@@ -211,6 +275,8 @@ def test_halves_of_one_side_meet() -> None:
         ({"rings": np.array([1])}, "rings must begin at vertices, three or more apart"),
         ({"fingers": 0, "arcs": np.zeros((1, 0, 2), dtype=int), "ends": np.zeros((1, 0, 2))}, "are needed"),
         ({"norm": "least"}, "has no meaning"),
+        ({"pairs": np.zeros((0, 2), dtype=int)}, "second twists go with their boxes"),
+        ({"pairs": np.zeros((0, 2), dtype=int), "seconds": np.zeros((0, 3))}, "a largest force and straight"),
         ({"sides": np.array([[3, 3, 4.0]])}, "side 0 is no stretch"),
         ({"sides": np.array([[-1, -1, 0.0]])}, "side 0 is no stretch"),
         ({"sides": np.array([[0, -0.25, 1.0]])}, "side 0 is no stretch"),

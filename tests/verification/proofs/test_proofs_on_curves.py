@@ -1,6 +1,7 @@
 """The same on curves: straight cubics are sides, and no sampled force beats the bound of a stretch."""
 
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 import regrasp as rg
 from proofs import everything, limit, most_work, planar, planar_points, random_planar
 from regrasp.verification.placed.cubic import CubicEdges
+from regrasp.verification.placed.eroded import is_sector
 
 pytestmark = pytest.mark.oracle
 
@@ -44,8 +46,11 @@ def test_cubics_that_are_straight_prove_as_much(size, norm) -> None:
     assert seen > 1
 
 
-CURVE = np.array([[[3, -1], [4, 0.5], [3.5, 2], [2, 3]], [[2, 3], [0, 4], [-2, 2], [-2, 0]],
+ROUND = np.array([[[3, -1], [4, 0.5], [3.5, 2], [2, 3]], [[2, 3], [0, 4], [-2, 2], [-2, 0]],
                   [[-2, 0], [-2, -3], [1, -3], [3, -1]]], dtype=float)  # fmt: skip
+WAVES = np.array([[[0, 0], [1, 0], [1.5, 1], [3, 1]], [[3, 0], [2, 0], [1.5, 1], [0, 1]]])
+CURVE = np.concatenate([ROUND, ROUND[:, ::-1], WAVES])
+"""Curves that turn to the left, to the right, and one way and the other."""
 
 
 def on_curve(edge: int, t: float):
@@ -64,7 +69,7 @@ def test_on_curves_no_force_does_more_than_the_bound_of_a_stretch(size) -> None:
     )
     for k in range(60):
         proof.friction = float(rng.choice([0.0, 0.4, 1.5]))
-        edges, edge = CubicEdges(proof), int(rng.integers(3))
+        edges, edge = CubicEdges(proof), int(rng.integers(len(CURVE)))
         y = rng.normal(size=3)
         width = float(rng.choice([0.25, 1e-3]))
         lo = float(rng.uniform(0, 1 - width))
@@ -88,8 +93,9 @@ def test_doubles_say_what_rationals_say_of_any_stretch(size) -> None:
         friction = float(rng.choice([0.3, 1.5, 6.0]))
         margin = float(rng.uniform(0.05, 0.9)) * friction / np.hypot(1, friction) if size == "margin" else 0.0
         proof = planar(CURVE[:, 0], [[0, -1, 0]], [node], control=CURVE, size=size, friction=friction)
-        proof.margin, proof.bound = margin, 1.0
-        edges, edge, y = CubicEdges(proof), int(rng.integers(3)), rng.normal(size=3)
+        proof.margin, proof.bound = 2 * margin, 2.0
+        edges, edge = CubicEdges(proof), int(rng.integers(len(CURVE)))
+        y = rng.normal(size=3) * 10.0 ** (2 * (k % 5) - 4)
         lo, hi = np.sort(rng.random(2))
         hi = min(hi, lo + float(rng.choice([1e-3, 0.25, 0.5])))
         if not edges.turns_little(edge, Fraction(lo), Fraction(hi)):
@@ -97,11 +103,17 @@ def test_doubles_say_what_rationals_say_of_any_stretch(size) -> None:
         exact = float(edges.most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y]))
         rough = edges.roughly(np.array([edge]), np.array([lo]), np.array([hi]), y[None])[0]
         best = (
-            [most_work(proof, y, *on_curve(edge, t)) for t in np.linspace(lo, hi, 9)] if not margin else [-9]
+            [most_work(proof, y, *on_curve(edge, t)) for t in np.linspace(lo, hi, 9)]
+            if not margin
+            else [-np.inf]
         )
         assert max(best) <= exact * (1 + 1e-9) + 1e-12, k
-        if np.isfinite(rough) and (size != "margin" or exact > 0):
-            assert rough == pytest.approx(exact, rel=1e-7, abs=1e-12), k
+        if np.isfinite(rough):
+            assert rough == pytest.approx(exact, rel=1e-7, abs=1e-12 * np.linalg.norm(y)), k
+        elif size == "margin":  # too wide for what keeps a distance
+            proof.size = "force"
+            whole = CubicEdges(proof).most(edge, Fraction(lo), Fraction(hi), [Fraction(x) for x in y])
+            assert exact == pytest.approx(2 * float(whole), rel=1e-12)
         seen.add((bool(np.isfinite(rough)), friction, exact > 0))
     assert (True, 6.0, True) in seen
     assert ((False, 6.0, True) in seen) == (size == "margin")
@@ -120,9 +132,35 @@ def test_a_stretch_that_hardly_moves_is_judged_in_rationals() -> None:
         )
         longest = np.hypot(*(control[0, 2] - control[0, 1]))
         control[0, 1, 0] = short * longest
-        y, ends = np.array([[1.0, 2, 0]]), (np.array([0.0]), np.array([1e-9]))
-        rough = CubicEdges(proof).roughly(np.array([0]), *ends, y)[0]
-        assert np.isfinite(rough) == fine
+        for scale, hi in product((1e-3, 1.0, 1e3), (1e-9, 0.5)):  # one tangent that is short is enough
+            proof.control = scale * control
+            ends, y = (np.array([0.0]), np.array([hi])), np.array([[1.0, 2, 0]])
+            assert np.isfinite(CubicEdges(proof).roughly(np.array([0]), *ends, y)[0]) == fine
+
+
+def test_against_its_normal_a_finger_does_nothing() -> None:
+    node = ([(0, 0, 0, 1)], (0, 0), 0, (0, 0, 1))
+    for size, friction, scale in product(("normal", "force"), (0.0, 0.5), (1e-3, 1.0)):
+        square = np.array([[0, 0], [2, 0], [2, 2], [0, 2]]) * 1.0
+        proof = planar(square, [[0, -1, 0]], [node], size=size, friction=friction, control=bent(square))
+        for way, most in (1, scale), (-1, 0.0):  # along a floor's normal, and against it
+            y = [Fraction(0), Fraction(way * scale), Fraction(0)]
+            found = CubicEdges(proof).most(0, Fraction(1, 4), Fraction(1, 2), y)
+            assert float(found) == pytest.approx(most * 1.0, rel=1e-12, abs=0)
+
+
+def test_half_a_turn_is_no_sector() -> None:
+    for tiny, good in (Fraction(1, 10**30), True), (Fraction(0), False), (Fraction(-1, 10**30), False):
+        assert is_sector((Fraction(1), Fraction(0)), (Fraction(-1), tiny)) == good
+
+
+def test_stretches_turn_by_less_than_a_quarter() -> None:
+    for short, good in (0.0, False), (1e-12, True), (-1e-12, False):
+        quarter = np.array([[[0, 0], [1, 0], [2, 1], [2 + short, 2]]])
+        node = ([(0, 0, 0, 1)], (0, 0), 0, (0, 0, 1))
+        for control in (quarter, quarter[:, ::-1]):
+            edges = CubicEdges(planar(control[:, 0], [[0, -1, 0]], [node], control=control))
+            assert edges.turns_little(0, Fraction(0), Fraction(1)) == good
 
 
 def test_stretches_of_curves_that_turn_too_far_prove_nothing() -> None:

@@ -15,8 +15,6 @@ _AT_ONCE = 20_000  # stretches of sides
 class Edges(Protocol):
     """The boundary."""
 
-    reach: float
-
     def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
         """(m,) the most work on stretches along twists y (m, 3), but for rounding."""
 
@@ -49,8 +47,9 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
         terms = np.column_stack([terms, more])
     lost = _ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
-    sizes = np.abs(y) + np.abs(z)
-    room = _ROUNDING * (sizes[:, 0] + sizes[:, 1] + sizes[:, 2] * boundary.reach) * (1 + proof.friction)
+    points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
+    reach = np.hypot(*np.abs(points).max(axis=0)) + np.hypot(*proof.centre_of_mass)
+    room = _ROUNDING * ((np.abs(y) + np.abs(z)) @ [1.0, 1.0, reach]) * (1 + proof.friction)
     if proof.size == "margin":
         room *= 4 * proof.bound
     most = _most(proof, boundary, boxes, y, z) + room[:, None]

@@ -39,9 +39,6 @@ class CubicEdges:
         self._friction = proof.friction
         self._control = np.asarray(proof.control - proof.centre_of_mass)
         self._legs = np.diff(proof.control, axis=1)
-        self.reach = float(
-            np.hypot(*np.abs(proof.control).reshape(-1, 2).max(axis=0)) + np.hypot(*proof.centre_of_mass)
-        )
 
     @property
     def count(self) -> int:
@@ -64,24 +61,13 @@ class CubicEdges:
         first = next(d for d in found if all(_cross(d, e) >= 0 for e in found))
         last = next(d for d in found if all(_cross(d, e) <= 0 for e in found))
         a, b = cone_edges(first, self.mu), cone_edges(last, self.mu)
-        most = Fraction(0)
-        points = self.hull(edge, lo, hi)
+        along = [(y[0] - y[2] * py, y[1] + y[2] * px) for px, py in self.hull(edge, lo, hi)]
+        limit = Fraction(self.limit) if self.eroded else Fraction(1)
         if self.eroded and is_sector(a[0], b[1]):
-            limits = Fraction(self.limit), Fraction(self.margin)
-            along = [(y[0] - y[2] * py, y[1] + y[2] * px) for px, py in points]
-            return max(most_eroded(a[0], b[1], *limits, v) for v in along)
-        if self.eroded:
-            return max(
-                Fraction(self.limit) * _on_sector(a[0], b[1], (y[0] - y[2] * py, y[1] + y[2] * px))
-                for px, py in points
-            )
-        for px, py in points:
-            v = (y[0] - y[2] * py, y[1] + y[2] * px)
-            if self.force:
-                most = max(most, _on_sector(a[0], b[1], v))
-            else:
-                most = max(most, self.slant * max(_on_arc(a[0], b[0], v), _on_arc(a[1], b[1], v)))
-        return most
+            return max(most_eroded(a[0], b[1], limit, Fraction(self.margin), v) for v in along)
+        if self.eroded or self.force:
+            return limit * max(_on_sector(a[0], b[1], v) for v in along)
+        return self.slant * max(max(_on_arc(a[0], b[0], v), _on_arc(a[1], b[1], v)) for v in along)
 
     def _tangents(self, edge: int, lo: Fraction, hi: Fraction) -> list[Point]:
         control = self.control[edge]
@@ -141,8 +127,7 @@ def _cross(a: Point, b: Point) -> Fraction:
 
 def _along(a: Point, v: Point) -> Fraction:
     """The part of v along a, rounded up, or 0 if that is more."""
-    work = _dot(a, v)
-    return work / root_below(_dot(a, a)) if work > 0 else Fraction(0)
+    return max(_dot(a, v), Fraction(0)) / root_below(_dot(a, a))
 
 
 def _on_arc(a: Point, b: Point, v: Point) -> Fraction:

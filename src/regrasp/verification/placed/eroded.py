@@ -33,22 +33,21 @@ def most_eroded(a: Point, b: Point, limit: Fraction, margin: Fraction, v: Point)
     """An upper bound of v . f, in rationals, close to the largest."""
     ma, mb = (-a[1], a[0]), (b[1], -b[0])
     da, db = (margin * root_below(e[0] * e[0] + e[1] * e[1]) for e in (a, b))
-    best = limit * root_above(v[0] * v[0] + v[1] * v[1])
     # at the corner of both edges v + s m_A + t m_B = 0
     det = _cross(ma, mb)
     s, t = _cross(mb, v) / det, _cross(v, ma) / det
     if s >= 0 and t >= 0:
-        best = min(best, -s * da - t * db)
+        return -s * da - t * db
+    best = limit * root_above(v[0] * v[0] + v[1] * v[1])
     across = float(margin)
-    along = sqrt(max(float(limit) ** 2 - across**2, 0.0))
+    along = sqrt(float(limit) ** 2 - across**2)
     for m, edge, least in ((ma, a, da), (mb, b, db)):
         # at the corner of an edge and the circle v + s m is along it
         fx, fy = (along * float(e) + across * float(c) for e, c in zip(edge, m, strict=True))
         turning = float(m[0]) * fy - float(m[1]) * fx
-        if turning != 0.0:
-            s = Fraction(max(-(float(v[0]) * fy - float(v[1]) * fx) / turning, 0.0))
-            x, y = v[0] + s * m[0], v[1] + s * m[1]
-            best = min(best, limit * root_above(x * x + y * y) - s * least)
+        s = Fraction(max(-(float(v[0]) * fy - float(v[1]) * fx) / turning, 0.0))
+        x, y = v[0] + s * m[0], v[1] + s * m[1]
+        best = min(best, limit * root_above(x * x + y * y) - s * least)
     return best
 
 
@@ -56,7 +55,7 @@ def roughly_eroded(a: Array, b: Array, limit: float, margin: float, v: Array) ->
     """The same in doubles, of unit edges (m, 2) and v (m, 2)."""
     speed = np.hypot(*v.T)
     one, two, across = _crosses(a, v), _crosses(v, b), _crosses(a, b)
-    along = np.sqrt(max(limit**2 - margin**2, 0.0))
+    along = np.sqrt(limit**2 - margin**2)
     left = along * a + margin * np.stack([-a[:, 1], a[:, 0]], axis=1)
     right = along * b + margin * np.stack([b[:, 1], -b[:, 0]], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -122,7 +122,7 @@ class _Checked:
                 broken += self._excluded(box)
                 continue
             inside = range(first, first + count)
-            if first <= box or first + count > len(self.proof.children) or not seen.isdisjoint(inside):
+            if first < 0 or first + count > len(self.proof.children) or not seen.isdisjoint(inside):
                 return [*broken, f"proof: box {box} is split into boxes that are not there, or not its own"]
             seen.update(inside)
             waiting += inside
@@ -142,7 +142,7 @@ class _Checked:
         wrong = [f"proof: box {box} is not covered by the boxes it is split into"]
         split = [f for f, arc in enumerate(arcs) if any(part[f] != arc for part in parts)]
         count = len(inside) - 1
-        if not split or len(split) != count or split != list(range(split[0], split[0] + count)):
+        if not split or len(split) != count:
             return wrong
         at = split[0]
         if any(arcs[f] != arcs[at] for f in split):
@@ -202,19 +202,14 @@ class _Checked:
         return []
 
     def _most(self, arc: Arc, twists: list[list[Fraction]]) -> Fraction:
-        """An upper bound of sigma over an arc, 0 or more, or of the sum of that of two twists."""
-        first, last, lo, hi = arc[0], arc[1], Fraction(arc[2]), Fraction(arc[3])
-        most = Fraction(0)
-        for j in range(first, last + 1):
-            edge, least, largest = self.sides[j]
-            lo_j, hi_j = lo if j == first else least, hi if j == last else largest
-            if len(twists) == 1:
-                most = max(most, self.boundary.most(edge, lo_j - edge, hi_j - edge, twists[0]))
-                continue
-            for u in (lo_j - edge, hi_j - edge):  # the sum is convex along the side
-                both = [self.boundary.most(edge, u, u, y) for y in twists]
-                most = max(most, sum(both, start=Fraction(0)))
-        return most
+        """An upper bound of sigma over an arc, or of the sum of that of two twists."""
+        sides = self.sides[arc[0] : arc[1] + 1]
+        sides[0] = sides[0][0], Fraction(arc[2]), sides[0][2]
+        sides[-1] = *sides[-1][:2], Fraction(arc[3])
+        parts = [(edge, lo - edge, hi - edge) for edge, lo, hi in sides]
+        if len(twists) > 1:  # the sum is convex along a side
+            parts = [(edge, u, u) for edge, *ends in parts for u in ends]
+        return max(sum((self.boundary.most(*at, y) for y in twists), start=Fraction(0)) for at in parts)
 
     def _near(self, arcs: list[Arc]) -> bool:
         """Whether two fingers on one side each are nearer than they must be, wherever they are."""

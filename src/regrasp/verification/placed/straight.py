@@ -37,7 +37,6 @@ class StraightEdges:
         self._along = np.asarray(proof.vertices)[ends] - proof.vertices
         self._unit = self._along / np.hypot(*self._along.T)[:, None]
         self._friction = proof.friction
-        self.reach = float(np.hypot(*np.abs(proof.vertices).max(axis=0)) + np.hypot(*proof.centre_of_mass))
 
     @property
     def count(self) -> int:
@@ -66,9 +65,7 @@ class StraightEdges:
         ahead, aside = dx * vy - dy * vx, abs(dx * vx + dy * vy)  # times |edge|
         if self.force and aside <= self.mu * ahead:
             return root_above(vx * vx + vy * vy)
-        value = ahead + self.mu * aside
-        if value <= 0:
-            return Fraction(0)
+        value = max(ahead + self.mu * aside, Fraction(0))
         return value * self.per[edge] * (self.slant if self.force else 1)
 
     def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
