@@ -74,6 +74,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         [
             "verification/**/test_cuts*.py",
             "verification/by_hand/test_limited_work*.py",
+            "verification/by_hand/test_*cuts_by_hand.py",
             "planning/anywhere/test_*.py",
         ],
         0.95,

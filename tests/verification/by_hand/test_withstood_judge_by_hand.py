@@ -59,6 +59,7 @@ def test_limits_of_arcs_between_angles() -> None:
     for step, size in (pi, 1e-3), (4.0, 0.3):  # no turn at once
         assert found(turning([0, step], [one(size, 0)] * 2), friction=1.0)
     assert found(turning([0, pi], [one(0, 0)] * 2), friction=1.0) == []
+    assert found(turning([0, pi], [one(1e-13, 0)] * 2), friction=1.0)
 
 
 def test_angles_and_states_between_them_decide() -> None:
@@ -268,3 +269,29 @@ def test_what_a_record_says_is_checked_unless_it_is_asked_for() -> None:
     plan = Plan("rotation", None, state, state, record=SimpleNamespace(withstands=wrong))
     assert check_promised(plan, None)[0][0].startswith("record: disturbance must be a LoadSet")
     assert check_promised(Plan("rotation", None, state, state), None) == ([], "")
+
+
+def test_sets_that_tilt_have_room_for_the_rounding_of_their_support() -> None:
+    """A force of 1 within 0.1 rad of x: 1 along x, -cos 0.1 back, sin 0.1 up, and 2^-40 of sizes."""
+    body, up = Body(rg.LoadSet.tilted(rg.Wrench([1, 0]), 0.1)), Fraction(1, 2**40)
+    for twist, most, size in (
+        ([1, 0, 0], 1.0, 1.0),
+        ([-1, 0, 0], -cos(0.1), 1.0),
+        ([0, 1, 0], sin(0.1), sin(0.1)),
+    ):
+        for part, good in (Fraction(1, 2), False), (Fraction(3, 2), True):
+            room = Fraction(most) + part * up * Fraction(size)
+            assert body.allows(room, [Fraction(x) for x in twist]) == good, (twist, part)
+
+
+def test_the_way_out_of_a_cone_and_of_a_limit() -> None:
+    """Beside the normal, x, by mu = 1 / 2; a soft finger's torque counts mu / e = 2 times, squared."""
+    point = Touch(rg.Contact([0, 0, 0], [1, 0, 0], 0.5), Fraction(1), 3)
+    after = [Fraction(x) for x in (1, 3, 4)]
+    assert point._outward(after, None) == pytest.approx([-0.5, 0.6, 0.8])
+    assert point._outward(after, Fraction(9)) == pytest.approx([1, 3, 4])
+    assert point._outward([Fraction(-2), Fraction(0), Fraction(0)], None) == pytest.approx([-0.5, 0, 0])
+    soft = Touch(rg.Contact([0, 0, 0], [1, 0, 0], 0.5, torsion=0.25), Fraction(1), 4)
+    after = [Fraction(x) for x in (1, 3, 0, 2)]
+    assert soft._outward(after, None) == pytest.approx([-0.5, 0.6, 0, 1.6])
+    assert soft._outward(after, Fraction(9)) == pytest.approx([1, 3, 0, 8])

@@ -252,7 +252,10 @@ class _Cut:
 
 
 def _covered(one: Span, other: Span, tiles: list[tuple[Span, Span]]) -> bool:
-    """Whether boxes cover the rectangle of two spans: every strip between their ends in a chain."""
+    """Whether boxes cover the rectangle of two spans: every strip between their ends in a chain.
+
+    The other span has a length.
+    """
     near = [(x, y) for x, y in tiles if x[0] <= one[1] and x[1] >= one[0]]
     cuts = sorted({*one, *(end for x, _ in near for end in x if one[0] < end < one[1])})
     strips = list(pairwise(cuts)) if len(cuts) > 1 else [(one[0], one[1])]
@@ -261,6 +264,6 @@ def _covered(one: Span, other: Span, tiles: list[tuple[Span, Span]]) -> bool:
         for low, high in sorted(y for x, y in near if x[0] <= lo and x[1] >= hi):
             if low <= at:
                 at = max(at, high)
-        if at < other[1] or not any(x[0] <= lo and x[1] >= hi for x, _ in near):
+        if at < other[1]:
             return False
     return True

@@ -111,7 +111,7 @@ class Judge:
         states = [_stacked(forces) for forces in turn.forces]
         arcs, met = list(pairwise(zip(turn.angles.tolist(), states, strict=True))), []
         for (a, f), (b, g) in arcs:
-            length = max(1 + Fraction(cos(b - a)) - _ROUNDING, _ROUNDING)
+            length = 1 + Fraction(cos(b - a)) - _ROUNDING
             forces = [(x + y) / length for x, y in zip(f, g, strict=True)]
             met.append((f"between {a:.6g} and {b:.6g} rad", forces))
         for ((a, f), (b, g)), found in zip(arcs, self._found(met, controlled), strict=True):
