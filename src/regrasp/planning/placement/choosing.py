@@ -73,7 +73,7 @@ def choose_grasp(
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
             ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor
             of a ``disturbance`` for which forces exist; ``wrench``, that for which one set of forces does and
-            fingers of equal stiffness need not notice, bounded by ``answered``; or ``wrench_ball``, Ferrari
+            fingers of equal stiffness need not notice; or ``wrench_ball``, Ferrari
             and Canny's measure, the radius of the largest ball of loads that fingers of limited normal force
             hold, for which ``load`` is zero.
         max_force: limit on every force, of ``wrench_ball`` on its normal part; the last six need it [N].
@@ -177,7 +177,7 @@ def choose_grasp(
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
         best, beyond = run_level(search, level, around * tolerance, most, progress)
         if isinstance(level, WithstoodLevel) and best is not None:
-            level.improve(search, tolerance)
+            search, beyond = level.climb(search, tolerance, most, progress, beyond)
         return chosen_at_level(search, asked, level, best, beyond)
     # half of the tolerance is for loads around a round set and for friction kept back
     half = 0.5 * tolerance / law.power

@@ -49,6 +49,7 @@ class Search:
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
         self._only = False
         self._kept: list[tuple[float, np.ndarray, Array]] = []
+        self.tied: dict[int, Array] = {}  # boxes excluded by duals of all loads together
 
     def under(self, loads: Array) -> None:
         """From now on, of these loads (L, 3) [N, N m]."""
@@ -127,6 +128,31 @@ class Search:
             if one[5][0] == 0:
                 return False
         return True
+
+    def box(self, node: int) -> tuple[np.ndarray, Array]:
+        """(k, 2) first and last side of each arc of a box, and its ends."""
+        return self._boxes[0][node], self._boxes[1][node]
+
+    def halved(self, node: int, finger: int, u: float, most: int) -> range:
+        """The boxes that one, of one side for each finger, is split into at ``u``; none without room."""
+        if len(self._heap) < self.count + self.fingers + 1 and not self._grow(most):
+            return range(0)
+        arcs, ends, _, _, _, kinds, children, _, _, other, _ = self._boxes
+        same = (arcs[node] == arcs[node, finger]).all(axis=1) & (ends[node] == ends[node, finger]).all(axis=1)
+        alike, first = np.flatnonzero(same), self.count
+        made = range(first, first + len(alike) + 1)
+        self._state[0], kinds[node], children[node] = made.stop, 2, (first, len(made))
+        for right, child in enumerate(made):
+            arcs[child], ends[child], kinds[child], other[child] = arcs[node], ends[node], 0, -1
+            ends[child, alike[: len(alike) - right], 1] = u
+            ends[child, alike[len(alike) - right :], 0] = u
+        return made
+
+    def leave(self, node: int, duals: Array | None) -> None:
+        """Take a box for excluded, by duals of all loads; or, for none, as nearer than fingers may be."""
+        self._boxes[5][node] = 3 if duals is None else 1
+        if duals is not None:
+            self.tied[node] = duals
 
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""
@@ -254,9 +280,10 @@ class Search:
         split = kinds == 2
         given = {"sides": sides, "loads": self.loads, "arcs": arcs, "ends": ends}
         given["children"] = np.where(split[:, None], children, 0)
+        number[list(self.tied)] = -2 - np.arange(len(self.tied))
         given["number"] = np.where(split, 0, number)
         given["twists"] = np.where(split[:, None], 0.0, twists / [1, 1, self.sides.size])
-        joined = np.flatnonzero((other >= 0) & (kinds != 2) & (kinds != 3))
+        joined = np.flatnonzero((other >= 0) & (kinds != 2) & (number >= 0))
         if len(joined):
             second = seconds[joined] / [1, 1, self.sides.size]
             given["pairs"] = np.column_stack([joined, (-second @ self.loads.T).argmax(axis=1)])
@@ -268,6 +295,7 @@ class Search:
             margin=self.margin, norm=self.law.norm, min_distance=self.apart, bound=bound,
             control=edges if smooth else None,
             rings=_frozen(self.sides.rings) if isinstance(self.sides, RingSides) else None,
+            tied=_frozen(np.array(list(self.tied.values()))) if self.tied else None,
             **{name: _frozen(values) for name, values in given.items()},
         )  # fmt: skip
 

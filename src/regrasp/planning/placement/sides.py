@@ -88,6 +88,12 @@ class Sides(ArrayValue):
         least, most = self.ends[place].tolist()
         return place, min(max(u + way, least), most)
 
+    def part(self, side: int, lo: float, hi: float) -> tuple[Array, Array]:
+        """(h, 2) points whose hull contains a part, and (t, 2) unit tangents between which its own are."""
+        edge = int(self.edges[side])
+        ends = self.points(np.array([side, side]), np.array([lo, hi]))
+        return ends if lo < hi else ends[:1], self.vectors[edge : edge + 1] / self.lengths[edge]
+
     def points(self, places: np.ndarray, u: Array) -> Array:
         """(k, 2) of places on sides [m]."""
         edges = self.edges[places]

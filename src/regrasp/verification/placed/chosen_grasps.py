@@ -48,6 +48,8 @@ def verify_chosen(chosen: Chosen) -> Verification:
     size, norm, _ = _MEANINGS[chosen.objective]
     if (proof.size, proof.norm) != (size, norm) and not _is_without_margin(chosen, proof):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
+    if chosen.objective != "wrench" and getattr(proof, "tied", None) is not None:
+        broken.append(f"the proof is of forces tied by stiffness, not of {chosen.objective}")
     for i, state in enumerate(chosen.states, 1):
         if state.grasp != chosen.grasp:
             broken.append(f"state {i} is of other contacts")
@@ -98,7 +100,8 @@ def _is_without_margin(chosen: Chosen, proof: Any) -> bool:
 def _part(proof: Proof) -> str:
     """Which part of the outline the places are on that a proof is about; empty for all of it."""
     share = Touching(proof).share
-    return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the outline that was asked about"
+    tied = "" if proof.tied is None else " of fingers that answer by equal stiffness"
+    return tied if share > 1 - _CLOSE else f"{tied} on the {share:.1%} of the outline that was asked about"
 
 
 def _area(chosen: Chosen, proof: Any) -> str:
@@ -191,7 +194,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         proven = bound >= (atan(mu) - atan(proof.friction)) * (1 - _CLOSE)
     elif chosen.objective == "force":
         proven = bound >= proof.margin
-    elif chosen.objective in ("answered", "wrench"):  # what is withstood is answered
+    elif chosen.objective in ("answered", "wrench"):  # what is withstood is answered, too
         proven = _scaled_by_less(chosen, np.asarray(proof.loads), bound)
     else:  # no placement holds all loads of the proof, which are members of the ball
         sizes = np.linalg.norm(np.asarray(proof.loads) / [1.0, 1.0, chosen.length or 0.0], axis=1)

@@ -17,7 +17,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.eroded import cone_edges, is_sector, most_eroded, roughly_eroded
-from regrasp.verification.placed.protocol import Point, Proof
+from regrasp.verification.placed.protocol import Point, Proof, velocity
 from regrasp.verification.placed.roots import root_above, root_below
 
 _SHORTEST = 0.02  # of the longest leg: tangents of less are not judged in doubles
@@ -57,11 +57,14 @@ class CubicEdges:
 
     def most(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> Fraction:
         """An upper bound of sigma on a stretch, 0 or more."""
+        return self.most_along(edge, lo, hi, [velocity(y, p) for p in self.hull(edge, lo, hi)])
+
+    def most_along(self, edge: int, lo: Fraction, hi: Fraction, along: list[Point]) -> Fraction:
+        """The same of the most v . f along any of some v."""
         found = self._tangents(edge, lo, hi)
         first = next(d for d in found if all(_cross(d, e) >= 0 for e in found))
         last = next(d for d in found if all(_cross(d, e) <= 0 for e in found))
         a, b = cone_edges(first, self.mu), cone_edges(last, self.mu)
-        along = [(y[0] - y[2] * py, y[1] + y[2] * px) for px, py in self.hull(edge, lo, hi)]
         limit = Fraction(self.limit) if self.eroded else Fraction(1)
         if self.eroded and is_sector(a[0], b[1]):
             return max(most_eroded(a[0], b[1], limit, Fraction(self.margin), v) for v in along)

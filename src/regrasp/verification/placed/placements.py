@@ -14,7 +14,8 @@ sigma of an arc is at an end of one of its sides (``straight``); on curves there
 Two twists, each with a load, bound a box together by the largest of each arc of the sum of their sigma, where
 N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
-box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``).
+box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``). What is withstood is bounded by all loads
+together (``tied``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
 
@@ -29,6 +30,7 @@ from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
+from regrasp.verification.placed.tied import ties_of, works
 
 Arc = tuple[int, int, float, float]
 
@@ -66,6 +68,11 @@ def _shapes(proof: Proof) -> list[str]:
         apart = np.diff(np.append(first, len(proof.vertices))) >= 3
         if proof.control is not None or not (first[:1] == 0).all() or not apart.all():
             return ["proof: rings must begin at vertices, three or more apart, the first at 0"]
+    if proof.tied is not None:
+        columns = 3 * len(proof.loads) + ties_of(k) * (len(proof.loads) - 1)
+        wanted.append(("tied", proof.tied, (len(proof.tied), columns)))
+        if (proof.size, proof.norm) != ("force", "largest"):
+            return ["proof: loads are tied for a largest force alone"]
     broken = [f"proof: {name} must have shape {shape}" for name, a, shape in wanted if np.shape(a) != shape]
     finite = all(np.isfinite(a).all() for _, a, _ in wanted) and np.isfinite(proof.bound)
     if not finite:
@@ -174,6 +181,8 @@ class _Checked:
         number, arcs = int(self.proof.number[box]), self._arcs(box)
         if number == -1:
             return [] if self._near(arcs) else [f"proof: fingers of box {box} may be far enough apart"]
+        if number < -1 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
+            return self._tied(box, self.proof.tied[-2 - number].tolist(), arcs)
         told = [(number, self.proof.twists[box].tolist())]
         told += [self.second[box]] if box in self.second else []
         if not all(0 <= load < len(self.proof.loads) for load, _ in told):
@@ -199,6 +208,21 @@ class _Checked:
             dual = root_above(sum((s * s for s in most), start=Fraction(0)))
         if work <= 0 or work < bound * dual:
             return [f"proof: the twist of box {box} does not exclude it"]
+        return []
+
+    def _tied(self, box: int, row: list[float], arcs: list[Arc]) -> list[str]:
+        """The same by all loads together, for one side of each finger."""
+        if any(a != b for a, b, *_ in arcs):
+            return [f"proof: a finger of box {box} has more than one side"]
+
+        def most(finger: int, v: Point) -> Fraction:
+            side, _, lo, hi = arcs[finger]
+            edge = self.sides[side][0]
+            return self.boundary.most_along(edge, Fraction(lo) - edge, Fraction(hi) - edge, [v])
+
+        work, done = works(row, self.proof.loads.tolist(), [self._hull(*arc) for arc in arcs], most)
+        if work < Fraction(self.proof.bound) * done or work <= 0:
+            return [f"proof: the duals of box {box} do not exclude it"]
         return []
 
     def _most(self, arc: Arc, twists: list[list[Fraction]]) -> Fraction:

@@ -95,6 +95,15 @@ class Proof(Protocol):
     def margin(self) -> float:
         """Distance of forces from the edges of their cones, where the size is ``margin`` [N]."""
 
+    @property
+    def tied(self) -> Array | None:
+        """(r, 3 L + (L - 1) T) duals of boxes that all loads exclude together."""
+
+
+def velocity(y: list[Fraction], point: Point) -> Point:
+    """Of a point, along a twist."""
+    return y[0] - y[2] * point[1], y[1] + y[2] * point[0]
+
 
 def after_each(count: int, rings: Any) -> np.ndarray:
     """(k,) which vertex comes after each of so many on its ring."""

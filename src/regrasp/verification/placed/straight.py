@@ -6,7 +6,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.eroded import cone_edges, most_eroded, roughly_eroded
-from regrasp.verification.placed.protocol import Point, Proof, after_each
+from regrasp.verification.placed.protocol import Point, Proof, after_each, velocity
 from regrasp.verification.placed.roots import root_above, root_below
 
 
@@ -54,11 +54,14 @@ class StraightEdges:
 
     def most(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> Fraction:
         """An upper bound of sigma on a stretch, 0 or more."""
-        return max(self._sigma(edge, p, y) for p in self.hull(edge, lo, hi))
+        return self.most_along(edge, lo, hi, [velocity(y, p) for p in self.hull(edge, lo, hi)])
 
-    def _sigma(self, edge: int, point: Point, y: list[Fraction]) -> Fraction:
-        dx, dy = self.along[edge]
-        vx, vy = y[0] - y[2] * point[1], y[1] + y[2] * point[0]
+    def most_along(self, edge: int, lo: Fraction, hi: Fraction, along: list[Point]) -> Fraction:
+        """The same of the most v . f along any of some v."""
+        return max(self._sigma(edge, v) for v in along)
+
+    def _sigma(self, edge: int, v: Point) -> Fraction:
+        (dx, dy), (vx, vy) = self.along[edge], v
         if self.eroded:
             edges = cone_edges((dx, dy), self.mu)
             return most_eroded(*edges, Fraction(self.limit), Fraction(self.margin), (vx, vy))

@@ -91,7 +91,14 @@ class CurvedSides(Sides):
 
         The u may run past the start.
         """
-        edges = np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1))
+        return self._hull(np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1)), lo, hi)
+
+    def part(self, side: int, lo: float, hi: float) -> tuple[Array, Array]:
+        """(h, 2) points whose hull contains a part, and (t, 2) unit tangents between which its own are."""
+        points, tangents = self._hull(self.edges[side : side + 1], lo, hi)
+        return points if lo < hi else points[:1], tangents
+
+    def _hull(self, edges: np.ndarray, lo: float, hi: float) -> tuple[Array, Array]:
         a, b = np.clip(lo - edges, 0.0, 1.0), np.clip(hi - edges, 0.0, 1.0)
         control = self.control[edges.astype(int) % len(self.control)]
         at = ((a, a, a), (a, a, b), (a, b, b), (b, b, b))

@@ -32,7 +32,8 @@ class PlacementProof(BoxProof):
         arcs: (n, fingers, 2) first and last side of each arc.
         ends: (n, fingers, 2) least and largest u of each arc.
         children: (n, 2) the first box that one is split into, and how many; 0 of a box that is not.
-        number: (n,) of the load that bounds a box; -1 where its fingers are nearer than ``min_distance``.
+        number: (n,) of the load that bounds a box; -1 where its fingers are nearer than ``min_distance``,
+            -2 - r where row r of ``tied`` bounds it.
         twists: (n, 3) velocity of the centre of mass, then angular velocity.
         control: (k, 4, 2) of a smooth boundary, the control points of its cubic edges, which begin at the
             ``vertices`` [m]; None of a polygon.
@@ -41,6 +42,9 @@ class PlacementProof(BoxProof):
             outline alone.
         pairs: (q, 2) boxes that two twists bound together, and the second one's load; None for none.
         seconds: (q, 3) their second twists.
+        tied: (r, 3 L + (L - 1) T) a twist for each load, then factors of the T ties of each load after the
+            first; None without. Forces are then those of fingers of equal stiffness that stay where they were
+            put for the first load: a bound of what is withstood, and of nothing else.
     """
 
     vertices: Array
@@ -63,6 +67,7 @@ class PlacementProof(BoxProof):
     rings: np.ndarray | None = None
     pairs: np.ndarray | None = None
     seconds: Array | None = None
+    tied: Array | None = None
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
@@ -91,4 +96,5 @@ class PlacementProof(BoxProof):
             None if given.get("rings") is None else integers(given["rings"], "rings", (None,)),
             None if given.get("pairs") is None else integers(given["pairs"], "pairs", (None, 2)),
             None if given.get("seconds") is None else array(given["seconds"], "seconds", (None, 3)),
+            None if given.get("tied") is None else array(given["tied"], "tied", (None, None)),
         )
