@@ -15,7 +15,7 @@ Two twists, each with a load, bound a box together by the largest of each arc of
 N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
 box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``). What is withstood is bounded by all loads
-together (``tied``).
+together (``whole_sets``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
 
@@ -30,7 +30,7 @@ from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
-from regrasp.verification.placed.tied import ties_of, works
+from regrasp.verification.placed.whole_sets import ties_of, works
 
 Arc = tuple[int, int, float, float]
 
