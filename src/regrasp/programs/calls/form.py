@@ -69,7 +69,7 @@ class Split(NamedTuple):
         """(m,) duals in the order of the program's rows; NaN for None."""
         duals = np.empty(self.equal.size)
         for part, values in ((~self.equal, of_inequalities), (self.equal, of_equalities)):
-            duals[part] = np.nan if values is None else values
+            duals[part] = values  # NumPy makes NaN of None
         return duals
 
 

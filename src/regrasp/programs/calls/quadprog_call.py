@@ -39,5 +39,5 @@ class Session:
             said = str(error).replace("matrix G is not", "P is not")
             return Answer(status, said=said, solve_time=perf_counter() - started)
         took = perf_counter() - started
-        joined = self._data.joined(duals[equalities:], duals[:equalities]) if sides.size else np.zeros(0)
+        joined = self._data.joined(duals[equalities:], duals[:equalities])
         return Answer("found", x, joined, int(iterations[0]), "found", None, None, took)
