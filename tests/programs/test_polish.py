@@ -24,7 +24,7 @@ def worst(p, x, z) -> float:
 @pytest.mark.parametrize("size", [1e-9, 1e-6, 1e-4])
 def test_what_is_a_little_off_is_made_right_in_any_units(size) -> None:
     off = np.array([1.0, -1.0])
-    for r, c, k in ((1.0, 1.0, 1.0), (1e5, 1e-3, 1e4)):
+    for r, c, k in ((1.0, 1.0, 1.0), (1e5, 1e-3, 1e4), (1e-14, 1.0, 1.0)):
         p = program(k * c * c * np.eye(2), k * c * BOX.q, r * c * BOX.A.toarray(), r * BOX.b, nonnegative(3))
         x, z = polished(p, (X + size * off) / c, k / r * (Z + size * np.array([1, 1e-3, -1])), 1e-12)
         np.testing.assert_allclose(c * x, X, rtol=1e-12)

@@ -59,7 +59,7 @@ def test_the_limits_of_proofs_to_a_thousandth() -> None:
         assert found.status is (Status.UNBOUNDED if near else Status.UNBOUNDED_OR_INFEASIBLE)
 
 
-@pytest.mark.parametrize(("rest", "signed"), [(1.5 * 2.0**-46, False), (1.1 * 2.0**-45, True)])
+@pytest.mark.parametrize(("rest", "signed"), [(0.97 * 2.0**-45, False), (1.03 * 2.0**-45, True)])
 def test_a_sum_that_is_rounding_has_no_sign(rest, signed) -> None:
     """x <= 1 and x >= 1 + 2 rest, and min -x - (1 - 2 rest) y along (1, -1): of terms 2."""
     none = program([[0.0]], [0.0], [[1], [-1]], [1, -1 - 2 * rest], nonnegative(2))
