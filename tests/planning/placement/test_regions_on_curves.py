@@ -34,16 +34,20 @@ def test_every_choice_within_regions_on_a_curve_holds() -> None:
     rng = np.random.default_rng(4)
     assert not any(fails(rng.uniform(*regions.arcs.T), regions.max_force) for _ in range(60))
     corners = np.array(list(product((-1, 1), repeat=2)))
-    assert any(fails(regions.places + 4 * regions.half_width * way, regions.max_force) for way in corners)
+    assert any(fails(regions.places + 1.3 * regions.half_width * way, regions.max_force) for way in corners)
     assert rg.verify(regions).ok
     assert regions.spans is not None
+    assert regions.cells is not None
+    assert len(regions.cells) > 4
     wide = np.array(regions.spans)
     wide[0, 1] += 0.02
     inward = np.array(regions.arcs)
     inward[0, 1] += 0.01
     slippery = rg.Grasp(c.changed(friction=0.5) for c in regions.grasp)
     for wrong, words in (
-        (replace(regions, spans=wide), "do not stand for all places"),
+        (replace(regions, spans=wide), "do not cover the arcs"),
+        (replace(regions, cells=regions.cells[1:], corners=regions.corners[8:]), "do not cover the arcs"),
+        (replace(regions, cells=regions.cells[::-1]), "do not stand for all places"),
         (replace(regions, arcs=inward), "another arc"),
         (replace(regions, grasp=slippery), "do not stand for all places"),
         (replace(regions, corners=regions.corners[:-1]), "missing"),

@@ -124,6 +124,7 @@ class Regions:
     half_width: float
     corners: tuple[rg.GraspState, ...]
     max_force: float = 9.0
+    cells: Any = None
 
 
 SIDES = bent([[-2, -1], [2, -1], [2, 1], [-2, 1]])

@@ -32,7 +32,7 @@ PEAK_RATIO = 3.0
 """Default limit on every force, as a multiple of the least largest force of the grasp as it is."""
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
 _HALVINGS = 40
-_ON_CURVES = 14
+_ON_CURVES = 11
 _LESS = 1e-6  # of widths and of friction, given up so that forces at the corners exist for solvers, too
 
 
@@ -51,8 +51,10 @@ class ContactRegions(ArrayValue):
             proven by ``corners``, nor judged by ``regrasp.verify`` [m].
         max_force: no force need be larger [N].
         corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12). On a curve
-            they are beside it, at the ends of chords, with the cones that all points of an arc share.
+            they are beside it, at the ends of chords, with the cones that all points of a part share, cell by
+            cell.
         spans: (k, 2) of arcs on a curve, number of the cubic and fraction of it passed; None on a polygon.
+        cells: (c, k, 2) boxes of parts of the arcs, as ``spans``, which cover all of them; None on a polygon.
     """
 
     shape: Outline
@@ -64,6 +66,7 @@ class ContactRegions(ArrayValue):
     max_force: float
     corners: tuple[GraspState, ...]
     spans: Array | None = None
+    cells: Array | None = None
 
     @property
     def widths(self) -> Array:
@@ -92,10 +95,11 @@ def contact_regions(
     On straight sides every placement of a box of arcs holds a load, with forces below a limit, if and only if
     the box's corners do: between two ends of one arc, forces are mixed so that the centre of pressure of that
     finger is where it stands. So corners prove regions, and the half width is exact to rounding. From there
-    the ends of the arcs are moved out one after the other as far as they go. On a curve chords beside the
-    arcs, and the cones that all points of an arc share, take the place of sides (``curved_regions``): what is
-    returned is proven, too, and not the widest that there is. On a mesh regions are polygons on flat faces,
-    around discs; their corners prove them where forces there hold a little torque about each normal on top.
+    the ends of the arcs are moved out one after the other as far as they go. On a curve chords beside parts
+    of the arcs, and the cones that all points of a part share, take the place of sides (``curved_regions``):
+    what is returned is proven, too, and nearly the widest that there is. On a mesh regions are polygons on
+    flat faces, around discs; their corners prove them where forces there hold a little torque about each
+    normal on top.
 
     Args:
         shape: a polygon, a smooth outline, or a mesh of flat faces.
@@ -147,12 +151,12 @@ def _limit(least: float, given: float | None) -> float:
 def _on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
     at, k = around.places, len(around.places)
     single = np.stack([at, at], axis=1)
-    limit = _limit(around.need(single), given)
+    limit = _limit(around.need(around.spans(single)), given)
     far = 0.25 * around.shape.length
     ways: Array = np.array([-1.0, 1.0])
 
     def holds(box: Array) -> bool:
-        return around.need(box) <= limit
+        return around.cells(around.spans(box), limit) is not None
 
     half = (1 - _LESS) * _farthest(lambda width: holds(single + width * ways), far, _ON_CURVES)
     box, alone = single + half * ways, np.zeros((k, 2))
@@ -160,9 +164,13 @@ def _on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
         last = at[i] + far * ways[end]
         box[i, end] = at[i] + (1 - _LESS) * (_moved_out(holds, box, i, end, last, _ON_CURVES) - at[i])
         alone[i, end] = (1 - _LESS) * abs(_moved_out(holds, single, i, end, last, _ON_CURVES) - at[i])
+    cells = around.cells(around.spans(box), limit)
+    if cells is None:
+        raise Infeasible("the regions found were left without forces by rounding")
     return ContactRegions(
         around.shape, around.grasp, read_only(at), read_only(box), half * (1 - _LESS), read_only(alone),
-        limit * (1 + _LESS), around.states(box, limit * (1 + _LESS)), read_only(around.spans(box)),
+        limit * (1 + _LESS), tuple(s for cell in cells for s in around.states(cell, limit * (1 + _LESS))),
+        read_only(around.spans(box)), read_only(np.array(cells)),
     )  # fmt: skip
 
 

@@ -47,6 +47,20 @@ def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float
     return bool(along.min() >= need and along.max() + need <= length)
 
 
+def covered(cells: Array, box: Array) -> bool:
+    """Whether cells (c, k, 2) cover a box (k, 2), which can be cut between them, again and again."""
+    if ((cells[:, :, 0] <= box[:, 0]) & (cells[:, :, 1] >= box[:, 1])).all(axis=1).any():
+        return True
+    for i, (lo, hi) in enumerate(box):
+        for cut in cells[:, i, 0]:
+            before, after = cells[:, i, 1] <= cut, cells[:, i, 0] >= cut
+            if lo < cut < hi and (before | after).all():
+                left, right = box.copy(), box.copy()
+                left[i, 1] = right[i, 0] = cut
+                return covered(cells[before], left) and covered(cells[after], right)
+    return False
+
+
 def point_at(control: Array, u: float) -> Array:
     """(2,) the point at a place."""
     edge = int(np.floor(u))

@@ -18,7 +18,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
-from regrasp.verification.placed.curved_regions import beside, point_at
+from regrasp.verification.placed.curved_regions import beside, covered, point_at
 from regrasp.verification.placed.protocol import Shape
 from regrasp.verification.verdict import Verification
 
@@ -58,6 +58,10 @@ class Regions(Protocol):
     @property
     def spans(self) -> Array | None:
         """(k, 2) of arcs on a curve: number of the cubic and fraction of it passed; None on a polygon."""
+
+    @property
+    def cells(self) -> Array | None:
+        """(c, k, 2) parts of spans, for which corners stand one after the other; None for all in one."""
 
     @property
     def max_force(self) -> float:
@@ -132,18 +136,18 @@ def _check_curved(regions: Regions, control: Array) -> list[str]:
         return ["a place is needed for each finger"]
     if not regions.corners:
         return ["no corner has a state"]
-    first, last = regions.corners[0].grasp, regions.corners[-1].grasp
-    if len(first) != k or len(last) != k or not (first.normals == last.normals).all():
-        return ["corners must have one normal for each finger"]
+    cells = np.asarray([spans] if regions.cells is None else regions.cells)
+    if cells.shape[1:] != (k, 2) or not covered(cells, np.asarray(spans)):
+        return ["the cells do not cover the arcs"]
+    each, rest = divmod(len(regions.corners), len(cells))
+    if rest or not each:
+        return ["some states of corners are missing"]
+    for number, cell in enumerate(cells):
+        broken = _cell_wrong(regions, control, cell, regions.corners[number * each : (number + 1) * each])
+        if broken:
+            return broken
     slack = float(RESOLUTION) * float(np.abs(control).max())
-    ends = []
     for i in range(k):
-        at = np.array([first.positions[i], last.positions[i]])
-        friction = float(regions.grasp.frictions[i])
-        if not spans[i, 0] <= spans[i, 1]:
-            return [f"arc {i + 1} must not end before it begins"]
-        if not beside(control, spans[i], at, first.normals[i], float(first.frictions[i]), friction):
-            return [f"the corners do not stand for all places of arc {i + 1}"]
         place, half = float(regions.places[i]), regions.half_width
         if not np.hypot(*(regions.shape.points(place) - regions.grasp.positions[i])) <= 100 * slack:
             return [f"contact {i + 1} is not at its place"]
@@ -153,12 +157,34 @@ def _check_curved(regions: Regions, control: Array) -> list[str]:
         for u, s in zip(spans[i], regions.arcs[i], strict=True):
             if not np.hypot(*(point_at(control, float(u)) - regions.shape.points(s))) <= 100 * slack:
                 return [f"the span of arc {i + 1} is another arc"]
+    return []
+
+
+def _cell_wrong(regions: Regions, control: Array, cell: Array, states: tuple[GraspState, ...]) -> list[str]:
+    """That states beside a curve stand for all places of a cell (k, 2)."""
+    k, first, last = len(cell), states[0].grasp, states[-1].grasp
+    if len(first) != k or len(last) != k or not (first.normals == last.normals).all():
+        return ["corners must have one normal for each finger"]
+    ends = []
+    for i in range(k):
+        at = np.array([first.positions[i], last.positions[i]])
+        friction = float(regions.grasp.frictions[i])
+        if not cell[i, 0] <= cell[i, 1]:
+            return [f"arc {i + 1} must not end before it begins"]
+        if not beside(control, cell[i], at, first.normals[i], float(first.frictions[i]), friction):
+            return [f"the corners do not stand for all places of arc {i + 1}"]
         ends.append(list(at))
-    return _missing(regions, ends, first.normals.tolist(), slack, first.frictions)
+    slack = float(RESOLUTION) * float(np.abs(control).max())
+    return _missing(regions, ends, first.normals.tolist(), slack, first.frictions, states)
 
 
 def _missing(
-    regions: Regions, ends: list[Any], normals: list[Any], slack: float, frictions: Array | None = None
+    regions: Regions,
+    ends: list[Any],
+    normals: list[Any],
+    slack: float,
+    frictions: Array | None = None,
+    states: tuple[GraspState, ...] | None = None,
 ) -> list[str]:
     loads = {tuple(state.load.vector.tolist()) for state in regions.corners}
     if not loads:
@@ -168,7 +194,7 @@ def _missing(
     for corner in product(*ends):
         here = {
             tuple(state.load.vector.tolist())
-            for state in regions.corners
+            for state in (regions.corners if states is None else states)
             if len(state.grasp) == len(corner)
             and np.abs(state.grasp.positions - corner).max() <= slack
             and np.abs(state.grasp.normals - normals).max() <= 4 * float(RESOLUTION)

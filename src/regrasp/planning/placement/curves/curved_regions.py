@@ -6,6 +6,7 @@ cone to the chord's normal. Let fingers at A and B, with forces in the cones of 
 hold a load. Their mixtures press on the chord from A to B; the places where they would have to press to be
 forces at p stay between, if A and B are so far beyond the feet of the part. So some mixture does: there are
 forces for p, in its own cone and within the limit. Finger by finger this proves all places of a box of parts.
+The shorter parts are, the less it loses: a box that is not proven so is halved into cells, up to some number.
 """
 
 from itertools import product
@@ -28,6 +29,8 @@ from regrasp.planning.states.choosing import choose_state
 ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
 _LESS = 1e-6  # of friction and limits, given up so that forces at the corners exist for solvers, too
 _BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
+_CELLS, _STATES = 16, 4096  # at most
+_LITTLE = 0.02  # parts that turn by less are not halved [rad]
 _STEEP = 1.3  # angles of forces to a chord's normal of no more are tried [rad]
 
 
@@ -52,18 +55,36 @@ class CurvedPlaces:
         result: Array = np.array(at) + turns * len(self.sides.control)
         return result
 
-    def corners(self, box: Array) -> tuple[Array, Array, float] | None:
+    def cells(self, span: Array, limit: float) -> list[Array] | None:
+        """Parts (k, 2) in u whose corners need no more than a limit, which make up a box; None for none."""
+        k = len(span)
+        ends = (np.array([[end] * 2 for end in corner]) for corner in product(*span))
+        if any(self.need(end, limit) > limit for end in ends):
+            return None
+        most = min(_CELLS, max(1, _STATES // (2**k * len(self.loads))))
+        proven, left = [], [span]
+        while left:
+            cell = left.pop()
+            if self.need(cell, limit) <= limit:
+                proven.append(cell)
+                continue
+            turns = [_turned(self.sides.hull(lo, hi)[1])[2] for lo, hi in cell]
+            i = int(np.argmax(turns))
+            if turns[i] < _LITTLE or len(proven) + len(left) + 2 > most:
+                return None
+            left += [cell.copy(), cell]
+            left[-1][i, 1] = left[-2][i, 0] = cell[i].mean()
+        return proven
+
+    def corners(self, span: Array) -> tuple[Array, Array, float] | None:
         """(k, 2, 2) points, (k, 2) normals and friction of fingers beside parts; None where cones differ."""
         mu = float(self.grasp.frictions[0]) * (1 - _LESS)
         points, normals, angles, wide = [], [], [], []
-        for lo, hi in self.spans(box):
+        for lo, hi in span:
             hull, tangents = self.sides.hull(lo, hi)
-            middle = tangents.sum(axis=0)
-            middle /= np.hypot(*middle)
-            turned = np.arctan2(middle[0] * tangents[:, 1] - middle[1] * tangents[:, 0], tangents @ middle)
-            turn = 0.5 * (turned.max() + turned.min())
+            middle, turn, turned = _turned(tangents)
             n = middle * np.cos(turn) + np.array([-middle[1], middle[0]]) * np.sin(turn)
-            wide.append(np.ptp(turned) / 2)
+            wide.append(turned / 2)
             angles.append(np.arctan(mu) - wide[-1])
             normals.append([-n[1], n[0]])
             points.append(hull)
@@ -81,9 +102,9 @@ class CurvedPlaces:
             ends.append([base + (along.min() - reach) * t, base + (along.max() + reach) * t])
         return np.array(ends), np.array(normals), float(np.tan(alpha))
 
-    def need(self, box: Array) -> float:
-        """The largest least force that a corner needs [N], infinite where one holds no load."""
-        found = self.corners(box)
+    def need(self, span: Array, limit: float = np.inf) -> float:
+        """The largest least force that a corner needs, or one above a limit [N]; infinite for none."""
+        found = self.corners(span)
         if found is None:
             return np.inf
         ends, normals, mu = found
@@ -94,13 +115,13 @@ class CurvedPlaces:
         for corner in product(range(2), repeat=k):
             places = 2 * np.arange(k) + corner
             worst = max(worst, search.norm_at(places, places.astype(float)))
-            if worst == np.inf:
+            if worst > limit or worst == np.inf:
                 break
         return worst
 
-    def states(self, box: Array, limit: float) -> tuple[GraspState, ...]:
-        """States at all corners, load by load, which prove the box."""
-        found = self.corners(box)
+    def states(self, span: Array, limit: float) -> tuple[GraspState, ...]:
+        """States at all corners, load by load, which prove a cell."""
+        found = self.corners(span)
         assert found is not None
         ends, normals, mu = found
         states = []
@@ -118,6 +139,14 @@ class CurvedPlaces:
                     ) from None
                 states.append(GraspState(at, load, forces))
         return tuple(states)
+
+
+def _turned(tangents: Array) -> tuple[Array, float, float]:
+    """A direction between tangents, how far their middle is turned from it, and how wide they are [rad]."""
+    middle = tangents.sum(axis=0)
+    middle /= np.hypot(*middle)
+    turned = np.arctan2(middle[0] * tangents[:, 1] - middle[1] * tangents[:, 0], tangents @ middle)
+    return middle, 0.5 * float(turned.max() + turned.min()), float(np.ptp(turned))
 
 
 class _Points(Sides):
