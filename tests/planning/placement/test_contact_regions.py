@@ -70,6 +70,38 @@ def test_more_force_allows_wider_regions() -> None:
     assert 0 < tight.half_width < loose.half_width
 
 
+def test_widest_by_the_least_arc_and_by_the_product_are_no_narrower_than_any_seen() -> None:
+    """Against all intervals between points of a grid, whose corners are looked up."""
+    tilted = rg.LoadSet.hull([rg.Wrench([0, -1], 0.1), rg.Wrench([0.6, -1]), rg.Wrench([-0.2, -1])])
+    grasp = rg.Grasp(BRACKET.contact_at(s, friction=0.5, name=n) for s, n in ((1.0, "a"), (9.1, "b")))
+    found = {
+        w: rg.contact_regions(BRACKET, grasp, tilted, widest=w) for w in ("together", "least", "product")
+    }
+    limit = found["least"].max_force
+    vertices = tilted.vertices
+    assert vertices is not None
+    rows = [np.linspace(0.01, 3.99, 20), np.linspace(8.01, 9.99, 16)]
+    at = [int(np.abs(row - p).argmin()) for row, p in zip(rows, (1.0, 9.1), strict=True)]
+    good = np.array(
+        [
+            [all(holds(np.array([a, b]), limit, rg.Wrench.from_vector(v)) for v in vertices) for b in rows[1]]
+            for a in rows[0]
+        ]
+    )
+    least = most = 0.0
+    for a, b in product(range(at[0] + 1), range(at[0], 20)):
+        for c, d in product(range(at[1] + 1), range(at[1], 16)):
+            if good[a, c] and good[a, d] and good[b, c] and good[b, d]:
+                wide = rows[0][b] - rows[0][a], rows[1][d] - rows[1][c]
+                least, most = max(least, min(wide)), max(most, wide[0] * wide[1])
+    assert most > 0
+    assert found["least"].widths.min() >= least * 0.99
+    assert found["product"].widths.prod() >= most * 0.99
+    assert found["least"].widths.min() >= found["together"].widths.min() * (1 - 1e-5)
+    assert found["product"].widths.prod() >= found["together"].widths.prod() * (1 - 1e-5)
+    assert all(rg.verify(regions).ok for regions in found.values())
+
+
 def test_regions_that_claim_too_much_are_not_verified() -> None:
     good = rg.contact_regions(BRACKET, GRASP, RING)
     arcs = np.array(good.arcs)
@@ -90,6 +122,8 @@ def test_what_has_no_regions_is_refused() -> None:
     for more, words in (
         ({"shape": rg.Outline.ellipse(2, 1)}, "is not on the outline"),
         ({"load": rg.Wrench([0, 0])}, "max_force"),
+        ({"widest": "largest"}, "together, least, product"),
+        ({"widest": "least", "shape": rg.Outline.ellipse(2, 1)}, "for polygons"),
         ({"grasp": rg.Grasp([rg.Contact([9, 9], [1, 0], 0.5), rg.Contact([0, 0], [1, 0], 0.5)])}, "no side"),
     ):
         asked = {"shape": BRACKET, "grasp": GRASP, "load": RING} | more

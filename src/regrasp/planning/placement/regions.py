@@ -1,8 +1,9 @@
 """How far the fingers of a grasp may miss their places: regions within which every choice holds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
+from types import MappingProxyType
 from typing import overload
 
 import numpy as np
@@ -33,6 +34,8 @@ PEAK_RATIO = 3.0
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
 _HALVINGS = 40
 _ON_CURVES = 11
+_POWERS: Mapping[str, tuple[int, ...]] = MappingProxyType({"together": (), "least": (8, 60), "product": (0,)})
+_SHORTEST, _TRADED, _BETTER = 0.005, 9, 1e-4  # least step, halvings and gain of a trade
 _LESS = 1e-6  # of widths and of friction, given up so that forces at the corners exist for solvers, too
 
 
@@ -81,14 +84,29 @@ class ContactRegions(ArrayValue):
 
 @overload
 def contact_regions(
-    shape: Outline, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
+    shape: Outline,
+    grasp: Grasp,
+    load: Wrench | LoadSet,
+    *,
+    max_force: float | None = None,
+    widest: str = "together",
 ) -> ContactRegions: ...
 @overload
 def contact_regions(
-    shape: Mesh, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
+    shape: Mesh,
+    grasp: Grasp,
+    load: Wrench | LoadSet,
+    *,
+    max_force: float | None = None,
+    widest: str = "together",
 ) -> FaceRegions: ...
 def contact_regions(
-    shape: Outline | Mesh, grasp: Grasp, load: Wrench | LoadSet, *, max_force: float | None = None
+    shape: Outline | Mesh,
+    grasp: Grasp,
+    load: Wrench | LoadSet,
+    *,
+    max_force: float | None = None,
+    widest: str = "together",
 ) -> ContactRegions | FaceRegions:
     """Independent regions around the contacts of a grasp: every choice within them holds the loads.
 
@@ -107,6 +125,9 @@ def contact_regions(
             on a mesh three or four, away from edges.
         load: external wrench on the object about its centre of mass, or a set of them [N, N m].
         max_force: limit on every force [N]; three times the least that the grasp needs if not given.
+        widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
+            ``product`` of all arcs; the last two on polygons, by trading one end of an arc for others while
+            that helps, which nothing proves the largest.
 
     Raises:
         Infeasible: Where the grasp itself does not hold the loads.
@@ -121,6 +142,11 @@ def contact_regions(
     if len(set(grasp.frictions.tolist())) > 1:
         raise InvalidInput("contacts of a grasp with regions must all have the same friction")
     given = None if max_force is None else number(max_force, "max_force", above=0)
+    if widest not in _POWERS:
+        raise InvalidInput(f"widest must be one of {', '.join(_POWERS)}; got {shown(widest)}")
+    straight = isinstance(shape, Outline) and isinstance(shape.boundary, PolygonBoundary)
+    if widest != "together" and not straight:
+        raise InvalidInput(f"widest {widest!r} is for polygons; on other shapes regions are wide together")
     if isinstance(shape, Mesh):
         return regions_on_faces(shape, grasp, check_space(shape, load), given, _limit)
     check_planar(load)
@@ -131,7 +157,8 @@ def contact_regions(
     places, u = _on_sides(sides, grasp)
     kept = float(grasp.frictions[0]) * (1 - _LESS)
     search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
-    return _widest(shape, grasp, search, places, u, _limit(search.norm_at(places, u), given))
+    limit = _limit(search.norm_at(places, u), given)
+    return _widest(shape, grasp, search, places, u, limit, _POWERS[widest])
 
 
 def _limit(least: float, given: float | None) -> float:
@@ -175,7 +202,13 @@ def _on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
 
 
 def _widest(
-    shape: Outline, grasp: Grasp, search: Search, places: np.ndarray, u: Array, limit: float
+    shape: Outline,
+    grasp: Grasp,
+    search: Search,
+    places: np.ndarray,
+    u: Array,
+    limit: float,
+    powers: tuple[int, ...],
 ) -> ContactRegions:
     sides, k = search.sides, len(places)
     lengths = sides.lengths[sides.edges[places]]
@@ -194,6 +227,13 @@ def _widest(
     box = off(half * (1 - _LESS))
     for i, end in product(range(k), range(2)):
         box[i, end] = _moved_out(holds, box, i, end, room[i, end])
+    for power in powers:
+        box = _traded(holds, box, u, room, lengths, power)
+    if powers:
+        free = box != room  # ends that are not the end of their side
+        half = float(
+            (np.abs(box - u[:, None]) * lengths[:, None]).min(where=free, initial=half + lengths.max())
+        )
     box = u[:, None] + (1 - _LESS) * (box - u[:, None])
     alone = np.zeros((k, 2))
     for i, end in product(range(k), range(2)):
@@ -245,6 +285,37 @@ def _moved_out(
 
     fraction = _farthest(lambda part: holds(moved(part)), 1.0, halvings)
     return float(moved(fraction)[i, end])
+
+
+def _traded(
+    holds: Callable[[Array], bool], box: Array, u: Array, room: Array, lengths: Array, power: int
+) -> Array:
+    """A better box: one end is drawn in, and the others move out, while that helps.
+
+    power: 0 for the product of all widths, else for a mean of them that is near the least if it is high.
+    """
+    ends = list(product(range(len(u)), range(2)))
+
+    def score(of: Array) -> float:
+        wide = np.maximum((of[:, 1] - of[:, 0]) * lengths, 1e-12 * lengths.max())
+        mean = np.log((wide.min() / wide) ** power @ np.ones(len(wide))) / (power or 1)
+        return float(np.log(wide.min()) - mean if power else np.log(wide).sum())
+
+    best, step = score(box), 1.0
+    while step > _SHORTEST:
+        helped = False
+        for j, first in product(range(len(ends)), range(1, len(ends))):
+            i, end = ends[j]
+            tried = box.copy()
+            tried[i, end] += step * (u[i] - box[i, end])
+            for k in range(len(ends)):
+                other = ends[(j + first + k) % len(ends)]
+                tried[other] = _moved_out(holds, tried, *other, room[other], _TRADED)
+            found = score(tried)
+            if found > best + _BETTER:
+                best, box, helped = found, tried, True
+        step *= 1.0 if helped else 0.5
+    return box
 
 
 def _on_sides(sides: Sides, grasp: Grasp) -> tuple[np.ndarray, Array]:
