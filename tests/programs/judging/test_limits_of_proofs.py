@@ -136,6 +136,12 @@ def test_an_entry_that_was_to_be_zero_gives_no_unit(n) -> None:
     np.testing.assert_allclose(found, [0, 1 / 4.002e-12, 0, 0, 1 / 4.002e-12], rtol=1e-12)
 
 
+def test_the_least_units_of_a_program_in_one() -> None:
+    """min x^2 / 2 + 3 y^2 / 2 with 2 y <= 1: columns 1 + 3 and 3 + 3, the row 2, its product 2 / (2 / 6)."""
+    p = program(np.diag([1.0, 3]), [0, 0], [[0, 2]], [1], nonnegative(1), size=1.0)
+    assert p.floors == pytest.approx((2, 4, 6, 4))
+
+
 def test_what_measures_as_much_as_is_allowed_is_sound() -> None:
     p = program([[1.0]], [-1.0], [[1.0]], [0.5], nonnegative(1))
     given = claim(p, Status.SOLVED, [0.5 + 1e-5], [0.5])
