@@ -33,12 +33,12 @@ def withstood(grasp: rg.Grasp) -> float:
     ids=["three on the bracket", "ellipse"],
 )
 def test_no_sampled_placement_withstands_more(shape: rg.Outline, fingers: int, count: int) -> None:
-    chosen = rg.choose_grasp(shape, fingers, WEIGHT, tolerance=0.02, **ASKED)
+    chosen = rg.choose_grasp(shape, fingers, WEIGHT, tolerance=0.05, **ASKED)
     contacts = [shape.contact_at(s, friction=0.5) for s in shape.sample(count)]
     sampled = max(withstood(rg.Grasp(few)) for few in combinations(contacts, fingers))
     assert 0 < sampled <= chosen.value <= chosen.bound
     assert withstood(chosen.grasp) == pytest.approx(chosen.value, rel=1e-6)
-    assert chosen.gap <= 0.02
+    assert chosen.gap <= 0.05
     again = rg.ChosenGrasp.from_dict(json.loads(json.dumps(chosen.to_dict())))
     assert again == chosen
     assert rg.verify(again).ok

@@ -221,7 +221,8 @@ class _Checked:
             return self.boundary.most_along(edge, Fraction(lo) - edge, Fraction(hi) - edge, [v])
 
         work, done = works(row, self.proof.loads.tolist(), [self._hull(*arc) for arc in arcs], most)
-        if work < Fraction(self.proof.bound) * done or work <= 0:
+        bound = Fraction(self.proof.bound)
+        if bound > 0 and (work < bound * done or work <= 0):
             return [f"proof: the duals of box {box} do not exclude it"]
         return []
 

@@ -15,7 +15,7 @@ from regrasp.planning.placement.search import Progress, Search
 
 STRICT = 1e-9
 """Of the limit, by which excluded boxes must be above it."""
-_BOXES = 25  # that a program counts for
+_BOXES = 50  # that a program counts for; half of the programs are for first looks at most
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _EVEN = 0.02  # of an arc, that counts where its fingers press in one place under all loads
 _GIVEN = 1e-6  # of a factor, that solvers may be off by
@@ -55,20 +55,28 @@ class TiedSearch:
             self._split_all(most, progress, beyond)
         search, level = self.search, self.level
         left = search.left.tolist()
-        beyond = max(self.aim, *(self.open.get(node, (beyond, None))[0] for node in left), self.aim)
-        level.put(search, beyond)
+        search.closed = search.closed and all(node in self.open for node in left)
+        search.take(sorted(self.kept, key=lambda placed: placed[0]))
+        reached = max(self.aim, *(self.open.get(node, (beyond, None))[0] for node in left), self.aim)
+        if not search.closed or reached >= beyond:
+            search.closed = False
+            return beyond
+        level.put(search, reached)
         for node in left:
             if (found := self.open.get(node, (beyond, None))[1]) is not None:
                 self._leave(node, found)
         search.closed = search.excludes(search.left, level.max_force * (1 + STRICT))
-        search.take(sorted(self.kept, key=lambda placed: placed[0]))
-        return beyond
+        return reached
 
     def _split_all(self, most: int, progress: Progress | None, beyond: float) -> None:
         search, heap = self.search, list[tuple[float, int]]()
         self.open = dict.fromkeys(search.left.tolist(), (beyond, None))
         for node in list(self.open):
-            self._bound(node, heap)
+            arcs, _ = search.box(node)
+            if 2 * self.solved * _BOXES > most:
+                break
+            if (arcs[:, 0] == arcs[:, 1]).all():
+                self._bound(node, heap)
         while heap and -heap[0][0] > self.aim and self.solved * _BOXES < most:
             node = heappop(heap)[1]
             bound, found = self.open[node]

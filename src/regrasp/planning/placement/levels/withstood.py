@@ -69,13 +69,13 @@ class WithstoodLevel(AnsweredLevel):
                 pass
         except KeyboardInterrupt:
             return search, beyond
-        if not found.closed:
-            return search, beyond
 
         def factor(places: np.ndarray, u: Array) -> float:
             return self._factor(search, places, u)
 
-        return found, TiedSearch(self, found, factor, judged, tolerance).run(most, progress, beyond)
+        reached = TiedSearch(self, found, factor, judged, tolerance).run(most, progress, beyond)
+        search.take(found.placements())
+        return (found, reached) if found.closed else (search, beyond)
 
     def _factor(self, search: Search, places: np.ndarray, u: Array) -> float:
         """What a placement withstands; below zero for one that does not hold."""
