@@ -40,7 +40,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
             for name in ("chosen*", "touching", "arc_lengths", "re*", "whole_sets", "curved*", "protocol")
         ],
         [
-            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "co*", "regions*", "what*")),
+            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "c*", "regions*", "what*")),
             "verification/test_placement_proofs.py",
             *(
                 f"planning/**/test_{name}.py"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from proofs import planar
+from proofs import planar, solid
 from regrasp.verification.placed import chosen_grasps as claims
 
 pytestmark = pytest.mark.contract
@@ -230,3 +230,66 @@ def test_the_ball_of_a_pair(length) -> None:
             found = claims._check_bound(chosen("wrench_ball", 1.0, bound, **given), proof)
             assert (not found) == good, (bound, row, off)
     assert claims._check_ball(chosen("wrench_ball", float(Fraction(1, 3)), grasp=grasp), 3.0) != []
+
+
+def test_what_is_shared_of_surfaces(monkeypatch) -> None:
+    shape = plain(surface=lambda: ([], []))
+    for missing, whole in (JUST, True), (MORE, False):
+        monkeypatch.setattr(claims, "share_of", lambda *a, share=1 - missing: share)
+        told = claims._area(plain(shape=shape), plain(corners=0, normals=0))
+        assert told == ("" if whole else " on the 100.0% of the surface that was asked about")
+
+
+def test_springs_are_asked_for_by_the_bound_too() -> None:
+    """Without a state there is nothing to show, and another claim says so."""
+    given = {"max_force": 3.0, "deviations": np.ones((1, 3))}
+    assert claims._check_bound(chosen("wrench", **given), plain(bound=2.0, **vars(NO_LOAD))) != [
+        "the states do not hold the load, and the deviations times the value on top of it"
+    ]
+    state = plain(load=plain(vector=np.ones(3)))
+    found = claims._check_bound(chosen("wrench", states=(state, state), **given), plain(bound=9.0))
+    assert found == ["the states do not hold the load, and the deviations times the value on top of it"]
+    for deviations in None, np.ones((1, 3)):
+        good = chosen("answered", states=(state, state), max_force=3.0, deviations=deviations)
+        found = claims._check_bound(good, plain(bound=9.0))
+        assert found == ["the states do not hold the deviations times the value"]
+
+
+NO_LOAD = plain(**{k: v for k, v in vars(BOARD).items() if k != "bound"})
+
+
+def test_a_proof_without_margins_is_one_for_any() -> None:
+    for objective in "force", "peak":
+        for size, norm in ("force", "largest"), ("force", "sum"), ("margin", "largest"):
+            good = (objective, size, norm) == ("force", "force", "largest")
+            assert claims._is_without_margin(chosen(objective), plain(size=size, norm=norm)) == good
+
+
+def test_proofs_by_themselves() -> None:
+    verdict = claims.verify_proof(BOARD)
+    assert (verdict.worst_residual, verdict.least_angle, verdict.least_cone_slack) == (0.0, inf, inf)
+    assert verdict.asked == ""
+    sides = np.array([[0, 0, 1.0]])
+    low = [([(0, 0, 0.0, 1.0)], (1, 2), 0, (0, 1, 0))]
+    low += [([(0, 0, a, a + 0.5)], (0, 0), 0, (0, 1, 0)) for a in (0.0, 0.5)]
+    proof = planar([[-3, -4], [3, -4], [3, 4], [-3, 4]], [[0, -1, 0]], low, sides=sides, bound=0.5)
+    verdict = claims.verify_proof(proof)
+    assert (verdict.ok, verdict.excluded, verdict.bound) == (True, 2, 0.5)
+    assert verdict.asked == " on the 21.4% of the outline that was asked about"
+    proof.bound = 2.0
+    verdict = claims.verify_proof(proof)
+    assert (verdict.ok, verdict.asked) == (False, "")
+    corners = [[[0, 0, 0], [2, 0, 0], [2, 3, 0]]]
+    node = ([0], (0, 0), 0, [0, 0, 1.0, 0, 0, 0])
+    patch = plain(spans=[(0, 1)], halves=[[-1] * 3])
+    space = solid(corners, [[0, 0, 1.0]], [[0, 0, -1, 0, 0, 0]], patch, [node], bound=0.5)
+    verdict = claims.verify_proof(space)
+    assert (verdict.ok, verdict.excluded, verdict.asked) == (True, 1, "")
+    space.bound = 2.0
+    assert "does not exclude" in claims.verify_proof(space).violations[0]
+
+
+def test_no_verdict_without_a_meaning() -> None:
+    verdict = claims.verify_chosen(chosen("least"))
+    assert not verdict.ok
+    assert (verdict.worst_residual, verdict.least_angle, verdict.least_cone_slack) == (inf, 0.0, -inf)

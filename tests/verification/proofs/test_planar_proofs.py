@@ -297,6 +297,29 @@ def test_proofs_of_no_form(changes, words) -> None:
     assert words in said(proof)
 
 
+def test_rings_of_three_or_more() -> None:
+    vertices = [[0, 0], [4, 0], [4, 4], [0, 4], [1, 1], [1, 3], [3, 1]]
+    node = (everything([[0, 0, 1.0]], 1), (0, 0), 0, (0.0, 1.0, 0.0))
+    for rings, good in (
+        ([0, 4], True), ([0], True), ([0, 3], True), ([0, 5], False), ([0, 2], False), ([1, 4], False),
+        ([4, 0], False), ([0, 4, 4], False),
+    ):  # fmt: skip
+        proof = planar(vertices, [[0, -1, 0]], [node], sides=np.array([[0, 0, 1.0]]), rings=np.array(rings))
+        assert (said(proof) == "") == good, rings
+        proof.control = np.zeros((7, 4, 2))
+        assert "rings must begin" in said(proof)
+
+
+@pytest.mark.parametrize("empty", ["children", "sides"])
+def test_proofs_without_boxes_or_sides(empty) -> None:
+    node = (everything([[0, 0, 1.0]], 1), (0, 0), 0, (0.0, 1.0, 0.0))
+    proof = planar(SHAPES[1], [[0, -1, 0]], [node], sides=np.array([[0, 0, 1.0]]))
+    names = [empty] if empty == "sides" else ["children", "arcs", "ends", "number", "twists"]
+    for name in names:
+        setattr(proof, name, getattr(proof, name)[:0])
+    assert "boxes, fingers, sides, loads and friction are needed" in said(proof)
+
+
 def test_sides_come_one_after_the_other() -> None:
     node = ([(0, 1, 0.0, 1.0)], (0, 0), 0, (0.0, 1.0, 0.0))
     for (first, second), good in (((0.5, 0.5), True), ((0.25, 0.5), True), ((0.5, 0.25), False)):

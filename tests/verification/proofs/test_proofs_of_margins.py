@@ -63,6 +63,7 @@ def test_margins_go_with_their_size() -> None:
         ({}, ""), ({"margin": 0.0}, "margin must be 0 or more"),
         ({"margin": -1.0}, "margin must be 0 or more"),
         ({"margin": np.inf}, "margin must be 0 or more"), ({"size": "force"}, "goes with a size of its name"),
+        ({"norm": "sum"}, "a margin is of a largest force"), ({"friction": 0.0}, "and friction"),
     ):  # fmt: skip
         given = {"size": "margin", "norm": "largest", "margin": 0.1, "bound": 0.1} | changes
         proof = planar(

@@ -166,8 +166,9 @@ def test_stretches_turn_by_less_than_a_quarter() -> None:
 def test_stretches_of_curves_that_turn_too_far_prove_nothing() -> None:
     """A hairpin, whose tangents at both ends are opposite."""
     hairpin = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]], [[0, 1], [-1, 1], [-1, 0], [0, 0]]], dtype=float)
-    for hi, good in (1.0, False), (0.25, True):
-        sides = np.array([[0, 0, hi]])
+    for edge, hi, good in (0, 1.0, False), (0, 0.25, True), (1, 1.0, False), (1, 0.25, True):
+        hairpin = np.roll(hairpin, edge, axis=0)
+        sides = np.array([[edge, edge, edge + hi]])
         node = (everything(sides, 1), (0, 0), 0, (0.0, 1.0, 0.0))
         proof = planar(hairpin[:, 0], [[0, -1, 0]], [node], sides=sides, control=hairpin, bound=1e-6)
         found = said(proof)

@@ -214,8 +214,9 @@ def test_what_a_grasp_on_a_mesh_claims() -> None:
     assert "more friction" not in said(replace(good, grasp=slick))
     p = grasp.positions
     least = min(float(np.linalg.norm(p[i] - p[j])) for i in range(3) for j in range(i))
-    for factor, fine in ((1.0, True), (1 + 1e-9, False)):
-        found = said(replace(good, certificate=replace(proof, min_distance=least * factor)))
+    rounding = 2.0**-40 * np.abs(p).max()
+    for off, fine in ((0.0, True), (0.99 * rounding, True), (1.01 * rounding, False)):
+        found = said(replace(good, certificate=replace(proof, min_distance=least + off)))
         assert ("two contacts are nearer than the least distance" in found) != fine
     away = [
         rg.Contact(1.1 * c.position, c.normal, 0.5, name=c.name) if i == 1 else c for i, c in enumerate(grasp)
@@ -233,8 +234,9 @@ def test_what_a_grasp_on_an_outline_claims() -> None:
     other = rg.GraspState(state.grasp, 1.001 * state.load, 1.001 * state.forces)
     assert "a load of the proof has no state" in said(replace(good, states=(other,)))
     away = float(np.hypot(*(good.grasp[0].position - good.grasp[1].position)))
-    for factor, fine in ((1.0, True), (1 + 1e-9, False)):
-        found = said(with_proof(good, min_distance=away * factor))
+    rounding = 2.0**-40 * 2**0.5  # of the corner's distance
+    for off, fine in ((0.0, True), (0.99 * rounding, True), (1.01 * rounding, False)):
+        found = said(with_proof(good, min_distance=away + off))
         assert ("two contacts are nearer than the least distance" in found) != fine
     rough = rg.Grasp(c.changed(friction=np.nextafter(0.5, 1)) for c in good.grasp)
     assert said(replace(good, grasp=rough)).count("has more friction than the proof is about") == 2
@@ -242,3 +244,21 @@ def test_what_a_grasp_on_an_outline_claims() -> None:
     assert "the proof is about 2 fingers, the grasp has 3" in said(replace(good, grasp=three))
     for shape in (rg.Outline([[0, 0], [2, 0], [2, 2.001], [0, 2]]), rg.Outline.ellipse(2, 1)):
         assert "the proof is about another" in said(replace(good, shape=shape))
+
+
+def test_proofs_of_chosen_grasps_are_checked_and_places_are_of_the_mesh() -> None:
+    good = on_box()
+    shape = SimpleNamespace(surface=BOX.surface, centre_of_mass=np.array([0.1, -0.2, 0.3]))
+    assert said(replace(good, shape=shape, places=np.asarray(good.places) + shape.centre_of_mass)) == ""
+    flat = rg.choose_grasp(
+        SQUARE, 2, rg.Wrench([0, -1.0], 0.1), friction=0.5, objective="peak", tolerance=0.5
+    )
+    for grasp in good, flat:
+        assert rg.verify(grasp).worst_residual < 1e-9
+        assert "does not exclude" in said(with_proof(grasp, twists=-np.asarray(grasp.certificate.twists)))
+        state = grasp.states[0]
+        rough = rg.Grasp(c.changed(friction=0.6) for c in state.grasp)
+        foreign, pulled = (rg.GraspState(g, state.load, -state.forces) for g in (rough, state.grasp))
+        found = said(replace(grasp, states=(foreign, pulled, *grasp.states)))
+        assert "state 1 is of other contacts" in found
+        assert "state 2: not in equilibrium" in found

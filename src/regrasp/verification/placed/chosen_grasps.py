@@ -18,19 +18,19 @@ from regrasp.verification.placed.touching import Touching
 from regrasp.verification.placed.whole_sets import answer_alike, makes_ball
 from regrasp.verification.verdict import Verification
 
-# objective: size of a force, norm of the sizes, power of the norm
+# objective: size of a force, norm of the sizes
 _MEANINGS = {
-    "sum_normal": ("normal", "sum", 1),
-    "peak_normal": ("normal", "largest", 1),
-    "peak": ("force", "largest", 1),
-    "effort": ("force", "squares", 2),
+    "sum_normal": ("normal", "sum"),
+    "peak_normal": ("normal", "largest"),
+    "peak": ("force", "largest"),
+    "effort": ("force", "squares"),
     # levels at which forces below the limit must exist
-    "friction_use": ("force", "largest", 1),
-    "angle": ("force", "largest", 1),
-    "force": ("margin", "largest", 1),
-    "answered": ("force", "largest", 1),
-    "wrench": ("force", "largest", 1),
-    "wrench_ball": ("normal", "largest", 1),
+    "friction_use": ("force", "largest"),
+    "angle": ("force", "largest"),
+    "force": ("margin", "largest"),
+    "answered": ("force", "largest"),
+    "wrench": ("force", "largest"),
+    "wrench_ball": ("normal", "largest"),
 }
 _LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
 _LARGEST = ("angle", "force", "answered", "wrench", "wrench_ball")  # what is best as large as can be
@@ -45,7 +45,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     proof = chosen.certificate
     if chosen.objective not in _MEANINGS:
         return Verification((f"objective {chosen.objective!r} has no bound",), inf, 0.0, -inf)
-    size, norm, _ = _MEANINGS[chosen.objective]
+    size, norm = _MEANINGS[chosen.objective]
     if (proof.size, proof.norm) != (size, norm) and not _is_without_margin(chosen, proof):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
     if chosen.objective != "wrench" and getattr(proof, "tied", None) is not None:
@@ -136,7 +136,7 @@ def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
 
 def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     """That a state shows the value."""
-    size, norm, power = _MEANINGS[chosen.objective]
+    size, norm = _MEANINGS[chosen.objective]
     found, value = _norm(state, size, norm), chosen.value
     limit = inf if chosen.max_force is None else chosen.max_force
     largest = found if chosen.objective == "wrench_ball" else _norm(state, "force", "largest")
@@ -145,7 +145,7 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     if not ((state.forces * state.grasp.normals).sum(axis=1) >= chosen.min_normal * (1 - _CLOSE)).all():
         return [f"state {i}: a finger pushes with less than {chosen.min_normal:.12g}"]
     if chosen.objective not in _LEVELS:
-        if found**power > value * (1 + _CLOSE):
+        if found ** _power(norm) > value * (1 + _CLOSE):
             return [f"state {i}: {chosen.objective} is above the value {value:.12g}"]
         return []
     broken = []
@@ -160,7 +160,7 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
 
 def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     """That the bound is what the proof proves."""
-    _, _, power = _MEANINGS[chosen.objective]
+    power = _power(_MEANINGS[chosen.objective][1])
     value, bound = chosen.value, chosen.bound
     largest = chosen.objective in _LARGEST
     if not (bound >= value if largest else bound <= value):
@@ -177,7 +177,7 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         return ["a level needs the limit of its forces"]
     if chosen.objective == "answered":
         shown = np.array([state.load.vector for state in chosen.states])
-        if chosen.deviations is None or not _scaled(chosen, shown, value):
+        if not _scaled(chosen, shown, value):
             return ["the states do not hold the deviations times the value"]
     if chosen.objective == "wrench" and chosen.states and (broken := _check_withstood(chosen)):
         return broken
@@ -224,11 +224,8 @@ def _check_withstood(chosen: Chosen) -> list[str]:
     first, *others = chosen.states
     shown = np.array([state.load.vector for state in others])
     center = np.asarray(chosen.certificate.loads)[0]
-    if (
-        chosen.deviations is None
-        or not _scaled(chosen, shown, chosen.value)
-        or np.abs(first.load.vector - center).max() > _CLOSE * np.abs(shown).max()
-    ):
+    off = np.abs(first.load.vector - center).max()
+    if not _scaled(chosen, shown, chosen.value) or off > _CLOSE * np.abs(shown).max():
         return ["the states do not hold the load, and the deviations times the value on top of it"]
     if not answer_alike(chosen.states):
         return ["the states are not what fingers of equal stiffness make of the first"]
@@ -283,6 +280,11 @@ def _scaled_by_less(chosen: Chosen, loads: Array, factor: float) -> bool:
         return False
     own = float(((loads[1:] - loads[0]) * deviations).sum() / (deviations**2).sum())
     return own <= factor * (1 + _CLOSE) and _scaled(chosen, loads[1:], own)
+
+
+def _power(norm: str) -> int:
+    """Values of squares are their sum, not its root."""
+    return 2 if norm == "squares" else 1
 
 
 def _norm(state: GraspState, size: str, norm: str) -> float:

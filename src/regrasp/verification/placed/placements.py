@@ -96,7 +96,7 @@ class _Checked:
     def __init__(self, proof: Proof) -> None:
         self.proof = proof
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
-        self.clear: np.ndarray = np.zeros(0, bool)  # boxes that doubles decide
+        self.clear: np.ndarray  # boxes that doubles decide
         pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
         self.second = {box: (load, twist) for (box, load), twist in pairs}
         self.sides = [(int(e), Fraction(lo), Fraction(hi)) for e, lo, hi in proof.sides.tolist()]
