@@ -55,7 +55,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
             for name in ("placements", "straight", "cubic", "eroded", "clear_boxes", "roots")
         ],
         [
-            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "planar*", "proofs*")),
+            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "planar*", "proofs*", "trees*")),
             "verification/test_placement_proofs.py",
         ],
         0.95,
