@@ -73,6 +73,12 @@ def test_whichever_finger_comes_nearest(at) -> None:
     )
 
 
+def test_where_a_finger_stops_it_is_looked_at() -> None:
+    """It stands nearer for a second, and is there and back between two samples."""
+    made = ways(lambda t: ((0 * t, 1 + RADIUS + np.where(abs(t - 2) < 0.5, 0.199, 0.21)), (0 * t, 0 * t)))
+    assert verify_motions(made, SQUARE).to_object == pytest.approx(0.199)
+
+
 def test_a_finger_has_to_be_there_from_the_first_instant_to_the_last() -> None:
     """Samples are 4 / 1024 s apart, one is where the step ends."""
     dt = 4.0 / 1024

@@ -24,8 +24,7 @@ def to_faces(points: Array, corners: Array) -> Array:
         centre = face.mean(axis=0)
         size = np.linalg.norm(face - centre, axis=1).max()
         near = np.linalg.norm(points - centre, axis=1) - size < best
-        if near.any():
-            best[near] = np.minimum(best[near], _to_face(points[near], face))
+        best[near] = np.minimum(best[near], _to_face(points[near], face))
     return best
 
 
