@@ -188,3 +188,48 @@ def test_strips_are_covered_by_chains_of_boxes() -> None:
         ([(1, 3, 0, 3)], False),
     ):
         assert _covered(at, whole, spans(*rows)) == good, rows
+
+
+def whole(**more) -> str:
+    """What is said of a cut on a square whose sides 1 and 3 are parted, under a load down."""
+    ends = {
+        "start": np.array([[1, 0.25], [1, 0.5], [1, 0.75]]),
+        "goal": np.array([[3, 0.25], [3, 0.5], [3, 0.75]]),
+    }
+    given = {
+        "vertices": np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float), "friction": 1e-3,
+        "force": np.array([0.0, -1.0]), "turned": None, "forbidden": np.array([0, 2]), "min_normal": 0.0,
+        "max_force": None, **ends,
+        "reached": np.array([[1, 0.0, 1.0]]), "boxes": np.array([[1, 3, 0, 1, 0, 1.0]]),
+        "twists": np.array([[0.0, -1.0, 0.0]]),
+    }  # fmt: skip
+    return "; ".join(rg.verify(SimpleNamespace(**given | more)).violations)
+
+
+def test_limits_and_sides_of_a_cut_with_a_form() -> None:
+    words = "a cut has three places at either end"
+    for most in (0.5, 1e-9, 9.0):
+        assert words not in whole(max_force=most)
+        assert words not in whole(min_normal=most)
+    for most in (0.0, -1.0, inf, float("nan")):
+        assert words in whole(max_force=most)
+        assert most == 0.0 or words in whole(min_normal=most)
+    twice = np.array([[-1, -1], [1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
+    assert whole(vertices=twice) == "a side of the outline has no length"
+    assert whole(vertices=twice[[0, 1, 3, 4, 0]]) == "a side of the outline has no length"
+
+
+def test_every_place_of_the_start_is_reached() -> None:
+    none = {"boxes": np.zeros((0, 6)), "twists": np.zeros((0, 3)), "reached": np.array([[1, 0.0, 0.5]])}
+    words = "places of the start on sides 1 and 1 may hold and are not both on its side"
+    for first in (0.75, 0.25), (0.25, 0.75), (0.75, 0.8):
+        assert words in whole(start=np.array([[1, x] for x in (*first, 0.1)]), **none)
+    assert words not in whole(start=np.array([[1, x] for x in (0.5, 0.25, 0.1)]), **none)
+
+
+def test_what_limited_forces_take_up_is_said() -> None:
+    """Along (tilt, -1) a push of the right side, at most 1 / 2, works by - tilt / 2; the left's by none."""
+    for tilt, good in (1.9, True), (2.1, False):
+        said = whole(max_force=0.5, twists=np.array([[tilt, -1.0, 0.0]]))
+        words = "box 1: the load does no work along its twist, beyond what forces within the limits take up"
+        assert (words not in said) == good
