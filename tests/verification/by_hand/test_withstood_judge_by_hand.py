@@ -295,3 +295,36 @@ def test_the_way_out_of_a_cone_and_of_a_limit() -> None:
     after = [Fraction(x) for x in (1, 3, 0, 2)]
     assert soft._outward(after, None) == pytest.approx([-0.5, 0.6, 0, 1.6])
     assert soft._outward(after, Fraction(9)) == pytest.approx([1, 3, 0, 8])
+
+
+def test_rooms_of_balls_and_hulls_are_exact() -> None:
+    """Along (3, 4) a ball of 1 around (1, 1) works 7 + 5, a hull of its corners 7 + 7."""
+    twist, less = [Fraction(3), Fraction(4), Fraction(0)], Fraction(1, 10**30)
+    middle = rg.Wrench([1, 1])
+    corners = [rg.Wrench([1 + x, 1 + y]) for x in (1, -1) for y in (1, -1)]
+    for loads, most in (rg.LoadSet.ball(middle, force=1.0), 12), (rg.LoadSet.hull(corners), 14):
+        assert Body(loads).allows(Fraction(most), twist)
+        assert not Body(loads).allows(Fraction(most) - less, twist)
+        assert not Body(loads).allows(Fraction(-99), twist)
+    back = Body(rg.LoadSet.tilted(rg.Wrench([-1, 0]), 0.1))  # reaches 1 the other way
+    for part, good in (Fraction(1, 2), False), (Fraction(3, 2), True):
+        room = part / 2**40 - Fraction(cos(0.1))
+        assert back.allows(room, [Fraction(1), Fraction(0), Fraction(0)]) == good
+
+
+def test_contacts_of_hardly_any_friction_and_without_force() -> None:
+    flat = rg.Contact([0, 0, 0], [1, 0, 0], 2.0**-50, torsion=0.5, limits=rg.ForceLimits([[1, 0, 0]], [2]))
+    touch, least = Touch(flat, Fraction(1, 2), 4), Fraction(1, 2**40)
+    assert (touch.mu, touch.weights) == (least / 2, [1, 1, 1, (2 * least) ** 2])
+    assert touch.rows == [([1, 0, 0, 0], 2)]
+    assert touch._keeps([Fraction(0)] * 4, None)
+    assert not touch._keeps([Fraction(0), least, Fraction(0), Fraction(0)], None)
+
+
+def test_a_ball_that_just_fits_a_planar_cone() -> None:
+    """The edge (3/4, 1), of length 5/4, is 3 from the force (5, 0)."""
+    answer = [[Fraction(-int(i == j)) for j in range(3)] for i in range(2)]
+    touch = Touch(rg.Contact([0, 0], [1, 0], 0.75), Fraction(1), 2)
+    for radius, good in (3.0, True), (3 + 2.0**-51, False):
+        body = Body(rg.LoadSet.ball(STILL, force=radius))
+        assert (touch.broken([Fraction(5), Fraction(0)], answer, body) is None) == good
