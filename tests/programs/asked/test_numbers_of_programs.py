@@ -160,5 +160,16 @@ def test_an_answer_is_as_good_as_the_worst_of_its_measures() -> None:
     assert failed(program, "told", "no").residual == inf
     half = Solution(program, "told", Status.SOLVED, array(1), array(nan), None, 0.0, 0.0, "so")
     assert half.residual == inf
+    falls = Rows(1)
+    falls.at_least_zero([[1.0]])
+    falling = falls.program([-1.0])
+    for status in (Status.UNBOUNDED, Status.UNBOUNDED_OR_INFEASIBLE):
+        assert Solution(falling, "told", status, array(1), array(nan), None, 0.0, 0.0, "so").residual == 0
+    falls.at_least_zero([[-1.0]], -1.0)
+    empty = falls.program([-1.0])
+    assert (
+        Solution(empty, "told", Status.INFEASIBLE, array(nan), array(1, 1), None, 0.0, 0.0, "so").residual
+        == 0
+    )
     no = failed(program, "told", "no")
     assert (no.build_time, no.solve_time) == (0, 0)
