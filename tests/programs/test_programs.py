@@ -18,8 +18,6 @@ def test_data_that_do_not_fit_are_refused():
         rows.equal([[1.0, 2.0]])
     with pytest.raises(InvalidInput, match="4 rows cannot be split into cones of 3"):
         rows.second_order(np.ones((4, 3)), size=3)
-    with pytest.raises(InvalidInput, match="at least one row"):
-        rows.program([1.0, 2.0, 3.0])
     rows.equal(np.eye(3))
     with pytest.raises(InvalidInput, match="q must be finite"):
         rows.program([1.0, np.nan, 0.0])

@@ -6,6 +6,7 @@ and second-order; ``size`` as in ``Program``.
 """
 
 from collections.abc import Mapping
+from os import PathLike
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -13,17 +14,27 @@ from zipfile import BadZipFile
 import numpy as np
 from scipy import sparse
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 
 _PARTS = ("data", "indices", "indptr")
 _KEYS = {"q", "b", "cones", "size", *(f"{m}_{part}" for m in "PA" for part in _PARTS)}
 
 
+def file_path(path: object) -> Path:
+    """A path as a ``Path``; raises ``InvalidInput`` for what is none."""
+    if not isinstance(path, (str, PathLike)):
+        raise InvalidInput(f"path must be a file's name, got {shown(path)}")
+    return Path(path)
+
+
 def write_arrays(path: Path, arrays: Mapping[str, Any], matrices: Mapping[str, sparse.csc_matrix]) -> Path:
-    """Write vectors and matrices to ``path`` and return that."""
+    """Write vectors and matrices to ``path`` and return that. Raises ``InvalidInput`` where that fails."""
     parts = {f"{name}_{part}": getattr(m, part) for name, m in matrices.items() for part in _PARTS}
-    with path.open("wb") as file:
-        np.savez_compressed(file, allow_pickle=False, **arrays, **parts)
+    try:
+        with path.open("wb") as file:
+            np.savez_compressed(file, allow_pickle=False, **arrays, **parts)
+    except (OSError, ValueError) as error:
+        raise InvalidInput(f"{path}: cannot be written: {error}") from None
     return path
 
 

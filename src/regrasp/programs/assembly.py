@@ -3,8 +3,8 @@
 import numpy as np
 from scipy import sparse
 
-from regrasp.errors import InvalidInput
-from regrasp.programs.blocks import ArrayLike, Block, Cone
+from regrasp.errors import InvalidInput, shown
+from regrasp.programs.blocks import ArrayLike, Block, Cone, numbers
 from regrasp.programs.program import Program
 
 
@@ -16,6 +16,8 @@ class Rows:
     """
 
     def __init__(self, unknowns: int) -> None:
+        if isinstance(unknowns, bool) or not isinstance(unknowns, (int, np.integer)) or unknowns < 0:
+            raise InvalidInput(f"unknowns must be a whole number of 0 or more, got {shown(unknowns)}")
         self._unknowns = unknowns
         self._matrices: list[sparse.csr_matrix | np.ndarray] = []
         self._offsets: list[np.ndarray] = []
@@ -56,9 +58,9 @@ class Rows:
             size: rows of each cone; all rows in one if not given.
         """
         m = self._checked(matrix)
-        size = m.shape[0] if size is None else size
-        if size < 1 or m.shape[0] % size:
-            raise InvalidInput(f"{m.shape[0]} rows cannot be split into cones of {size}")
+        size = max(m.shape[0], 1) if size is None else size
+        if not isinstance(size, (int, np.integer)) or size < 1 or m.shape[0] % size:
+            raise InvalidInput(f"{m.shape[0]} rows cannot be split into cones of {shown(size)}")
         self._add(Cone.SECOND_ORDER, m, offset, size)
 
     def program(
@@ -72,25 +74,27 @@ class Rows:
             size: as in ``Program``.
         """
         n = self._unknowns
-        if not self._matrices:
-            raise InvalidInput("a program needs at least one row")
-        program = Program(
-            P=sparse.csc_matrix((n, n)) if P is None else sparse.csc_matrix(P, dtype=float),
-            q=np.asarray(q, dtype=float),
-            A=-_stacked(self._matrices),
-            b=np.concatenate(self._offsets),
+        squares = np.zeros((n, n)) if P is None else P
+        if not sparse.issparse(squares):
+            squares = numbers(squares, "P")
+            if squares.ndim != 2:
+                raise InvalidInput(f"P must have shape {(n, n)}, got {squares.shape}")
+        return Program(
+            P=sparse.csc_matrix(squares),
+            q=numbers(q, "q"),
+            A=-_stacked([*self._matrices, np.zeros((0, n))]),
+            b=np.concatenate([*self._offsets, np.zeros(0)]),
             blocks=tuple(self._blocks),
             size=size,
         )
-        for matrix in (program.P, program.A):
-            matrix.sum_duplicates()  # sorts, too: some solvers read unsorted columns wrongly and say nothing
-        return program
 
     def _checked(self, matrix: ArrayLike | sparse.spmatrix) -> sparse.csr_matrix | np.ndarray:
         if sparse.issparse(matrix):
             m: sparse.csr_matrix | np.ndarray = sparse.csr_matrix(matrix, dtype=float)
         else:
-            m = np.atleast_2d(np.asarray(matrix, dtype=float))
+            m = np.atleast_2d(numbers(matrix, "rows"))
+        if m.ndim != 2:
+            raise InvalidInput(f"rows must have shape (k, {self._unknowns}), got {m.shape}")
         if m.shape[1] != self._unknowns:
             raise InvalidInput(f"rows must have {self._unknowns} columns, got {m.shape[1]}")
         return m
@@ -99,7 +103,10 @@ class Rows:
         rows = matrix.shape[0]
         if not rows:
             return
-        self._offsets.append(np.broadcast_to(np.asarray(offset, dtype=float), rows))
+        offsets = numbers(offset, "offset")
+        if offsets.shape not in ((), (1,), (rows,)):
+            raise InvalidInput(f"offset must be a number or have shape ({rows},), got {offsets.shape}")
+        self._offsets.append(np.broadcast_to(offsets, rows))
         self._matrices.append(matrix)
         self._blocks.append(Block(cone, size, rows // size))
 

@@ -1,10 +1,11 @@
 """The back ends that are installed and the one verb that calls them."""
 
 import logging
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
-from math import inf, nan
+from math import nan
 from typing import Any
 
 from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
@@ -12,6 +13,7 @@ from regrasp.programs.blocks import Array
 from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS, Backend, available_backends, is_installed, named
 from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_rows
+from regrasp.programs.judging.own_units import in_own_units
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import PROVEN, judged
 from regrasp.programs.program import Program
@@ -23,6 +25,7 @@ _log = logging.getLogger("regrasp.programs")
 # Statuses that say something of the program; the others say something of the back end.
 _CLAIMS = (Status.SOLVED, Status.INFEASIBLE, Status.UNBOUNDED)
 _DOUBTFUL = (Status.STOPPED, Status.UNSOUND)
+_LONGEST = sys.float_info.max
 _WHOLE = 1e-7
 """Largest measure of a solution that was found without some of the rows."""
 _CLOSE, _SOUND = 5e-10, 1e-8
@@ -59,7 +62,11 @@ def solve(
         InvalidInput: For a program with second-order cones on a back end that takes none and for an objective
             that is not convex.
     """
-    if time_limit is not None and not 0 < time_limit < inf:
+    if not isinstance(program, Program):
+        raise InvalidInput(f"solve takes a Program, got {shown(program)}")
+    if not isinstance(backend, str):
+        raise InvalidInput(f"backend must be a name, got {shown(backend)}")
+    if time_limit is not None and not (isinstance(time_limit, (int, float)) and 0 < time_limit <= _LONGEST):
         raise InvalidInput(
             f"time_limit must be a positive number of seconds or None, got {shown(time_limit)}"
         )
@@ -215,25 +222,35 @@ def _first_sound(
 ) -> Solution:
     if options:
         raise InvalidInput("options belong to one solver; name the back end they are for instead of 'auto'")
-    solution = None
-    for name in _AUTO:
-        if name not in available_backends() or (program.has_second_order and not BACKENDS[name].second_order):
-            continue
-        if solution is not None and limit.is_over:
+    names = [
+        name
+        for name in _AUTO
+        if is_installed(BACKENDS[name]) and BACKENDS[name].second_order >= program.has_second_order
+    ]
+    if not names:
+        raise SolverUnavailable(f"none of {', '.join(_AUTO)} is installed")
+    for k, name in enumerate(names):
+        if k and limit.is_over:
             break
         solution = _solved(program, name, False, limit, isolated, {})
         if solution.status in _CLAIMS:
             return solution
         _log.warning("%s; trying the next back end", solution)
-    if solution is None:
-        raise SolverUnavailable(f"none of {', '.join(_AUTO)} is installed")
+
+    def anyhow(given: Program) -> Solution:
+        return _first_sound(given.without_objective(), False, limit, isolated, {})
+
+    own = None if limit.is_over else in_own_units(program)
+    for name in names:
+        if own is None or limit.is_over:
+            break
+        found = _solved(own.program, name, False, limit, isolated, {})
+        whole = judged(own.answer(found, program), _entry(name).tolerance, anyhow)
+        if whole.status in _CLAIMS:
+            return whole
     looser = None if limit.is_over else without_loose_rows(program)
     if looser is not None:
         rest, kept = looser
-
-        def anyhow(given: Program) -> Solution:
-            return _first_sound(given.without_objective(), False, limit, isolated, {})
-
         found = _first_sound(rest, False, limit, isolated, options)
         whole = judged(with_loose_rows(found, program, kept), _WHOLE, anyhow)
         if whole.status in _CLAIMS:

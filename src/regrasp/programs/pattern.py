@@ -5,7 +5,7 @@ from copy import copy
 import numpy as np
 from scipy import sparse
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.programs.blocks import Array, ArrayLike
 
 
@@ -19,9 +19,14 @@ class Pattern:
     """
 
     def __init__(self, shape: tuple[int, int], rows: ArrayLike, columns: ArrayLike) -> None:
-        rows, columns = np.asarray(rows, dtype=np.int32), np.asarray(columns, dtype=np.int32)
-        count = rows.size
-        self._template = sparse.csc_matrix((np.arange(count, dtype=float), (rows, columns)), shape)
+        try:
+            rows, columns = np.asarray(rows, dtype=np.int32), np.asarray(columns, dtype=np.int32)
+            count = rows.size
+            self._template = sparse.csc_matrix((np.arange(count, dtype=float), (rows, columns)), shape)
+        except (ValueError, TypeError, OverflowError) as error:
+            raise InvalidInput(
+                f"a pattern has a shape, and a row and a column within for each entry: {error}"
+            ) from None
         if self._template.nnz != count:
             raise InvalidInput("a pattern must not name a place twice")
         self._order = self._template.data.astype(np.intp)
@@ -36,5 +41,10 @@ class Pattern:
             values: (k,) at the places, in the order the pattern was given.
         """
         matrix = copy(self._template)  # shares the places
-        matrix.data = values[self._order]
+        try:
+            matrix.data = values[self._order]
+        except (TypeError, IndexError):
+            raise InvalidInput(
+                f"values must be an array of {self._order.size} numbers, got {shown(values)}"
+            ) from None
         return matrix

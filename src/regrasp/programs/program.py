@@ -9,15 +9,17 @@ nothing of contacts.
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from regrasp.errors import InvalidInput
-from regrasp.programs.archive import read_arrays, write_arrays
-from regrasp.programs.blocks import Array, Block, Cone
+from regrasp.errors import InvalidInput, shown
+from regrasp.programs.archive import file_path, read_arrays, write_arrays
+from regrasp.programs.blocks import Array, Block, Cone, numbers
 from regrasp.programs.cones import Cones
 from regrasp.programs.judging.terms import Terms, floors_of, is_small
 
@@ -27,7 +29,7 @@ class Program:
     """The data of a conic program.
 
     Args:
-        P: (n, n) sparse, symmetric positive semidefinite, both triangles.
+        P: (n, n) sparse, symmetric positive semidefinite, both triangles; entries at one place are summed.
         q: (n,).
         A: (m, n) sparse.
         b: (m,).
@@ -35,7 +37,7 @@ class Program:
         size: of an x that matters, by which an answer near x = 0 is judged; 0 to judge by the answer itself.
 
     Raises:
-        InvalidInput: For shapes that do not fit and data that are not finite.
+        InvalidInput: For shapes that do not fit, and data that are not numbers or not finite.
     """
 
     P: sparse.csc_matrix
@@ -46,21 +48,27 @@ class Program:
     size: float = 0.0
 
     def __post_init__(self) -> None:
+        for name in ("q", "b"):
+            self._set(name, _vector(name, getattr(self, name)))
         n, m = self.q.size, self.b.size
-        for name, matrix in (("P", self.P), ("A", self.A)):
-            if getattr(matrix, "format", None) != "csc":
-                raise InvalidInput(
-                    f"{name} must be a scipy.sparse matrix in CSC format, got {type(matrix).__name__}"
-                )
+        for name in ("P", "A"):
+            self._set(name, _matrix(name, getattr(self, name)))
         if self.P.shape != (n, n) or self.A.shape != (m, n):
             raise InvalidInput(
                 f"P and A must have shapes {(n, n)} and {(m, n)}, got {self.P.shape} and {self.A.shape}"
             )
-        is_whole = all(block.size >= 1 and block.count >= 0 for block in self.blocks)
-        if not is_whole or sum(block.rows for block in self.blocks) != m:
-            raise InvalidInput(f"the cones must cover the {m} rows of A, got {self.blocks}")
+        if not isinstance(self.blocks, (tuple, list)) or not all(isinstance(b, Block) for b in self.blocks):
+            raise InvalidInput(f"blocks must be a tuple of Block, got {shown(self.blocks)}")
+        self._set("blocks", tuple(self.blocks))
+        if sum(block.rows for block in self.blocks) != m:
+            raise InvalidInput(f"the cones must cover the {m} rows of A, got {shown(self.blocks)}")
+        if not isinstance(self.size, (int, float)) or not 0 <= self.size < inf:
+            raise InvalidInput(f"size must be a number of 0 or more, got {shown(self.size)}")
         for name, values in (("P", self.P.data), ("q", self.q), ("A", self.A.data), ("b", self.b)):
             _check_finite(name, values)
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
 
     def with_right_side(self, b: Array) -> "Program":
         """The same program with another b (m,), at little cost: what is known of the rest is kept.
@@ -68,12 +76,13 @@ class Program:
         Args:
             b: (m,).
         """
+        b = _vector("b", b)
         if b.shape != self.b.shape:
             raise InvalidInput(f"b must have shape {self.b.shape}, got {b.shape}")
         _check_finite("b", b)
         same = object.__new__(Program)
         same.__dict__.update(self.__dict__)
-        object.__setattr__(same, "b", b)
+        same._set("b", b)
         return same
 
     def without_objective(self) -> "Program":
@@ -94,9 +103,12 @@ class Program:
 
         Args:
             path: the archive to write.
+
+        Raises:
+            InvalidInput: Where it cannot be written.
         """
         arrays = {"q": self.q, "b": self.b, "cones": self.codes, "size": np.array(self.size)}
-        return write_arrays(Path(path), arrays, {"P": self.P, "A": self.A})
+        return write_arrays(file_path(path), arrays, {"P": self.P, "A": self.A})
 
     @staticmethod
     def load(path: str | Path) -> "Program":
@@ -108,7 +120,8 @@ class Program:
         Raises:
             InvalidInput: For a file that holds none.
         """
-        arrays, matrices = read_arrays(Path(path))
+        path = file_path(path)
+        arrays, matrices = read_arrays(path)
         kinds = dict(enumerate(Cone))
         try:
             blocks = [
@@ -177,3 +190,29 @@ class Program:
 def _check_finite(name: str, values: Array) -> None:
     if not np.isfinite(values).all():
         raise InvalidInput(f"{name} must be finite")
+
+
+def _vector(name: str, values: Any) -> Array:
+    vector = numbers(values, name)
+    if vector.ndim != 1:
+        raise InvalidInput(f"{name} must have one dimension, got shape {vector.shape}")
+    return vector
+
+
+def _matrix(name: str, given: Any) -> sparse.csc_matrix:
+    """The matrix of doubles, each place named once and in order: solvers read others wrongly, or crash."""
+    if not sparse.issparse(given) or given.format != "csc":
+        raise InvalidInput(f"{name} must be a scipy.sparse matrix in CSC format, got {type(given).__name__}")
+    if not given.indices.flags.writeable and given.has_canonical_format and given.dtype == np.float64:
+        return given  # of a ``Pattern``
+    if given.dtype.kind not in "fiub":
+        raise InvalidInput(f"{name} must hold real numbers, got {given.dtype}")
+    try:
+        given.check_format(full_check=True)
+    except ValueError as error:
+        raise InvalidInput(f"{name} is no matrix in CSC format: {error}") from None
+    if isinstance(given, sparse.csc_matrix) and given.has_canonical_format and given.dtype == np.float64:
+        return given
+    matrix = sparse.csc_matrix(given, dtype=np.float64, copy=True)
+    matrix.sum_duplicates()
+    return matrix

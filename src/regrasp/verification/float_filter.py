@@ -6,10 +6,10 @@ tangential forces are within 16 u |f| of the true ones, so that
 
     mu f_n - |f_t| > 2^-40 (1 + mu) |f|   and   |f| <= (1 - 2^-40) max_force
 
-prove a force inside its cone and limit (a linear one with 2^-40 of its terms to spare), with 2^13 u where
-16 u (1 + mu) would do. A sum of n forces, or of their torques over the largest arm l, is within 8 (n + 1)^2 u
-of the largest of |f_i|, |F|, |tau| / l and |m_i| / l: by that much less than min(2^-40 s, 2^-10 w) a row must
-be in equilibrium.
+prove a force inside its cone and limit (a linear one with 2^-40 of its terms and 2^-480 to spare), with 2^13
+u where 16 u (1 + mu) would do. A sum of n forces, or of their torques over the largest arm l, is within
+8 (n + 1)^2 u of the largest of |f_i|, |F|, |tau| / l and |m_i| / l: by that much less than
+min(2^-40 s, 2^-10 w) a row must be in equilibrium.
 """
 
 from functools import reduce
@@ -107,7 +107,7 @@ def _surely_within(grasp: Grasp, forces: Array) -> NDArray[np.bool_]:
             continue
         terms, bounds = forces[..., i, : rows.shape[1]], limits.bounds
         room = bounds - terms @ rows.T - _DOUBT * (np.abs(terms) @ np.abs(rows).T + bounds)
-        inside[..., i] = (room > 0).all(axis=-1)
+        inside[..., i] = (room > _LEAST).all(axis=-1)  # products may vanish below it
     return inside
 
 

@@ -27,7 +27,7 @@ from regrasp.verification.placed.chosen_grasps import verify_chosen, verify_proo
 from regrasp.verification.placed.faces.regions import FaceRegions, verify_face_regions
 from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
-from regrasp.verification.protocols import Course, Plan, Scaling
+from regrasp.verification.protocols import NEEDED, Course, Plan, Scaling
 from regrasp.verification.records import check_record
 from regrasp.verification.refusals.cuts import Cut, verify_cut
 from regrasp.verification.refusals.outline_cuts import OutlineCut, verify_outline_cut
@@ -37,7 +37,6 @@ from regrasp.verification.verdict import Verification
 from regrasp.verification.withstood.plans import Asked, check_promised, check_withstood
 
 _NO_FORM = inf, 0.0, -inf  # residual, angle and slack of what cannot be judged
-_NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "record")
 
 
 def verify(
@@ -111,7 +110,7 @@ def verify(
         more = {"disturbance": disturbance, "friction": friction, "early_loss": early_loss}
         return _verify_regrasp(cast(Regrasp, plan), more, stiffness)
     plan = cast(Plan, plan)
-    if not all(hasattr(plan, name) for name in _NEEDED) or not (
+    if not all(hasattr(plan, name) for name in NEEDED) or not (
         isinstance(plan.start, GraspState) and isinstance(plan.end, GraspState)
     ):
         raise InvalidInput(f"verify needs a plan, got {shown(plan)}")

@@ -7,6 +7,9 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.robust.stiffness import Stiffness
 from regrasp.mechanics.state import GraspState
 
+NEEDED = ("leaving", "arriving", "start", "end", "scaling", "course", "turn", "record")
+"""What a transition has, whoever made it."""
+
 
 class Scaling(Protocol):
     """T(t) as ``verify`` sees it: a B-spline by its control values."""

@@ -26,6 +26,12 @@ def retraced(plan: Plan, times: Array) -> Array:
     return path
 
 
+def turned_by(turn: Turn, scaling: Scaling, times: Array) -> Array:
+    """(m,) angles of the object at m times in [0, duration], from its start [rad]."""
+    angles: Array = turn.angles[-1] * (1 - _fallen(scaling, times))
+    return angles
+
+
 def _fallen(scaling: Scaling, times: Array) -> Array:
     """T (m,), by de Boor's algorithm on the spans of equal length between the ends."""
     control = np.array(scaling.control, dtype=float)

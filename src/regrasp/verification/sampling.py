@@ -11,18 +11,20 @@ from math import inf
 
 import numpy as np
 
-from regrasp.errors import shown
-from regrasp.mechanics.checks import Array
+from regrasp.errors import InvalidInput, shown
+from regrasp.mechanics.checks import Array, numbers_in
 from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, load_size
 from regrasp.verification.float_filter import folded, judge_rows
-from regrasp.verification.protocols import Plan
+from regrasp.verification.protocols import NEEDED, Plan
 from regrasp.verification.records import deciding_forces
-from regrasp.verification.retraced import retraced
+from regrasp.verification.retraced import retraced, turned_by
 from regrasp.verification.verdict import Verification
 
 _DOUBT = float(RESOLUTION)
+_SAME_ANGLE = 1e-9
+"""By how much an angle may differ from the plan's, per 1 + the turn [rad]."""
 _BLOCK = 8192  # rows at a time, which stay in the cache
 
 
@@ -38,8 +40,17 @@ def verify_setpoints(
         plan: the plan they are of.
         forces: (m, n, d) object frame [N]; (m, n, 4) with soft fingers.
         times: (m,) rising, from the start of the plan [s]; spread evenly over it if left out.
-        angles: (m,) of the object from the start [rad], needed where it turns; the load turns the other way.
+        angles: (m,) of the object from the start [rad], needed where it turns, and the plan's to 1e-9; the
+            load turns the other way.
+
+    Raises:
+        InvalidInput: For what is no plan, and for forces, times and angles that are no numbers.
     """
+    if not all(hasattr(plan, name) for name in (*NEEDED, "forces")):
+        raise InvalidInput(f"verify_setpoints needs a plan that is one transition, got {shown(plan)}")
+    forces = numbers_in(forces, "forces of set-points must be numbers")
+    times = None if times is None else numbers_in(times, "times of set-points must be numbers")
+    angles = None if angles is None else numbers_in(angles, "angles of set-points must be numbers")
     start, duration = plan.start, plan.scaling.duration
     n, d = start.forces.shape
     if forces.ndim != 3 or forces.shape[1:] != (n, d):
@@ -72,6 +83,11 @@ def verify_setpoints(
             known.append(value)
         for row, violation in _compared(plan, forces, times, slice(max(first - 1, 0), first + _BLOCK)):
             broken.setdefault(row, [f"set-point {row}: {violation}"])
+    if plan.turn is not None and angles is not None:
+        off = abs(angles - turned_by(plan.turn, plan.scaling, times))
+        for row in np.flatnonzero(~(off <= _SAME_ANGLE * (1 + abs(plan.turn.angles[-1])))).tolist():
+            by = f"t = {times[row]:.9g} s, off by {off[row]:.3g} rad"
+            broken.setdefault(row, [f"set-point {row}: its angle is not the plan's at {by}"])
     violations = tuple(v for row in sorted(broken) for v in broken[row])
     return Verification(violations, max(residuals), min(angle_margins), min(slacks))
 

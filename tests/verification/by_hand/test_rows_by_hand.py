@@ -303,3 +303,19 @@ def test_a_record_is_judged_choice_by_choice() -> None:
         found = said(replace(Plan("rotation", None, state, state), record=Record(choices=choices)))
         assert "start was chosen for 4 fingers in use, but 1 force limits" in found
         assert ("end was chosen with forces of C up to" not in found) == good
+
+
+@pytest.mark.parametrize(("share", "fine"), [(0.49, False), (0.25, True)])
+def test_linear_limits_whose_products_vanish_are_decided_exactly(share, fine) -> None:
+    """Each of three terms rounds to zero, their sum is 1.47 or 0.75 times the bound, the least double."""
+    least = 5e-324
+    limits = ([[least] * 3], [least])
+    grasp = rg.Grasp(
+        rg.Contact([-x, 0, 0], [x, 0, 0], 2.0, limits=limits if x > 0 else None) for x in (1, -1)
+    )
+    pushed = share * (grasp.normals[0] + grasp.tangents[0].sum(axis=0))
+    forces = np.array([pushed, -pushed])
+    load = -np.cross(grasp.positions, forces).sum(axis=0)
+    found = said(along(grasp, [forces] * 3, [[0, 0, 0, *load]] * 3))
+    assert (found == "") is fine
+    assert fine or "breaks its linear limit 0" in found

@@ -243,3 +243,35 @@ def test_a_load_in_time_is_taken_at_the_time_of_each_row() -> None:
     moved = t.copy()
     moved[20] += 1e-9
     assert told(plan, moved, rows)[0].startswith("set-point 20: not in equilibrium")
+
+
+def test_angles_are_the_plans_where_the_load_does_not_tell() -> None:
+    """About the load's own axis it looks the same at every angle."""
+    three = rg.Grasp(
+        rg.Contact(p, [-x for x in p], 0.7) for p in ([1, 0, 0], [-0.5, 0.8, 0.1], [-0.5, -0.8, -0.1])
+    )
+    load = rg.Wrench([-0.5, 0, 0])
+    plan = rg.plan_rotation(three, 0.5, axis=[1, 0, 0], load=load)
+    t = np.linspace(0, plan.duration, 5)
+    rows, angles = plan.forces(t), plan.orientation(t)
+    off = np.where(np.arange(5) == 2, 1.6e-9, 0)
+    for good in (angles, angles + off / 2, angles - off / 2):
+        assert told(plan, t, rows, good) == ()
+    for wrong in (angles + off, angles - off):
+        assert told(plan, t, rows, wrong) == (
+            f"set-point 2: its angle is not the plan's at t = {t[2]:.9g} s, off by 1.6e-09 rad",
+        )
+    assert len(told(plan, t, rows, angles + 2 * np.pi)) == 5
+
+
+def test_lists_are_rows_and_what_are_no_numbers_is_refused() -> None:
+    plan = PLANS["turn"]
+    t = np.linspace(0, plan.duration, 5)
+    rows, angles = plan.forces(t), plan.orientation(t)
+    assert verify_setpoints(plan, rows.tolist(), t.tolist(), angles.tolist()).ok
+    for wrong in ((None, t, angles), (rows, "x", angles), (rows, t, [None] * 5), (rows * 1j, t, angles)):
+        with pytest.raises(rg.InvalidInput, match="of set-points must be numbers"):
+            verify_setpoints(plan, *wrong)
+    for no_plan in (None, "x", plan.start):
+        with pytest.raises(rg.InvalidInput, match="verify_setpoints needs a plan that is one transition"):
+            verify_setpoints(no_plan, rows)
