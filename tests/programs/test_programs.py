@@ -170,6 +170,10 @@ def test_what_is_given_is_not_changed() -> None:
 def test_a_matrix_of_doubles_in_order_is_kept_as_it_is() -> None:
     program = Program(**RIGHT, blocks=BLOCKS)
     assert program.A is RIGHT["A"]
+    places = program.A.indices, program.A.indptr
+    again = Program(program.P, program.q, program.A, program.b, BLOCKS).A  # kept solvers know it by these
+    assert again.indices is places[0]
+    assert again.indptr is places[1]
     assert program.q is Q
 
 
@@ -179,13 +183,20 @@ def far_index() -> sparse.csc_matrix:
     return found
 
 
+def backwards() -> sparse.csc_matrix:
+    found = sparse.csc_matrix(A)
+    found.indptr = np.array([0, 4, 3], dtype=np.int32)
+    return found
+
+
 @pytest.mark.parametrize(
     ("name", "wrong", "words"),
     [
         ("P", P, "P must be a scipy.sparse matrix in CSC format, got ndarray"),
         ("P", None, "P must be a scipy.sparse matrix in CSC format, got NoneType"),
         ("A", sparse.csc_matrix(A * 1j), "A must hold real numbers, got complex128"),
-        ("A", far_index(), "A is no matrix in CSC format"),
+        ("A", far_index(), "A is no matrix in CSC format: it has 2 rows, and entries in others"),
+        ("A", backwards(), "A is no matrix in CSC format: its columns do not follow each other"),
         ("A", sparse.csc_matrix(A * np.array([[nan], [1]])), "A must be finite"),
         ("q", None, "q must be numbers, got None"),
         ("q", ["a", "b"], "q must be numbers"),

@@ -207,12 +207,17 @@ def _matrix(name: str, given: Any) -> sparse.csc_matrix:
         return given  # of a ``Pattern``
     if given.dtype.kind not in "fiub":
         raise InvalidInput(f"{name} must hold real numbers, got {given.dtype}")
-    try:
-        given.check_format(full_check=True)
-    except ValueError as error:
-        raise InvalidInput(f"{name} is no matrix in CSC format: {error}") from None
-    if isinstance(given, sparse.csc_matrix) and given.has_canonical_format and given.dtype == np.float64:
+    rows, ends = given.indices, given.indptr
+    if rows.size and not (rows.min() >= 0 and rows.max() < given.shape[0]):
+        raise InvalidInput(
+            f"{name} is no matrix in CSC format: it has {given.shape[0]} rows, and entries in others"
+        )
+    if not (ends[0] == 0 and (np.diff(ends) >= 0).all() and ends[-1] <= rows.size == given.data.size):
+        raise InvalidInput(f"{name} is no matrix in CSC format: its columns do not follow each other")
+    is_kept = isinstance(given, sparse.csc_matrix) and given.dtype == np.float64 and ends[-1] == rows.size
+    if is_kept and given.has_canonical_format:
         return given
     matrix = sparse.csc_matrix(given, dtype=np.float64, copy=True)
+    matrix.prune()
     matrix.sum_duplicates()
     return matrix

@@ -17,6 +17,8 @@ pytestmark = pytest.mark.contract
 FINE = {"eps_abs": 1e-9, "eps_rel": 1e-9}
 TIGHT = ("tol_gap_abs", "tol_gap_rel", "tol_feas", "tol_infeas_abs", "tol_infeas_rel")
 
+STEPS = {"max_iter": 5000, "max_iter_in": 50}
+
 
 def test_how_well_each_must_answer_and_how_it_is_asked_to() -> None:
     assert {name: (backend.tolerance, backend.options) for name, backend in BACKENDS.items()} == {
@@ -25,7 +27,7 @@ def test_how_well_each_must_answer_and_how_it_is_asked_to() -> None:
         "quadprog": (1e-7, {}),
         "highs": (1e-6, {"presolve": "off"}),
         "piqp": (1e-7, {"eps_abs": 1e-10, "eps_rel": 1e-10}),
-        "proxqp": (1e-6, {"eps_abs": 1e-10, "eps_rel": 0.0, "default_rho": 1e-2}),
+        "proxqp": (1e-6, {"eps_abs": 1e-10, "eps_rel": 0.0, "default_rho": 1e-2, **STEPS}),
         "qpalm": (1e-5, {**FINE, "max_iter": 20_000}),
         "osqp": (1e-5, {**FINE, "max_iter": 50_000}),
         "scs": (1e-5, {**FINE, "max_iters": 200_000}),
