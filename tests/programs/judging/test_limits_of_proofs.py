@@ -12,6 +12,7 @@ from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.elastic import elastic, proven_anyway
 from regrasp.programs.judging.loose_rows import without_loose_rows
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
+from regrasp.programs.judging.units import units_of_unknowns
 from regrasp.programs.judging.verdict import PROVEN, judged
 from regrasp.programs.solution import Solution
 
@@ -140,6 +141,13 @@ def test_the_least_units_of_a_program_in_one() -> None:
     """min x^2 / 2 + 3 y^2 / 2 with 2 y <= 1: columns 1 + 3 and 3 + 3, the row 2, its product 2 / (2 / 6)."""
     p = program(np.diag([1.0, 3]), [0, 0], [[0, 2]], [1], nonnegative(1), size=1.0)
     assert p.floors == pytest.approx((2, 4, 6, 4))
+
+
+def test_a_unit_is_passed_on_four_times() -> None:
+    """x0 = 1, and each is twice the one before; after four rows there is none."""
+    rows = np.eye(7) - 2 * np.eye(7, k=-1)
+    p = program(np.zeros((7, 7)), np.zeros(7), rows, [1, 0, 0, 0, 0, 0, 0], zero(7))
+    assert units_of_unknowns(p)[0].tolist() == [1, 2, 4, 8, 16, 0, 0]
 
 
 def test_what_measures_as_much_as_is_allowed_is_sound() -> None:
