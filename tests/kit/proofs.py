@@ -39,6 +39,7 @@ def planar(vertices, loads, nodes, **changes) -> SimpleNamespace:
             "rings": None,
             "pairs": None,
             "seconds": None,
+            "tied": None,
         }
         | changes
     )
