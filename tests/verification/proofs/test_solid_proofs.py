@@ -118,8 +118,14 @@ def one_triangle(halves, spans=((0, 1),), corners=CORNERS[:1], normals=NORMALS[:
         ([(0, 2), (0, 1), (1, 2)], [[1, 2, -1], [-1] * 3, [-1] * 3], "do not cover it"),
         ([(0, 2), (0, 1), (0, 1)], [[1, 2, -1], [-1] * 3, [-1] * 3], "do not cover it"),
         ([(0, 2), (1, 1), (0, 1)], [[1, 2, -1], [-1] * 3, [-1] * 3], "do not cover it"),
-        ([(0, 2), (0, 2), (2, 0)], [[1, 2, -1], [-1] * 3, [-1] * 3], "do not cover it"),
-        ([(0, 2), (0, 0), (0, 2)], [[1, 2, -1], [-1] * 3, [-1] * 3], "do not cover it"),
+        ([(0, 2), (0, 2), (2, 0)], [[1, 2, -1], [-1] * 3, [-1] * 3], "patch 2 is no group of triangles"),
+        ([(0, 2), (0, 0), (0, 2)], [[1, 2, -1], [-1] * 3, [-1] * 3], "patch 1 is no group of triangles"),
+        ([(0, 2), (1, 1), (1, 1)], [[1, 2, -1], [-1] * 3, [-1] * 3], "do not cover it"),
+        ([(0, 2), (0, 1), (1, 1)], [[3, 2, -1], [-1] * 3, [3, 4, 0], [-1] * 3, [-1] * 3], "patch 0 has no"),
+        ([(0, 2), (0, 1), (1, 1)], [[1, 3, -1], [3, 4, 0], [-1] * 3, [-1] * 3, [-1] * 3], "patch 0 has no"),
+        ([(0, 2), (0, 1), (1, 1)], [[1, 2, -1], [4, 3, 0], [-1] * 3, [-1] * 3, [-1] * 3], ""),
+        ([(0, 1)], [[1, 2, 0], [4, 1, 0], *[[-1] * 3] * 3], "patch 1 has no"),
+        ([(0, 1)], [[1, 2, 0], [1, 4, 0], *[[-1] * 3] * 3], "patch 1 has no"),
         ([(0, 2), (0, 1), (2, 1)], [[-1] * 3] * 3, "patch 2 is no group of triangles"),
         ([(0, 2), (0, 1), (1, 2)], [[-1] * 3] * 3, "patch 2 is no group of triangles"),
         ([(0, 2), (0, 1), (-1, 1)], [[-1] * 3] * 3, "patch 2 is no group of triangles"),
@@ -138,8 +144,8 @@ def one_triangle(halves, spans=((0, 1),), corners=CORNERS[:1], normals=NORMALS[:
     ],
 )
 def test_patches_are_halved_so_that_nothing_is_lost(spans, halves, words) -> None:
-    proof = one_triangle(halves, spans, CORNERS[:2], NORMALS[:2], bound=1e-9)
-    found = said(proof)
+    many = 1 if spans == [(0, 1)] else 2
+    found = said(one_triangle(halves, spans, CORNERS[:many], NORMALS[:many], bound=1e-9))
     assert words in found
     assert bool(words) == bool(found)
 
@@ -190,6 +196,11 @@ def test_halves_of_triangles_are_where_they_are_said_to_be() -> None:
         ({"min_distance": nan}, "must be 0 or more"), ({"bound": -1e-300}, "must be 0 or more"),
         ({"normals": np.array([[0, 0, 1 + 2e-12]])}, "of length 1"),
         ({"normals": np.array([[0, 0, 1 - 2e-12]])}, "of length 1"),
+        ({"boxes": np.zeros((1, 0), int), "fingers": 0}, "shapes"),
+        ({"boxes": np.zeros((0, 1), int), "children": np.zeros((0, 2), int), "number": np.zeros(0, int),
+          "twists": np.zeros((0, 6))}, "shapes"),
+        ({"spans": np.zeros((0, 2), int)}, "patch 0 must be the whole"),
+        ({"corners": np.zeros((0, 3, 3)), "normals": np.zeros((0, 3))}, "whole surface"),
         ({"boxes": np.array([[1]])}, "box 0 must give"), ({"boxes": np.array([[-1]])}, "box 0 must give"),
     ],
 )  # fmt: skip

@@ -23,6 +23,7 @@ from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.placed.roots import root_above
 
 _ROUNDING = 1e-12  # of the terms: far more than the roundings of sums and of halving edges
+_SMALL = 1e-140  # squares of less lose digits
 _AT_A_TIME = 4096
 
 
@@ -64,7 +65,7 @@ def _shapes(proof: SurfaceProof) -> list[str]:
         (np.shape(proof.boxes), (n, k)), (np.shape(proof.children), (n, 2)),
         (np.shape(proof.number), (n,)), (np.shape(proof.twists), (n, 6)),
     ]  # fmt: skip
-    if any(found != shape for found, shape in wanted) or not (m and n and k and len(proof.loads)):
+    if any(found != shape for found, shape in wanted) or not (n and k and len(proof.loads)):
         return ["proof: its arrays do not have the shapes that they must have"]
     numbers = (proof.corners, proof.normals, proof.loads, proof.twists, proof.bound)
     if not all(np.isfinite(a).all() for a in numbers) or not 0 <= proof.friction < inf:
@@ -93,7 +94,7 @@ class _Patches:
         for patch in range(q):
             left, right, edge = (int(c) for c in self.halves[patch])
             first, count = (int(c) for c in self.spans[patch]) if patch < p else (0, 1)
-            if patch < p and not (0 <= first < first + count <= m):
+            if not 0 <= first < first + count <= m:
                 return [f"proof: patch {patch} is no group of triangles"]
             if patch >= p and patch not in self._part:
                 return [f"proof: patch {patch} is a half of none"]
@@ -101,16 +102,15 @@ class _Patches:
                 self._part[patch] = first, self.corners[first]
             if left < 0:
                 continue
-            if not (patch < left < q and patch < right < q) or left == right:
+            good = all(patch < half < q and (half < p) == (count > 1) for half in (left, right))
+            if not good or left == right or not (count > 1 or edge in (0, 1, 2)):
                 return [f"proof: patch {patch} has no two halves"]
             if count > 1:
-                a, b = (tuple(self.spans[half]) if half < p else (0, 0) for half in (left, right))
-                if a[0] != first or b[0] != first + a[1] or a[1] + b[1] != count or not (a[1] and b[1]):
+                (at, some), (then, more) = (tuple(self.spans[half]) for half in (left, right))
+                if at != first or then != first + some or some + more != count:
                     return [f"proof: the halves of patch {patch} do not cover it"]
                 continue
             on, t = self._part[patch]
-            if edge not in (0, 1, 2) or left < p or right < p:
-                return [f"proof: patch {patch} has no two halves"]
             a, b, o = t[edge], t[(edge + 1) % 3], t[(edge + 2) % 3]
             middle = 0.5 * (a + b)
             self._part[left] = on, np.array([a, middle, o])
@@ -124,8 +124,7 @@ class _Patches:
             return corners, np.repeat(self.normals[on : on + 1], len(corners), axis=0)
         first, count = self.spans[patch]
         corners = self.corners[first : first + count]
-        normals = np.repeat(self.normals[first : first + count], corners.shape[1], axis=0)
-        return corners.reshape(-1, 3), normals
+        return np.concatenate(corners), np.repeat(self.normals[first : first + count], 3, axis=0)
 
 
 def _boxes_wrong(proof: SurfaceProof) -> list[str]:
@@ -135,21 +134,21 @@ def _boxes_wrong(proof: SurfaceProof) -> list[str]:
     if boxes.min() < 0 or boxes.max() >= len(halves) or boxes[0].any():
         return ["proof: box 0 must give every finger the whole surface, and all boxes patches"]
     parents = np.flatnonzero(children[:, 1])
-    first, count = children[parents].T
-    inside = [np.arange(a, a + c) for a, c in zip(first.tolist(), count.tolist(), strict=True)]
-    everyone = np.sort(np.concatenate(inside)) if inside else np.zeros(0, int)
-    if not np.array_equal(everyone, np.arange(1, n)) or (first <= parents).any():
+    count = children[parents, 1]
+    inside = [np.arange(a, a + c) for a, c in children[parents].tolist()]
+    everyone = np.sort(np.concatenate([*inside, np.zeros(0, int)]))
+    if not np.array_equal(everyone, np.arange(1, n)):
         return ["proof: the boxes are no tree"]
     for c in np.unique(count).tolist():
         these = parents[count == c]
         whole = boxes[these]
         parts = boxes[children[these, 0][:, None] + np.arange(c)]
-        split = (parts[:, 0] != whole) | (parts[:, -1] != whole)
+        split = parts[:, 0] != whole
         at = split.argmax(axis=1)
         patch = np.take_along_axis(whole, at[:, None], axis=1)
         left, right = halves[patch, 0], halves[patch, 1]
         place = np.cumsum(split, axis=1) - 1
-        good = (split.sum(axis=1) == c - 1) & (left[:, 0] >= 0) & (~split | (whole == patch)).all(axis=1)
+        good = (split.sum(axis=1) == c - 1) & (~split | (whole == patch)).all(axis=1)
         for number in range(c):
             expected = np.where(split, np.where(place < c - 1 - number, left, right), whole)
             good &= (parts[:, number] == expected).all(axis=1)
@@ -169,30 +168,38 @@ def _exclusions_wrong(proof: SurfaceProof, patches: _Patches) -> list[str]:
     rest = leaves[number[leaves] != -1]
     if (number[rest] < 0).any() or (number[rest] >= len(proof.loads)).any():
         return ["proof: a box has no load"]
-    if proof.bound == 0:
+    if proof.bound == 0 or not len(rest):
         return []
-    reach = float(np.linalg.norm(proof.corners, axis=2).max())
+    with np.errstate(all="ignore"):
+        clear = _clear(proof, patches, rest)
+    for box in rest[~clear].tolist():
+        if not _excluded(proof, patches, box):
+            return [f"proof: the twist of box {box} does not exclude it"]
+    return []
+
+
+def _clear(proof: SurfaceProof, patches: _Patches, rest: np.ndarray) -> np.ndarray:
+    """Which boxes doubles show to be excluded."""
+    reach, boxes = float(np.linalg.norm(proof.corners, axis=2).max()), np.asarray(proof.boxes)
+    y, w = proof.twists[rest], np.asarray(proof.loads)[np.asarray(proof.number)[rest]]
     most = np.zeros((len(rest), proof.fingers))
     for finger in range(proof.fingers):  # boxes that share a patch together
         order = np.argsort(boxes[rest, finger], kind="stable")
         here = boxes[rest[order], finger]
-        for group in np.split(order, np.flatnonzero(np.diff(here)) + 1) if len(order) else []:
+        for group in np.split(order, np.flatnonzero(np.diff(here)) + 1):
             points, normals = patches.rows(int(boxes[rest[group[0]], finger]))
             for some in np.split(group, range(_AT_A_TIME, len(group), _AT_A_TIME)):
-                most[some, finger] = _sigma(proof, proof.twists[rest[some]], points, normals)
-    y, w = proof.twists[rest], np.asarray(proof.loads)[number[rest]]
+                most[some, finger] = _sigma(proof, y[some], points, normals)
     speed = np.linalg.norm(y[:, :3], axis=1) + np.linalg.norm(y[:, 3:], axis=1) * reach
-    most += (_ROUNDING * (1 + proof.friction) * speed)[:, None]
+    room = _ROUNDING * (1 + proof.friction) * speed
+    most += room[:, None]
     dual = most.max(axis=1) if proof.norm == "sum" else most.sum(axis=1)
     if proof.norm == "squares":
         dual = np.sqrt((most**2).sum(axis=1))
     terms = -w * y
     work = terms.sum(axis=1) - _ROUNDING * np.abs(terms).sum(axis=1)
-    clear = (work > proof.bound * dual * (1 + _ROUNDING)) & (work > 1e-140)
-    for box in rest[~clear].tolist():
-        if not _excluded(proof, patches, box):
-            return [f"proof: the twist of box {box} does not exclude it"]
-    return []
+    told = np.minimum(room, work) > _SMALL
+    return np.asarray(told & (work > proof.bound * dual * (1 + _ROUNDING)))
 
 
 def _sigma(proof: SurfaceProof, y: Array, points: Array, normals: Array) -> Array:
