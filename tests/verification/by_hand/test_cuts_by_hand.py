@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.verification.refusals.cuts import _Holds, _tangent_below
+from regrasp.verification.refusals.cuts import _Holds, _side, _tangent_below
 
 pytestmark = pytest.mark.oracle
 
@@ -307,3 +307,18 @@ def test_numbers_of_verdicts_on_cuts() -> None:
     assert (made.worst_residual, made.least_angle, made.least_cone_slack) == (0.0, inf, inf)
     broken = rg.verify(outline_cut(friction=nan))
     assert (broken.worst_residual, broken.least_angle, broken.least_cone_slack) == (inf, 0.0, -inf)
+
+
+def test_the_edges_of_an_oblique_cone() -> None:
+    """At (-4, 3), beside the normal (3, 4) / 5, forces along the tangent make no torque, however steep."""
+    for mu in 0.5, 2.0, 9.0:
+        for sign in 1, -1:
+            place = [Fraction(-4 * sign), Fraction(3 * sign)]
+            assert _side(rg.Contact([-4 * sign, 3 * sign], [3, 4], mu), place, Fraction(0)) == -sign
+
+
+def test_the_side_of_a_start_may_be_the_only_two_that_hold() -> None:
+    """Contacts 0 and 2 turn the same way, 1 the other, from which 2 is not far enough."""
+    places = [contact(x, -1, 0, 1, 0.25) for x in (3.0, -0.3, 0.3, 4.0, 5.0, 6.0)]
+    for reached, good in ((0, 1), True), ((0,), False), ((1,), False):
+        assert ("of the start may hold" not in said(cut(places, reached=reached, apart=1.0))) == good

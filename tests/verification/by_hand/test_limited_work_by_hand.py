@@ -99,3 +99,10 @@ def test_the_tangents_of_an_arc_meet_beyond_it(angle) -> None:
     else:
         wide = (np.array(one[:2]) + 2 * np.array(other[:2])) / (1 + cosine)
         assert np.array([float(x) for x in longer[2]]) == pytest.approx(wide, rel=1e-9)
+
+
+def test_a_root_is_rounded_up_where_its_square_is_cut_off() -> None:
+    square = 1 + Fraction(1, 2**300)
+    assert root(square, up=False) == 1
+    assert root(square, up=True) ** 2 > square
+    assert root(Fraction(9, 4), up=True) == Fraction(3, 2)

@@ -3,10 +3,11 @@
 from fractions import Fraction
 from math import cos, sin
 
+import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.verification.withstood.contacts import Body, Touch
+from regrasp.verification.withstood.contacts import Body, Touch, _worst
 
 pytestmark = pytest.mark.oracle
 
@@ -96,3 +97,32 @@ def test_every_linear_limit_counts_and_names_a_member_that_breaks_it() -> None:
 def test_the_way_out_beside_an_oblique_normal() -> None:
     touch = Touch(rg.Contact([0, 0, 0], [3, 4, 0], 0.5), Fraction(1), 3)
     assert touch._outward([Fraction(0), Fraction(5), Fraction(0)], None) == pytest.approx([-1.1, 0.2, 0])
+
+
+def test_the_member_that_breaks_is_one_of_the_set_and_breaks_it_exactly() -> None:
+    """A ball of 3 against a push of 1: its member farthest along the normal; a hull's own."""
+    as_it_is = [[Fraction(int(i == j)) for j in range(6)] for i in range(3)]
+    touch = Touch(rg.Contact([0, 0, 0], [1, 0, 0], 1.0), Fraction(1, 3), 3)
+    ball = Body(rg.LoadSet.ball(rg.Wrench([0, 0, 0]), force=3.0))
+    found = touch.broken([Fraction(1), Fraction(0), Fraction(0)], as_it_is, ball)
+    assert found.member.vector.tolist() == [-3, 0, 0, 0, 0, 0]
+    edge = [Fraction(1), Fraction(1, 3), Fraction(0)]
+    for sign in (1, -1):  # along the edge in doubles: one of the two is outside
+        members = [rg.Wrench([s / 2, s / 6, 0]) for s in (sign, -sign)]
+        found = touch.broken(edge, as_it_is, Body(rg.LoadSet.hull(members)))
+        assert found.member.vector.tolist() == [-0.5, -1 / 6, 0, 0, 0, 0]
+
+
+def test_the_worst_of_a_ball_makes_a_form_negative_wherever_something_does() -> None:
+    """All below zero; curved upwards with the least inside; random ones, on the sphere to rounding."""
+    rng = np.random.default_rng(5)
+    given = [[[-1, -1], [-1, -1]], [[1, 0], [0, -(2.0**-20)]], [[1, 0.5], [0.5, 0.125]]]
+    for k in range(60):
+        root = rng.normal(size=(1 + k % 6, 1 + k % 6))
+        given.append(np.block([[root + root.T, root[:, :1]], [root[:, :1].T, -1]]).tolist())
+    for form in given:
+        z = _worst([[Fraction(x) for x in row] for row in form])
+        assert np.linalg.norm(z) <= 1 + 2.0**-50
+        assert np.r_[z, 1] @ form @ np.r_[z, 1] < 0
+    for form in [[0, 0], [0, 0]], [[1, 1], [1, 1]], [[-1, 0], [0, 1]], [[0, 1], [1, 2]]:
+        assert _worst([[Fraction(x) for x in row] for row in form]) is None

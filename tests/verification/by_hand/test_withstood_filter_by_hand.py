@@ -245,3 +245,23 @@ def test_what_no_double_holds_is_infinite() -> None:
     ]
     assert in_doubles([[Fraction(1), Fraction(2)], [Fraction(3), Fraction(4)]]).tolist() == [[1, 2], [3, 4]]
     assert doubt(12) == 20 / 2**45
+
+
+def test_what_is_sure_of_a_finger_in_space() -> None:
+    """Pushing, pulling and aside; a linear limit of 2 and its quarter; a limit of 3 on all of the force."""
+
+    def sure(forces, loads, share=1.0, size=1.0, **limits) -> list[bool]:
+        touch = Touch(rg.Contact([0, 0, 0], [1, 0, 0], 0.5, **limits), Fraction(1), 3)
+        given, answer = np.array(forces, dtype=float), size * np.eye(3, 6)
+        return surely_withstood(
+            touch, Sized(given, abs(given)), answer, Body(loads), share, doubt(24)
+        ).tolist()
+
+    still = rg.Wrench([0, 0, 0])
+    for loads in rg.LoadSet.hull([still]), rg.LoadSet.ball(still, force=0.1):
+        assert sure([[1, 0, 0], [-1, 0, 0], [1, 1, 0], [0, 0, 0]], loads) == [True, False, False, False]
+        limits = rg.ForceLimits([[1, 0, 0]], [2])
+        assert sure([[1, 0, 0], [3, 0, 0]], loads, limits=limits) == [True, False]
+        assert sure([[1, 0, 0], [0.3, 0, 0]], loads, 0.25, limits=limits) == [False, True]
+        assert sure([[2.85, 0, 0], [2.95, 0.8, 0]], loads, max_force=3.0) == [True, False]
+    assert sure([[1, 0, 0], [1e300, 0, 0]], loads, size=1e300) == [False, False]  # no doubles any more

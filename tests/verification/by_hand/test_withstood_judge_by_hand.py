@@ -85,6 +85,8 @@ def test_instants_and_ends_decide() -> None:
     state = rg.GraspState(grasp, STILL, rest)
     plan = Plan("rotation", None, state, state)
     assert found(plan, friction=1.0) == []
+    for kind in "removal", "addition":  # whether there is such a finger is another's matter
+        assert found(replace(plan, kind=kind, contact="nobody"), friction=1.0) == []
     for end in "start", "end":
         spoilt = replace(plan, **{end: rg.GraspState(grasp, STILL, one(1 + NEAR, 0))})
         assert [x.split(":")[0] for x in found(spoilt, friction=1.0)] == [end]

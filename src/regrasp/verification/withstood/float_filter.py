@@ -77,12 +77,9 @@ def surely_withstood(
     known = (size > _LEAST) & (size < _MOST)
     unit = -np.frexp(np.where(known, size, 1.0))[1]  # an exact change of units, in which sizes are about 1
     values, size = np.ldexp(values, unit[..., None, None]), np.ldexp(size, unit)
-    held = known
+    held = known & (values[..., -1] @ normal > 0)  # a quadratic also holds in the cone the other way round
     for part, whole, bound in forms:
         form = part - whole * np.eye(width)
-        if not bound:
-            along = np.einsum("...wk,w->...k", values, normal)
-            held &= along[..., -1] - _length(along[..., :-1]) > off * size * np.sqrt(whole)
         s = np.swapaxes(values, -1, -2) @ form @ values
         s[..., -1, -1] += np.ldexp(bound, unit) ** 2
         held &= _surely_positive(s, off * (abs(form).sum() + 1) * size**2, off)
@@ -118,11 +115,12 @@ def _columns(forces: Sized, answer: Array, body: Body, lift: Array) -> tuple[Arr
         members = (f[:, None] + loads.cover @ answer.T)[..., None]
         return members, (s[:, None] + abs(loads.cover) @ abs(answer).T)[..., None]
     center, axes = loads.center.vector, np.asarray(loads.half_axes)
-    values = np.empty((len(f), 1, len(lift), axes.shape[1] + 1))
-    sizes = np.empty(values.shape)
-    values[..., :-1], sizes[..., :-1] = answer @ axes, abs(answer) @ abs(axes)
-    values[:, 0, :, -1], sizes[:, 0, :, -1] = f + answer @ center, s + abs(answer) @ abs(center)
-    return values, sizes
+
+    def beside(columns: Array, last: Array) -> Array:
+        return np.concatenate([[columns] * len(last), last[..., None]], axis=-1)[:, None]
+
+    sizes = beside(abs(answer) @ abs(axes), s + abs(answer) @ abs(center))
+    return beside(answer @ axes, f + answer @ center), sizes
 
 
 def _surely_positive(s: Array, delta: Array, off: float) -> Sure:
