@@ -8,30 +8,26 @@ forces hold at every t when they hold at the instants, and a rate is one number 
 """
 
 from collections.abc import Callable
-from fractions import Fraction
-from math import inf, isfinite
+from math import inf
 from typing import Any, cast
-
-import numpy as np
 
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import ArrayLike, function, number
 from regrasp.mechanics.loads.load_set import LoadSet
-from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
-from regrasp.verification.exact import check_state, exact, least_angle, rounded
+from regrasp.verification.exact import check_state, least_angle
 from regrasp.verification.float_filter import Checked, check_rows
-from regrasp.verification.idle import check_idle
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.placed.chosen_grasps import verify_chosen, verify_proof
 from regrasp.verification.placed.faces.regions import FaceRegions, verify_face_regions
 from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
-from regrasp.verification.protocols import NEEDED, Course, Plan, Scaling
-from regrasp.verification.records import check_record
+from regrasp.verification.protocols import Course, Plan, check_regrasp, check_transition, is_transition
+from regrasp.verification.records import check_idle, check_record
 from regrasp.verification.refusals.cuts import Cut, verify_cut
 from regrasp.verification.refusals.outline_cuts import OutlineCut, verify_outline_cut
 from regrasp.verification.regrasps import Regrasp, check_joints, of_steps
+from regrasp.verification.shapes import check_course_form, check_names, check_scaling, check_shapes
 from regrasp.verification.turning_steps import check_turn
 from regrasp.verification.verdict import Verification
 from regrasp.verification.withstood.plans import Asked, check_promised, check_withstood
@@ -107,13 +103,13 @@ def verify(
             raise InvalidInput(
                 "the contacts of a regrasp change from step to step: verify position and surface step by step"
             )
+        check_regrasp(plan)
         more = {"disturbance": disturbance, "friction": friction, "early_loss": early_loss}
         return _verify_regrasp(cast(Regrasp, plan), more, stiffness)
     plan = cast(Plan, plan)
-    if not all(hasattr(plan, name) for name in NEEDED) or not (
-        isinstance(plan.start, GraspState) and isinstance(plan.end, GraspState)
-    ):
+    if not is_transition(plan):
         raise InvalidInput(f"verify needs a plan, got {shown(plan)}")
+    check_transition(plan)
     if load is not None:
         function(load, "load", "the function of time the plan was made for")
     if load is not None and plan.turn is not None:
@@ -124,7 +120,10 @@ def verify(
         curvature = number(curvature, "curvature", least=0)
     given = disturbance, stiffness, friction, position, surface, early_loss
     asked = Asked.of(plan.start.grasp, *given)
-    untimed = _check_scaling(plan)
+    unnamed = check_names(plan)
+    if unnamed:
+        return Verification(tuple(unnamed), *_NO_FORM)
+    untimed = check_scaling(plan)
     violations = check_idle(plan) + untimed
     if plan.start.grasp != plan.end.grasp:
         violations.append("start and end have different contacts")
@@ -157,8 +156,10 @@ def _verify_regrasp(plan: Regrasp, more: dict[str, Any], stiffness: ArrayLike | 
     springs = of_steps(plan, stiffness)
     verdicts = [verify(step, stiffness=k, **more) for step, k in zip(plan.steps, springs, strict=True)]
     broken = [f"step {k}: {v}" for k, verdict in enumerate(verdicts, 1) for v in verdict.violations]
+    if not any(map(check_shapes, plan.steps)):
+        broken += check_joints(plan)
     return Verification(
-        tuple(broken + check_joints(plan)),
+        tuple(broken),
         max(verdict.worst_residual for verdict in verdicts),
         min(verdict.least_angle for verdict in verdicts),
         min(verdict.least_cone_slack for verdict in verdicts),
@@ -182,15 +183,9 @@ def _check_ends(plan: Plan) -> Checked:
 
 def _check_course(plan: Plan, course: Course) -> Checked:
     times, forces, loads = course.times, course.forces, course.loads
-    shape = plan.start.forces.shape
-    if times.ndim != 1 or times.size < 2 or forces.shape != (times.size, *shape):
-        words = f"a course has two instants or more, and forces (K, {shape[0]}, {shape[1]})"
-        return Checked([words], *_NO_FORM)
-    if loads.shape != (times.size, plan.start.load.vector.size):
-        return Checked(["a course has a load at every instant"], *_NO_FORM)
-    if not (np.isfinite(forces).all() and np.isfinite(loads).all() and np.isfinite(times).all()):
-        return Checked(["times, forces and loads of a course must be finite numbers"], *_NO_FORM)
-    broken = []
+    broken = check_course_form(plan, course)
+    if broken:
+        return Checked(broken, *_NO_FORM)
     if times[0] != 0 or times[-1] != plan.scaling.duration or not (times[1:] > times[:-1]).all():
         broken.append(f"the instants must rise from 0 to the duration {plan.scaling.duration!r} s")
     for label, state, k in (("start", plan.start, 0), ("end", plan.end, -1)):
@@ -198,27 +193,3 @@ def _check_course(plan: Plan, course: Course) -> Checked:
             broken.append(f"{label}: its forces or its load are not those of the path at that instant")
     found = check_rows(plan.start.grasp, forces, loads, "instant {}")
     return found._replace(violations=broken + found.violations)
-
-
-def _check_scaling(plan: Plan) -> list[str]:
-    scaling: Scaling = plan.scaling
-    duration, control = scaling.duration, scaling.control
-    if len(control) < 2 or not all(map(isfinite, control)):
-        return ["time scaling needs two control values or more, all of them numbers"]
-    broken, degree = [], getattr(scaling, "degree", 1)
-    if not isinstance(degree, int) or not 1 <= degree < len(control):
-        broken.append(f"time scaling is of degree {shown(degree)}, not from 1 to {len(control) - 1}")
-    if control[0] != 1 or control[-1] != 0:
-        broken.append(f"time scaling runs from {control[0]:g} to {control[-1]:g}, not from 1 to 0")
-    if min(control) < 0 or max(control) > 1:
-        broken.append("time scaling may leave [0, 1], so the path may leave the segment between its ends")
-    if not duration > 0:
-        broken.append(f"duration is {duration:g} s, not greater than 0")
-    elif not isfinite(duration):
-        broken.append(f"duration is {duration:g} s, not a number")
-    else:
-        largest = max(map(abs, exact([*plan.start.forces.flat, *plan.end.forces.flat])))
-        # |T'| of a B-spline is below (number of control values)^2 / duration.
-        if rounded(max(largest, Fraction(1)) * len(control) ** 2 / Fraction(duration)) == inf:
-            broken.append(f"duration is {duration:g} s, in which no force changes at a finite rate")
-    return broken

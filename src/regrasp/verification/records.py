@@ -1,4 +1,4 @@
-"""Whether a plan keeps what its record says: least normal forces, and the rates along a path."""
+"""Whether a plan keeps what its record says: least normal forces, rates along a path, idle fingers."""
 
 from fractions import Fraction
 from math import inf, isfinite
@@ -15,7 +15,7 @@ from regrasp.verification.protocols import Plan
 
 def check_record(plan: Plan) -> list[str]:
     """What of the record is not so, or cannot be."""
-    broken = _check_form(plan)
+    broken = check_record_form(plan)
     if broken:
         return broken
     record, grasp = plan.record, plan.start.grasp
@@ -40,7 +40,7 @@ def deciding_forces(plan: Plan) -> Array:
     return np.stack([plan.start.forces, plan.end.forces]) if plan.course is None else plan.course.forces
 
 
-def _check_form(plan: Plan) -> list[str]:
+def check_record_form(plan: Plan) -> list[str]:
     """Numbers that no record has."""
     record, n = plan.record, len(plan.start.grasp)
     broken = []
@@ -112,3 +112,19 @@ def _check_rate(plan: Plan, i: int, name: str, limit: float) -> list[str]:
         if dot(change, change) > (step * (1 + RESOLUTION)) ** 2:
             return [f"{name} changes faster than {limit:.9g} after t = {course.times[k]:.9g} s"]
     return []
+
+
+def check_idle(plan: Plan) -> list[str]:
+    """What is wrong with the fingers that a transition names."""
+    broken = [f"contact {shown(name)} leaves and arrives" for name in plan.leaving if name in plan.arriving]
+    ends = (("start", plan.start, plan.arriving), ("end", plan.end, plan.leaving))
+    for label, state, idle in ends:
+        for name in idle:
+            if name not in state.grasp.names:
+                known = ", ".join(map(one_line, state.grasp.names))
+                broken.append(f"contact {shown(name)} is not one of {known}")
+                continue
+            force = state.forces[state.grasp.names.index(name)].tolist()
+            if any(force):
+                broken.append(f"{label}: {one_line(name)} must carry no force, it carries {force}")
+    return broken

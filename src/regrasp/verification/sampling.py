@@ -17,9 +17,10 @@ from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, load_size
 from regrasp.verification.float_filter import folded, judge_rows
-from regrasp.verification.protocols import NEEDED, Plan
-from regrasp.verification.records import deciding_forces
+from regrasp.verification.protocols import Plan, check_transition, is_transition
+from regrasp.verification.records import check_record_form, deciding_forces
 from regrasp.verification.retraced import retraced, turned_by
+from regrasp.verification.shapes import check_shapes
 from regrasp.verification.verdict import Verification
 
 _DOUBT = float(RESOLUTION)
@@ -46,11 +47,15 @@ def verify_setpoints(
     Raises:
         InvalidInput: For what is no plan, and for forces, times and angles that are no numbers.
     """
-    if not all(hasattr(plan, name) for name in (*NEEDED, "forces")):
+    if not is_transition(plan) or not callable(getattr(plan, "forces", None)):
         raise InvalidInput(f"verify_setpoints needs a plan that is one transition, got {shown(plan)}")
+    check_transition(plan)
     forces = numbers_in(forces, "forces of set-points must be numbers")
     times = None if times is None else numbers_in(times, "times of set-points must be numbers")
     angles = None if angles is None else numbers_in(angles, "angles of set-points must be numbers")
+    unfit = check_shapes(plan) or check_record_form(plan)
+    if unfit:
+        return _refused(unfit[0])
     start, duration = plan.start, plan.scaling.duration
     n, d = start.forces.shape
     if forces.ndim != 3 or forces.shape[1:] != (n, d):
@@ -98,7 +103,7 @@ def _compared(plan: Plan, forces: Array, times: Array, rows: slice) -> Iterator[
     forces, times, first = forces[rows], times[rows], rows.start
     grasp, d, record = plan.start.grasp, plan.start.grasp.dimension, plan.record
     names, deciding = list(map(one_line, grasp.names)), deciding_forces(plan)
-    planned = (plan.forces(times), retraced(plan, times))
+    planned = (_said(plan, times, forces.shape), retraced(plan, times))
     parts = ((slice(0, d), "N"), (slice(d, None), "N m"))
     for part, unit in parts if forces.shape[2] > d else parts[:1]:
         size = abs(deciding[..., part]).max(axis=(0, 2), initial=0.0)
@@ -121,6 +126,19 @@ def _compared(plan: Plan, forces: Array, times: Array, rows: slice) -> Iterator[
         change = np.hypot.reduce(np.diff(forces[:, i, :d], axis=0), axis=1)
         for row in np.flatnonzero(change > most).tolist():
             yield first + row + 1, f"{names[i]} changes faster than {limit:.9g}"
+
+
+def _said(plan: Plan, times: Array, shape: tuple[int, ...]) -> Array:
+    """(m, n, d) the forces that the plan answers."""
+    try:
+        found = numbers_in(plan.forces(times), "forces of a plan at times must be numbers")
+    except Exception as error:
+        raise InvalidInput(f"forces of a plan at times failed: {shown(error)}") from error
+    if found.shape != shape:
+        raise InvalidInput(
+            f"forces of a plan at {times.size} times must have shape {shape}, got {found.shape}"
+        )
+    return found
 
 
 def _growth(plan: Plan) -> float:

@@ -20,8 +20,6 @@ from fractions import Fraction
 from itertools import pairwise
 from math import inf, isqrt
 
-import numpy as np
-
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import one_line
@@ -39,6 +37,7 @@ from regrasp.verification.exact import (
 from regrasp.verification.float_filter import Checked
 from regrasp.verification.protocols import Plan, Turn
 from regrasp.verification.rotated_loads import TurningLoad, cosine_sine
+from regrasp.verification.shapes import check_turn_form
 
 # 314159 / 100000 is a little less than pi.
 _BELOW_PI = Fraction(314159, 100000)
@@ -47,7 +46,7 @@ _BELOW_PI = Fraction(314159, 100000)
 def check_turn(plan: Plan, turn: Turn) -> Checked:
     """Check the states at all angles, the load there, the steps between them and the force limits."""
     start, grasp = plan.start, plan.start.grasp
-    broken = _check_form(turn, start.forces.shape) or _check_axis(turn, grasp.dimension)
+    broken = check_turn_form(plan, turn)
     if broken:
         return Checked(broken, inf, 0.0, -inf)
     angles = exact(turn.angles.tolist())
@@ -86,32 +85,6 @@ def check_turn(plan: Plan, turn: Turn) -> Checked:
         for k, step in enumerate(steps):
             broken += _check_limits(plan, turn, k, step)
     return Checked(broken, max(residuals), min(angle_margins), min(slacks))
-
-
-def _check_form(turn: Turn, shape: tuple[int, ...]) -> list[str]:
-    """Whether there are forces for every angle, and middles for every step, all of them numbers."""
-    count, middles = turn.angles.size, turn.middles
-    if turn.angles.ndim != 1 or count < 2 or turn.forces.shape != (count, *shape):
-        return [f"a turn has two angles or more, and forces (K, {shape[0]}, {shape[1]})"]
-    if middles is not None and middles.shape != (count - 1, *shape):
-        return [f"{count - 1} steps of a turn need as many middles"]
-    numbers = (turn.angles, turn.forces, *(() if middles is None else (middles,)))
-    if not all(np.isfinite(values).all() for values in numbers):
-        return ["angles and forces of a turn must be finite numbers"]
-    return []
-
-
-def _check_axis(turn: Turn, dimension: int) -> list[str]:
-    """A turn in space has a unit axis, one in the plane none."""
-    if (turn.axis is None) != (dimension == 2):
-        return ["a turn in space needs its axis, and one in the plane has none"]
-    if turn.axis is not None:
-        if turn.axis.shape != (3,) or not np.isfinite(turn.axis).all():
-            return ["the axis of a turn must have three numbers"]
-        axis = exact(turn.axis.tolist())
-        if abs(dot(axis, axis) - 1) > RESOLUTION:
-            return ["the axis of a turn must have length 1"]
-    return []
 
 
 def _check_limits(plan: Plan, turn: Turn, k: int, step: Fraction) -> list[str]:
