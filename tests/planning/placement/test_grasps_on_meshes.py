@@ -57,6 +57,15 @@ def test_more_fingers_need_no_more() -> None:
     assert rg.verify(four).ok
 
 
+def test_what_was_passed_over_is_worth_what_it_says() -> None:
+    found = chosen("peak")
+    assert found.others
+    for other in found.others:
+        worst = max(rg.choose_state(other.grasp, w, "peak").value for w in LOADS_OF)
+        assert worst == pytest.approx(other.value, rel=1e-3)
+        assert worst >= found.bound
+
+
 def test_units_and_frames_change_names_only() -> None:
     found = rg.choose_grasp(TURNED, 3, HEAVY, friction=0.6, objective="peak", tolerance=0.02)
     c, s = np.cos(0.7), np.sin(0.7)

@@ -97,3 +97,15 @@ def test_fingers_further_apart_than_the_outline_is_wide_are_refused_at_once() ->
     square = rg.Outline([[0, 0], [3, 0], [3, 4], [0, 4]])
     with pytest.raises(rg.InvalidInput, match=r"no two points of the shape are further apart than 5$"):
         rg.choose_grasp(square, 2, rg.Wrench([0, -1]), friction=0.5, objective="peak", min_distance=5.001)
+
+
+def test_fingers_far_apart_are_found_where_those_at_the_middles_are_too_near() -> None:
+    crooked = [[0.92, 0.35], [0.9, 0.95], [-0.16, 1.05], [-1.26, 0.77], [-1.33, 0.13], [-0.99, -0.49]]
+    crooked += [[-0.23, -0.69], [0.26, -1.31], [0.81, -0.2]]
+    chosen = rg.choose_grasp(
+        rg.Outline(crooked), 3, rg.Wrench([0.2, -1], -0.02), friction=0.3, objective="effort",
+        min_distance=1.5, most_boxes=5000,
+    )  # fmt: skip
+    points = np.array([contact.position for contact in chosen.grasp])
+    assert np.hypot(*(points - np.roll(points, 1, axis=0)).T).min() >= 1.5 * (1 - 1e-12)
+    assert rg.verify(chosen).ok

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from math import inf
 from typing import TypeVar
 
@@ -72,9 +73,11 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     grasp, places, u, (states, worst) = found
     bound = min(search.bound, worst.value ** (1 / power))
     shown = tuple(map(_plain, states))
+    # what is no better than the best was judged by as many loads as it takes
+    exact = None if asked.constrained else around.norm_at
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, shown, worst.value, min(bound**power, worst.value),
-        _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda norm: norm**power),
+        _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda norm: norm**power, exact),
         proof_of(search, asked, min(bound, search.largest)), asked.max_force, asked.min_normal,
     )  # fmt: skip
 
@@ -113,7 +116,7 @@ def chosen_at_level(
     trivial = not search.closed or bound == 0.0
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, tuple(map(_plain, states)), value, bound,
-        _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda negative: abs(negative)),
+        _arc_lengths(search.sides, places, u), _others(search, asked, u, abs),
         proof_of(search, asked, 0.0 if trivial else limit), max_force=limit,
         deviations=read_only(np.array(level.deviations)) if isinstance(level, AnsweredLevel) else None,
         length=level.length if isinstance(level, BallLevel) else None,
@@ -197,23 +200,34 @@ def _arc_lengths(sides: Sides, places: np.ndarray, u: Array) -> Array:
 
 
 def _others(
-    search: Search, asked: Asked, u: Array, value: Callable[[float], float]
+    search: Search,
+    asked: Asked,
+    u: Array,
+    value: Callable[[float], float],
+    exact: Callable[[np.ndarray, Array], float] | None = None,
 ) -> tuple[OtherGrasp, ...]:
-    """The best placements tried that differ from the chosen one, from one another and from their images."""
+    """The best placements tried that differ from the chosen one, from one another and from their images.
+
+    exact: the norm of places, where that of a placement tried may be less.
+    """
     sides, length = search.sides, float(search.sides.lengths.sum())
-    kept = _alike(search, u)
+    kept, tried = _alike(search, u), search.placements()
     found: list[OtherGrasp] = []
-    for norm, places, at in search.placements():
-        if len(found) == _OTHERS:
-            break
+    queue = [(one[0], number, exact is None) for number, one in enumerate(tried)]
+    while queue and len(found) < _OTHERS:
+        norm, number, known = heappop(queue)
+        _, places, at = tried[number]
         order = np.argsort(at, kind="stable")
-        if _farthest(_along(sides, at[order]), kept, length) < _DIFFERENT * length:
+        if norm == inf or _farthest(_along(sides, at[order]), kept, length) < _DIFFERENT * length:
+            continue
+        if exact is not None and not known:
+            heappush(queue, (exact(places, at), number, True))
             continue
         grasp = grasp_at(sides, places[order], at[order], asked.friction)
         if grasp is not None:
             kept = np.vstack([kept, _alike(search, at)])
             found.append(OtherGrasp(grasp, _arc_lengths(sides, places[order], at[order]), float(value(norm))))
-    return tuple(found)
+    return tuple(sorted(found, key=lambda other: abs(other.value)) if exact else found)
 
 
 def _alike(search: Search, u: Array) -> Array:

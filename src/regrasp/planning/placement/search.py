@@ -1,6 +1,7 @@
 """Running the compiled branch and bound, and reading what it found."""
 
 from collections.abc import Callable
+from itertools import combinations
 from math import inf
 
 import numpy as np
@@ -17,6 +18,8 @@ MOST_BOXES = 200_000
 _FIRST_BOXES = 2048
 _AT_A_TIME = 256
 _TRIED = 4096
+_LATE = 4096  # boxes without any placement found, after which points are tried
+_POINTS = {2: 60, 3: 24, 4: 14}  # of so many fingers: about 2,000 placements
 _PRECISE = 1e-7
 _SAFE = 1e-9  # of a bound, given up to rounding
 
@@ -62,14 +65,32 @@ class Search:
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
         try:
-            going = True
+            going, late = True, False
             while going:
                 going = self.goes_on(inf, tolerance, most)
+                lost = self.best == inf and not self.closed and (self.count >= _LATE or not going)
+                if lost and not late:
+                    late = True
+                    self._try_points()
                 if progress is not None:
                     progress(self.bound, self.best)
         except KeyboardInterrupt:
             if self.best == inf:
                 raise
+
+    def _try_points(self) -> None:
+        """Take the best placement on some points spread evenly for found, where one holds."""
+        sides, k = self.sides, self.fingers
+        widths = np.diff(sides.ends, axis=1)[:, 0]
+        lengths = widths * sides.lengths[sides.edges]
+        until = np.cumsum(lengths)
+        along = (np.arange(_POINTS[k]) + 0.5) / _POINTS[k] * until[-1]
+        on = np.searchsorted(until, along)
+        u = sides.ends[on, 1] - (until[on] - along) / lengths[on] * widths[on]
+        for few in map(list, combinations(range(len(u)), k)):
+            norm = self.norm_at(on[few], u[few]) if self.are_apart(on[few], u[few]) else inf
+            if norm < self.best:
+                self._found[0], self._found[1::2], self._found[2::2] = norm / self.unit, on[few], u[few]
 
     def goes_on(self, fixed: float, tolerance: float, most: int, *, only: bool = False) -> bool:
         """Some more boxes. False where none is left, or no room for more of them.

@@ -80,6 +80,25 @@ def put(sides, places, least, arcs, ends):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
+def spread(sides, arcs, ends, places):  # type: ignore[no-untyped-def]
+    """Puts fingers on one side each at those ends of their arcs where the nearest two are farthest apart."""
+    k, most, best = len(arcs), -1.0, 0
+    for i in range(k):
+        if arcs[i, 0] < arcs[i, 1]:
+            return
+    for corner in range(1 << k):
+        nearest = np.inf
+        for i in range(k):
+            for j in range(i):
+                u, v = ends[i, (corner >> i) & 1], ends[j, (corner >> j) & 1]
+                nearest = min(nearest, distance(sides, arcs[i, 0], u, arcs[j, 0], v))
+        if nearest > most:
+            most, best = nearest, corner
+    for i in range(k):
+        places[i, 0], places[i, 1] = arcs[i, 0], ends[i, (best >> i) & 1]
+
+
+@njit(**VIEWS)
 def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
     """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
     chosen, most = -1, -1.0

@@ -24,6 +24,7 @@ from regrasp.closed_form.compiled.places.placement_boxes import (
     alike,
     cut,
     put,
+    spread,
     to_split,
     to_try,
     too_near,
@@ -35,6 +36,8 @@ from regrasp.compilation import kept
 
 OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3
 """A box not looked into; without a better placement; halved; without fingers as far apart as they must be."""
+COARSE = 32.0
+"""Of the narrowest arcs, those of boxes where no corner has fingers as far apart as they must be."""
 CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 """Why a search returns: no box is left; a placement within a fixed level; after so many boxes; no memory."""
 
@@ -198,7 +201,11 @@ def _loop(digest: str) -> Any:
             # a placement from where its forces press
             to_try(arcs[node], ends[node], seen[node], places)
             near = put(sides, places, least, at_arcs, at_ends)
-            if not near:
+            stuck = near
+            if near:
+                spread(sides, arcs[node], ends[node], places)
+                stuck = put(sides, places, least, at_arcs, at_ends)
+            if not stuck:
                 flat = norm == LARGEST and sides.shape[1] <= CONTROL
                 for i in range(k):
                     flat = flat and arcs[node, i, 0] == arcs[node, i, 1]
@@ -224,7 +231,9 @@ def _loop(digest: str) -> Any:
             if bounds[node] >= level:
                 kinds[node] = EXCLUDED
                 continue
-            i = to_split(sides, arcs[node], ends[node], seen[node], near, narrow)
+            i = to_split(
+                sides, arcs[node], ends[node], seen[node], near, COARSE * narrow if stuck else narrow
+            )
             if i < 0:  # too small to be split: it stays open
                 continue
             at, u = cut(sides, arcs[node], ends[node], seen[node], i)

@@ -29,6 +29,7 @@ _ATTEMPTS = 20  # placements whose forces are computed, the best first, until on
 _AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found is at the edge of what holds
 _DIFFERENT = 0.05  # of the root of the area
 _OTHERS = 4
+_PASSED_OVER = 128  # placements tried, the best first, among which others are looked for
 _NARROW = 1e-6  # of the size: triangles of smaller sides are not halved
 _SAMPLED = 200  # points, on which a first placement is sought
 _SAMPLED_BOXES = 20_000
@@ -122,8 +123,10 @@ def _others(
     """The best placements tried that differ from the chosen one and from one another."""
     kept = [spots]
     found: list[OtherGrasp] = []
-    for norm, other in search.placements():
-        if len(found) == _OTHERS:
+    # those that are not the best yet were judged by as many loads as it takes
+    tried = [(search.norm_at(other), other) for _, other in search.placements()[:_PASSED_OVER]]
+    for norm, other in sorted(tried, key=lambda one: one[0]):
+        if len(found) == _OTHERS or norm == inf:
             break
         if min(_farthest(other, one) for one in kept) < least:
             continue

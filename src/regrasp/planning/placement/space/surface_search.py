@@ -95,8 +95,15 @@ class SurfaceSearch:
 
     def accept(self, spots: Array) -> None:
         """Take a placement (k, 6) [m] for found, where it is better."""
-        scaled = np.array(spots / [self.size, self.size, self.size, 1, 1, 1])
+        scaled = self._scaled(spots)
         self._take(scaled, self._value(scaled))
+
+    def norm_at(self, spots: Array) -> float:
+        """The norm of forces of fingers at spots (k, 6) [m], for the worst load [N]."""
+        return self._held(self._value(self._scaled(spots)))
+
+    def _scaled(self, spots: Array) -> Array:
+        return np.array(spots / [self.size, self.size, self.size, 1, 1, 1])
 
     def _take(self, scaled: Array, value: float) -> None:
         if value < self._found[0]:
