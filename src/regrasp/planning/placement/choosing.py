@@ -101,8 +101,8 @@ def choose_grasp(
             for two fingers at one point are one.
         from_corners: least distance of a finger from a corner, along the boundary, or from a sharp edge of a
             mesh, along the face [m]; a thousandth of the length, or of the root of the area, if not given;
-            0 lets a finger be on a corner or edge with the normal of either side, as it may be where a polygon
-            turns too little for a corner.
+            0 lets a finger be on a corner or edge with the normal of either side, as on any vertex
+            of a polygon that turns too little for a corner.
         most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
             200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help, and
             1,000,000 on a mesh.
