@@ -53,6 +53,7 @@ def test_rooms_of_balls_and_hulls_are_exact() -> None:
     for part, good in (Fraction(1, 2), False), (Fraction(3, 2), True):
         room = part / 2**40 - Fraction(cos(0.1))
         assert back.allows(room, [Fraction(1), Fraction(0), Fraction(0)]) == good
+    assert back.allows(Fraction(0), [Fraction(0), Fraction(0), Fraction(1)])  # none has a torque
 
 
 def test_contacts_of_hardly_any_friction_and_without_force() -> None:

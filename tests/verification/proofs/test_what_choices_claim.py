@@ -226,6 +226,8 @@ def test_a_share_of_a_surface_counts_every_place_once() -> None:
     assert share(t) == pytest.approx(1, rel=1e-12)
     first = float(np.linalg.norm(cross[0]) / 2 / whole)
     assert share(t[:1]) == pytest.approx(first, rel=1e-12)
+    away = t - 100  # the size of numbers counts, whatever their sign
+    assert share_of(away, inward, vertices - 100, faces) == pytest.approx(1, rel=1e-12)
     assert share([t[0], t[0]], inward[[0, 0]]) == -1  # twice
     small = t[0].mean(axis=0) + 0.25 * (t[0] - t[0].mean(axis=0))
     assert share([small]) == pytest.approx(first / 16, rel=1e-9)
