@@ -10,7 +10,10 @@ import pytest
 import regrasp as rg
 from placements import BRACKET, DEVIATIONS
 from refusals import refusal
+from regrasp.planning.placement.levels.tied import Ties
+from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
+from regrasp.planning.placement.search import Search
 
 pytestmark = pytest.mark.oracle
 
@@ -29,7 +32,7 @@ def withstood(grasp: rg.Grasp) -> float:
 
 @pytest.mark.parametrize(
     ("shape", "fingers", "count"),
-    [(BRACKET, 3, 8), (rg.Outline.ellipse(2, 1), 2, 7)],
+    [(BRACKET, 3, 8), (rg.Outline.ellipse(2, 1), 2, 6)],
     ids=["three on the bracket", "ellipse"],
 )
 def test_no_sampled_placement_withstands_more(shape: rg.Outline, fingers: int, count: int) -> None:
@@ -119,3 +122,30 @@ def test_what_it_needs_it_says(more: dict[str, object], words: str) -> None:
         rg.choose_grasp(BRACKET, 2, WEIGHT, **ASKED | more)  # type: ignore[arg-type]
     said = str(refusal(lambda: rg.placement_map(BRACKET, WEIGHT, **ASKED)))
     assert "no map" in said
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "call"),
+    [
+        (Search, "halved", 1), (Search, "halved", 20), (Search, "leave", 3), (Search, "excludes", 40),
+        (Ties, "answer", 1), (WithstoodLevel, "state", 4),
+    ],
+)  # fmt: skip
+def test_an_interrupt_leaves_the_best_so_far_with_its_gap(
+    owner: type, name: str, call: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls, inside = 0, getattr(owner, name)
+
+    def interrupted(*given: object) -> object:
+        nonlocal calls
+        calls += 1
+        done = inside(*given)
+        if calls == call:
+            raise KeyboardInterrupt
+        return done
+
+    monkeypatch.setattr(owner, name, interrupted)
+    chosen = rg.choose_grasp(BRACKET, 2, WEIGHT, tolerance=0.02, **ASKED)
+    assert calls >= call
+    assert 0.02 < chosen.gap < 0.5
+    assert rg.verify(chosen).ok

@@ -171,9 +171,9 @@ class Search:
 
     def leave(self, node: int, duals: Array | None) -> None:
         """Take a box for excluded, by duals of all loads; or, for none, as nearer than fingers may be."""
-        self._boxes[5][node] = 3 if duals is None else 1
-        if duals is not None:
+        if duals is not None:  # first, lest an interrupt leaves a box excluded by nothing
             self.tied[node] = duals
+        self._boxes[5][node] = 3 if duals is None else 1
 
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""

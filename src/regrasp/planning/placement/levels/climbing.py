@@ -44,7 +44,10 @@ def run_level(
     if best is None:
         search.closed = search.closed and search.excludes(search.left, fixed)
         return best, aim
-    beyond = _settled(search, level, aim, fixed)
+    try:
+        beyond = _settled(search, level, aim, fixed)
+    except KeyboardInterrupt:
+        search.closed, beyond = False, top
     if progress is not None:
         progress(level.value(beyond), level.value(best))
     return best, beyond

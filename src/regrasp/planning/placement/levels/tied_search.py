@@ -16,6 +16,7 @@ from regrasp.planning.placement.search import Progress, Search
 STRICT = 1e-9
 """Of the limit, by which excluded boxes must be above it."""
 _BOXES = 50  # that a program counts for; half of the programs are for first looks at most
+_HOPELESS = 5  # times fewer where boxes are so many that no bound comes of it, only places
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _EVEN = 0.02  # of an arc, that counts where its fingers press in one place under all loads
 _GIVEN = 1e-6  # of a factor, that solvers may be off by
@@ -71,13 +72,16 @@ class TiedSearch:
     def _split_all(self, most: int, progress: Progress | None, beyond: float) -> None:
         search, heap = self.search, list[tuple[float, int]]()
         self.open = dict.fromkeys(search.left.tolist(), (beyond, None))
+        programs = most // _BOXES
+        if len(self.open) > programs:
+            programs //= _HOPELESS
         for node in list(self.open):
             arcs, _ = search.box(node)
-            if 2 * self.solved * _BOXES > most:
+            if 2 * self.solved > programs:
                 break
             if (arcs[:, 0] == arcs[:, 1]).all():
                 self._bound(node, heap)
-        while heap and -heap[0][0] > self.aim and self.solved * _BOXES < most:
+        while heap and -heap[0][0] > self.aim and self.solved < programs:
             node = heappop(heap)[1]
             bound, found = self.open[node]
             parts, grid = self._parts(node)

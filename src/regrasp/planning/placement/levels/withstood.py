@@ -5,6 +5,7 @@ boxes of groups of edges are excluded by the loads one by one; those that are le
 (``Ties``), the one that may withstand most first.
 """
 
+from itertools import product
 from math import inf
 
 import numpy as np
@@ -17,13 +18,17 @@ from regrasp.mechanics.robust.stiffness import response
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.placement.levels.level import AnsweredLevel, Shown
-from regrasp.planning.placement.levels.tied_search import STRICT, TiedSearch
+from regrasp.planning.placement.levels.tied_search import STRICT, Placed, TiedSearch
 from regrasp.planning.placement.results import grasp_at
 from regrasp.planning.placement.search import Progress, Search
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
-_SEEDS = 8  # placements that answer most, judged to begin with
+_SEEDS, _OTHERS, _CLIMBED = 8, 24, 3  # placements that answer most, others judged, those that slide
+_BATCHES = 8  # of boxes whose placements are the others
+_DIFFERENT = 0.02  # of the size, between others
+_FIRST, _LAST = 0.2, 2e-3  # steps of sliding, as parts of an edge
+_GAIN = 1e-9  # of a factor, the least that counts
 _ROUNDING = 1e-9
 
 
@@ -57,25 +62,80 @@ class WithstoodLevel(AnsweredLevel):
 
         search: that ended at ``beyond``, more than what is answered anywhere.
         """
-        judged = [(-self._factor(search, p, u), p, u) for _, p, u in search.placements()[:_SEEDS]]
-        judged = sorted((p for p in judged if p[0] <= 0), key=lambda placed: placed[0])
-        search.take(judged)
+        known: list[Placed] = []
+        try:
+            return self._searched(search, known, tolerance, most, progress, beyond)
+        except KeyboardInterrupt:
+            if known:
+                search.take(sorted(known, key=lambda placed: placed[0]))
+            return search, beyond
+
+    def _searched(
+        self,
+        search: Search,
+        known: list[Placed],
+        tolerance: float,
+        most: int,
+        progress: Progress | None,
+        beyond: float,
+    ) -> tuple[Search, float]:
+        """As ``climb``; placements are noted in ``known``."""
+        for _, places, u in search.placements()[:_SEEDS]:
+            if (reached := self._factor(search, places, u)) >= 0:
+                known.append((-reached, places, u))
+        search.take(sorted(known, key=lambda placed: placed[0]))
         found = search.anew()
         found.narrow = inf  # until one side is left of each finger
-        self.put(found, self.beyond(-judged[0][0] if judged else 0.0, tolerance))
-        limit = self.max_force * (1 + STRICT)
-        try:
-            while found.goes_on(limit, 0.0, most, only=True):
-                pass
-        except KeyboardInterrupt:
-            return search, beyond
+        limit, going = self.max_force * (1 + STRICT), True
+        self.put(found, max((-placed[0] for placed in known), default=0.0))
+        for _ in range(_BATCHES):
+            going = going and found.goes_on(limit, 0.0, most, only=True)
+        for places, u in self._others(found, known):
+            known.append((-self._factor(search, places, u), places, u))
+        known[:] = sorted((p for p in known if p[0] <= 0), key=lambda placed: placed[0])
+        known += [self._climbed(search, placed, tolerance) for placed in known[:_CLIMBED]]
+        self.put(found, self.beyond(max((-placed[0] for placed in known), default=0.0), tolerance))
+        while going:
+            going = found.goes_on(limit, 0.0, most, only=True)
 
         def factor(places: np.ndarray, u: Array) -> float:
             return self._factor(search, places, u)
 
-        reached = TiedSearch(self, found, factor, judged, tolerance).run(most, progress, beyond)
+        level = TiedSearch(self, found, factor, known, tolerance).run(most, progress, beyond)
         search.take(found.placements())
-        return (found, reached) if found.closed else (search, beyond)
+        return (found, level) if found.closed else (search, beyond)
+
+    def _others(self, search: Search, known: list[Placed]) -> list[tuple[np.ndarray, Array]]:
+        """Placements that a search tried and that answer its level, some that differ."""
+        found: list[tuple[np.ndarray, Array]] = []
+        shown = [search.sides.points(p, u)[np.argsort(u)] for _, p, u in known]
+        for norm, places, u in search.tried_since(0):
+            points = search.sides.points(places, u)[np.argsort(u)]
+            if norm > self.max_force or len(found) == _OTHERS:
+                break
+            if all(np.abs(points - p).max() >= _DIFFERENT * search.sides.size for p in shown):
+                found.append((places, u))
+                shown.append(points)
+        return found
+
+    def _climbed(self, search: Search, placed: Placed, tolerance: float) -> Placed:
+        """The best placement that fingers find by sliding, one at a time, by steps that are halved."""
+        best, places, u = -placed[0], placed[1], placed[2]
+        step = _FIRST
+        while step > _LAST:
+            helped = False
+            for i, way in product(range(len(u)), (-step, step)):
+                on, there = places.copy(), u.copy()
+                on[i], there[i] = search.sides.moved(int(places[i]), float(u[i]), way)
+                wanted = best * (1 + 0.1 * tolerance) + _GAIN
+                self.put(search, wanted)
+                if not search.are_apart(on, there) or search.norm_at(on, there) > self.max_force:
+                    continue  # it does not even answer more
+                factor = self._factor(search, on, there)
+                if factor > wanted:
+                    best, places, u, helped = factor, on, there, True
+            step *= 1.0 if helped else 0.5
+        return -best, places, u
 
     def _factor(self, search: Search, places: np.ndarray, u: Array) -> float:
         """What a placement withstands; below zero for one that does not hold."""

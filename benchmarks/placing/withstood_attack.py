@@ -1,0 +1,98 @@
+"""Random placements against the bound of what is withstood, judged by linear programs of its own.
+
+python benchmarks/placing/withstood_attack.py NAME FINGERS COUNT [FRICTION]: one outline, one line of figures.
+Forces f at the fingers balance the load, and f - s (v + omega x p), one motion of the body for all, the load
+and s times a deviation; all within cones, and within a polygon around the circle of the limit, or in it.
+Nothing of it is part of the search.
+"""
+
+import sys
+from time import perf_counter
+
+import numpy as np
+from scipy.optimize import linprog
+
+import regrasp as rg
+from fifty_outlines import outlines
+
+LIMIT, WEIGHT = 3.0, np.array([0.0, -1.0, 0.0])
+ROUGH, FINE = 24, 480  # sides of polygons around a circle
+
+
+def withstood(
+    p: np.ndarray, n: np.ndarray, mu: float, deviations: np.ndarray, sides: int, inner: bool
+) -> float:
+    """What a placement withstands at most (at least, ``inner``); -1 for one that does not hold."""
+    k = len(p)
+    to_wrench = np.zeros((3, 2 * k))
+    to_wrench[0, 0::2] = to_wrench[1, 1::2] = 1.0
+    to_wrench[2, 0::2], to_wrench[2, 1::2] = -p[:, 1], p[:, 0]
+    motions = np.linalg.lstsq(to_wrench @ to_wrench.T, -deviations.T, rcond=None)[0]
+    if np.abs(to_wrench @ to_wrench.T @ motions + deviations.T).max() > 1e-9:
+        return -1.0
+    changes = (to_wrench.T @ motions).T
+    angle = 2 * np.pi * np.arange(sides) / sides
+    rim = np.column_stack([np.cos(angle), np.sin(angle)])
+    t = np.column_stack([-n[:, 1], n[:, 0]])
+    rows, limits = [], []
+    for i in range(k):
+        few = np.vstack([t[i] - mu * n[i], -t[i] - mu * n[i], rim])
+        wide = np.zeros((len(few), 2 * k))
+        wide[:, 2 * i : 2 * i + 2] = few
+        rows.append(wide)
+        limits.append(
+            np.append([0.0, 0.0], np.full(sides, LIMIT * (np.cos(np.pi / sides) if inner else 1.0)))
+        )
+    one, limit = np.vstack(rows), np.concatenate(limits)
+    every = np.vstack([np.column_stack([one, one @ r]) for r in (np.zeros(2 * k), *changes)])
+    found = linprog(
+        np.append(np.zeros(2 * k), -1.0), A_ub=every, b_ub=np.tile(limit, len(changes) + 1),
+        A_eq=np.column_stack([to_wrench, np.zeros(3)]), b_eq=-WEIGHT,
+        bounds=[(None, None)] * (2 * k) + [(0, None)], method="highs",
+    )  # fmt: skip
+    return float(-found.fun) if found.status == 0 else -1.0
+
+
+def asked(shape: rg.Outline) -> tuple[rg.LoadSet, np.ndarray]:
+    """The deviations of the benchmark of what is withstood."""
+    reach = float(np.abs(shape.polygon()).max())
+    rows = np.array([[0.3, 0, 0], [-0.3, 0, 0], [0, 0, 0.1 * reach], [0, 0, -0.1 * reach]])
+    return rg.LoadSet.hull([rg.Wrench.from_vector(row) for row in rows]), rows
+
+
+def main(name: str, fingers: int, count: int, mu: float) -> None:
+    """Print the value, the bound, what the programs say of the chosen places, and the best of random ones."""
+    shape = dict(outlines())[name]
+    disturbance, deviations = asked(shape)
+    start = perf_counter()
+    chosen = rg.choose_grasp(
+        shape, fingers, rg.Wrench([0, -1]), objective="wrench", friction=mu, max_force=LIMIT,
+        disturbance=disturbance, tolerance=0.02,
+    )  # fmt: skip
+    took = perf_counter() - start
+    p, n = chosen.grasp.positions, chosen.grasp.normals
+    low, high = (withstood(p, n, mu, deviations, FINE, inner) for inner in (True, False))
+    rng = np.random.default_rng(fingers)
+    around = np.array([shape.nearest(c.position + shape.centre_of_mass) for c in chosen.grasp])
+    best, better, held = -1.0, 0, 0
+    for i in range(count):
+        s = rng.uniform(0, shape.length, fingers)
+        if i % 2:
+            s = around + shape.length * 10 ** rng.uniform(-5, -1) * rng.normal(size=fingers)
+        few = [shape.contact_at(float(at), friction=mu) for at in s % shape.length]
+        p, n = np.array([c.position for c in few]), np.array([c.normal for c in few])
+        value = withstood(p, n, mu, deviations, ROUGH, False)
+        held += value >= 0
+        if value > chosen.value:
+            value = withstood(p, n, mu, deviations, FINE, True)
+        best = max(best, value)
+        better += value > chosen.bound
+    print(
+        f"| {name} | {fingers} | {mu} | {chosen.value:.5f} | {low:.5f} to {high:.5f} | {chosen.bound:.5f} | "
+        f"{chosen.gap:.3f} | {took:.1f} s | {count} | {held} | {best:.5f} | {better} |",
+        flush=True,
+    )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), float(sys.argv[4]) if len(sys.argv) > 4 else 0.4)
