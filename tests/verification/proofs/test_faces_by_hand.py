@@ -260,3 +260,49 @@ def test_polygons_in_another_plane_than_their_place() -> None:
     for off, good in (0.9e-9, True), (1.1e-9, False):
         regions = made(place=[0, 0, -1 + off * REACH], friction=9.0)
         assert ("is not around its place" not in said(regions)) == good
+
+
+def test_every_load_counts() -> None:
+    good = made()
+    double = {"loads": np.repeat(LOAD, 2, axis=0), "forces": np.repeat(good.forces, 2, axis=0)}
+    for name in ("moments", "tilts", "focus"):
+        double[name] = np.repeat(getattr(good, name), 2, axis=0)
+    assert said(made(**double)) == ""
+    for load in 0, 1:
+        regions = made(**double | {"forces": np.array(double["forces"])})
+        regions.forces[load] *= 1 + 1e-9
+        assert said(regions).startswith("corners are out of equilibrium by 1")
+
+
+def test_places_alone_have_one_state_a_load() -> None:
+    whole = made()
+    forces = np.zeros((1, 1, 1, 4, 3))
+    forces[0, 0, 0] = whole.forces[0].mean(axis=(0, 1))  # of corners about the place, in both directions
+    points = tuple(c.position[None] for c in whole.grasp)
+    assert said(made(patches=points, forces=forces)) == ""
+    assert "are missing" in said(made(patches=points, forces=forces[:, :, :0]))
+    for axis, sign in product(range(3), (-1, 1)):
+        for part, good in (0.9, True), (1.1, False):
+            moved = list(points)
+            moved[2] = points[2] + sign * part * 1e-9 * REACH * np.eye(3)[axis]
+            assert ("C has no polygon" not in said(made(patches=tuple(moved), forces=forces))) == good
+
+
+def test_margins_of_forces_that_lean_and_of_triangles() -> None:
+    lean = np.array([0.6, -0.3, 0])
+    triangle = SQUARE[[0, 1, 2]] + [-0.02, 0.02, 0]
+    regions = made(
+        triangle, push=lambda c, s: 0.5 * (UP + lean), friction=3.0, tilts=np.full((1, 4, 3), lean)
+    )
+    verdict = verify_face_regions(regions)
+    assert verdict.violations == ()
+    assert verdict.in_doubles
+    across = np.hypot(regions.forces[..., 0], regions.forces[..., 1])
+    slope = (across / regions.forces[..., 2]).max()
+    assert slope > 0.6
+    assert verdict.least_cone_slack == pytest.approx(9 - slope**2, rel=1e-12)
+    broken = made()
+    broken.forces[0, 1, 1, 2, 0] = nan
+    verdict = verify_face_regions(broken)
+    assert verdict.violations == ("forces at corners are missing, or what they prove",)
+    assert verdict.in_doubles
