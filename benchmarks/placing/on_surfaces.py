@@ -4,7 +4,7 @@
 
 Rivals and attacks judge placements by the search's own compiled norm; an attack that seems to beat the bound
 is judged again by a cone program (cvxpy), and counts if that says so, too. The integer program (HiGHS) sees
-inner pyramids of eight facets. With --write the rows are kept in benchmarks/results.
+inner pyramids of eight facets. With --write the rows are kept in benchmarks/results, beside those of others.
 """
 
 import argparse
@@ -259,7 +259,8 @@ def main() -> None:
             flush=True,
         )
         if given.write:
-            RESULTS.write_text(json.dumps(rows, indent=1) + "\n")
+            kept = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+            RESULTS.write_text(json.dumps(kept | rows, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -37,7 +37,13 @@ def test_regions_are_drawn_where_they_are() -> None:
     assert len(drawn) == 2
     for line, arc in zip(drawn, regions.arcs, strict=True):
         assert line == pytest.approx(SQUARE_OUTLINE.points(arc))
-    assert " m at once" in ax.get_legend().get_texts()[0].get_text()
+    alone = [line.get_xydata() for line in ax.lines if line.get_gid() == "alone"]
+    for line, place, off in zip(alone, regions.places, regions.alone, strict=True):
+        assert line == pytest.approx(SQUARE_OUTLINE.points(place + off * [-1, 1]))
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert [word.split()[0] for word in words[:2]] == list(regions.grasp.names)
+    assert " m at once" in words[2]
+    assert words[3] == "one finger alone"
 
 
 def test_maps_show_values_where_fingers_hold_and_a_ring_at_the_best() -> None:

@@ -30,6 +30,14 @@ def chosen(objective: str, fingers: int = 3) -> rg.ChosenGrasp:
     return rg.choose_grasp(BOX, fingers, LOADS, friction=0.5, objective=objective, tolerance=0.1)
 
 
+def test_grasps_passed_over_on_a_knifes_edge_are_no_better_than_the_bound() -> None:
+    found = rg.choose_grasp(BOX, 3, LOADS, friction=0.5, tolerance=0.01, from_corners=1e-4, most_boxes=400)
+    assert rg.verify(found).ok, rg.verify(found)
+    for other in found.others:
+        needed = [rg.choose_state(other.grasp, state.load, "sum_normal").value for state in found.states]
+        assert other.value == pytest.approx(max(needed))
+
+
 @pytest.mark.parametrize("objective", ["sum_normal", "peak_normal", "peak", "effort"])
 def test_no_triple_of_points_is_better_than_the_bound(objective: str) -> None:
     found = chosen(objective)

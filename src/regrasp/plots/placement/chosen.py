@@ -77,8 +77,9 @@ def chosen_grasp_png(chosen: ChosenGrasp) -> bytes:
 def plot_contact_regions(
     regions: ContactRegions | FaceRegions, ax: Axes | None = None, *, units: Units = SI
 ) -> Axes:
-    """The outline with the arc of each finger, thick, in which it may be while the others are in theirs.
+    """The outline with the arc of each finger in which it may be while the others are in theirs.
 
+    Widths are in the legend; broad and pale is where one finger alone may be, the others at their places.
     On a mesh, the polygons on its faces.
 
     Args:
@@ -94,20 +95,30 @@ def plot_contact_regions(
     ax = plot_outline(regions.shape, ax, units=units)
     size = float(np.ptp(regions.shape.polygon(), axis=0).max())
     colours = contact_colours(regions.grasp)
-    for contact, (lo, hi), width in zip(regions.grasp, regions.arcs, regions.widths, strict=True):
-        colour = colours[contact.name or ""]
-        ends = regions.shape.points(np.linspace(lo, hi, 2 if regions.spans is None else 60))
+    handles = []
+    for contact, (lo, hi), width, place, (back, ahead) in zip(
+        regions.grasp, regions.arcs, regions.widths, regions.places, regions.alone, strict=True
+    ):
+        colour, name = colours[contact.name or ""], contact.name or ""
         _cone(ax, contact, 0.6 * _CONE * size, colour)
-        ax.plot(*ends.T, color=colour, linewidth=4, solid_capstyle="butt", alpha=0.75, zorder=3, gid="region")
-        note(
-            ax,
-            f"{short(float(f'{width:.3g}'))} {units.length}",
-            ends.mean(axis=0),
-            contact.normal,
-            gap=14.0,
-            color=colour,
-        )
-    _say_radius(ax, regions.half_width, units)
+        for start, end, points, alpha, gid in (
+            (place - back, place + ahead, 7, 0.3, "alone"),
+            (lo, hi, 4, 0.85, "region"),
+        ):
+            arc = regions.shape.points(np.linspace(start, end, 2 if regions.spans is None else 60))
+            look = Line2D(
+                *arc.T, color=colour, linewidth=points, solid_capstyle="butt", alpha=alpha, zorder=3
+            )
+            look.set_gid(gid)
+            ax.add_line(look)
+        words = f"{name} {short(float(f'{width:.3g}'))} {units.length}"
+        handles.append(Line2D([], [], color=colour, linewidth=4, label=words))
+    half = f"{short(float(f'{regions.half_width:.3g}'))} {units.length}"
+    handles += [
+        Line2D([], [], color=GREY, linewidth=4, label=f"all off by {half} at once"),
+        Line2D([], [], color=GREY, linewidth=7, alpha=0.3, label="one finger alone"),
+    ]
+    legend(ax, handles, ncols=2)
     return ax
 
 
@@ -126,4 +137,4 @@ def _cone(ax: Axes, contact: Contact, length: float, colour: str) -> None:
         Polygon(corners, facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=0.8, zorder=3, gid="cone")
     )
     ax.plot(*contact.position, "o", color=colour, markersize=4, zorder=5, gid="contact")
-    note(ax, contact.name or "", contact.position, -n, gap=5.0, color=colour)
+    note(ax, contact.name or "", contact.position + length * n, n, gap=2.0, color=colour)

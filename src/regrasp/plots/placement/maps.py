@@ -61,6 +61,8 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
     """
     instance(placements, "placements", PlacementMap)
     shape, best = placements.shape, as_drawn(placements.objective, placements.best)
+    width, height = np.ptp(shape.polygon(), axis=0)
+    ax = axes_or_new(ax, height=float(np.clip(0.9 + 2.2 * height / width, 1.9, 4.4)), bar=True)
     ax = plot_outline(shape, ax, units=units)
     lows, highs = _ends(placements.places, shape.length)
     strokes = [shape.points(np.linspace(lo, hi, 9)) for lo, hi in zip(lows, highs, strict=True)]

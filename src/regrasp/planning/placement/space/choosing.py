@@ -22,6 +22,7 @@ from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.patches import patches_of
 from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.states.criteria import ChosenState
 
 FROM_EDGES = 1e-3
 """Default distance of fingers from sharp edges, as a fraction of the root of the surface's area."""
@@ -80,7 +81,7 @@ def choose_on_mesh(
     for norm, spots in search.placements()[:_ATTEMPTS]:
         try:
             grasp = _grasp(spots, friction)
-            states = [choose_state(grasp, Wrench.from_vector(w), objective) for w in loads]
+            states = _states(grasp, loads, objective)
         except RegraspError:
             continue
         worst = max(state.value for state in states)
@@ -90,7 +91,7 @@ def choose_on_mesh(
         return ChosenGrasp(
             shape, objective, grasp, tuple(GraspState(s.grasp, s.load, s.forces) for s in states), worst,
             min(bound**power, worst), read_only(spots[:, :3] + shape.centre_of_mass),
-            _others(search, spots, friction, shape, power, _DIFFERENT * root), _proof(search, bound),
+            _others(search, spots, objective, shape, _DIFFERENT * root), _proof(search, bound),
         )  # fmt: skip
     raise _none_holds(search)
 
@@ -117,26 +118,34 @@ def _grasp(spots: Array, friction: float) -> Grasp:
     return Grasp(Contact(s[:3], s[3:] + 0.0, friction, name=f"F{i + 1}") for i, s in enumerate(spots))
 
 
+def _states(grasp: Grasp, loads: Array, objective: str) -> list[ChosenState]:
+    return [choose_state(grasp, Wrench.from_vector(w), objective) for w in loads]
+
+
 def _others(
-    search: SurfaceSearch, spots: Array, friction: float, shape: Mesh, power: int, least: float
+    search: SurfaceSearch, spots: Array, objective: str, shape: Mesh, least: float
 ) -> tuple[OtherGrasp, ...]:
-    """The best placements tried that differ from the chosen one and from one another."""
+    """The best placements tried that differ from the chosen one and from one another.
+
+    Their values are those of forces: on a knife's edge the search may take a placement for better than it is.
+    """
     kept = [spots]
     found: list[OtherGrasp] = []
     # those that are not the best yet were judged by as many loads as it takes
     tried = [(search.norm_at(other), other) for _, other in search.placements()[:_PASSED_OVER]]
     for norm, other in sorted(tried, key=lambda one: one[0]):
-        if len(found) == _OTHERS or norm == inf:
+        if len(kept) > _ATTEMPTS or len(found) == _OTHERS or norm == inf:
             break
         if min(_farthest(other, one) for one in kept) < least:
             continue
+        kept.append(other)
         try:
-            grasp = _grasp(other, friction)
+            grasp = _grasp(other, search.friction)
+            value = max(state.value for state in _states(grasp, search.loads, objective))
         except RegraspError:
             continue
-        kept.append(other)
-        found.append(OtherGrasp(grasp, read_only(other[:, :3] + shape.centre_of_mass), norm**power))
-    return tuple(found)
+        found.append(OtherGrasp(grasp, read_only(other[:, :3] + shape.centre_of_mass), value))
+    return tuple(sorted(found, key=lambda other: other.value))
 
 
 def _farthest(spots: Array, other: Array) -> float:
