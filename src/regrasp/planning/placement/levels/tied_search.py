@@ -16,7 +16,6 @@ from regrasp.planning.placement.search import Progress, Search
 STRICT = 1e-9
 """Of the limit, by which excluded boxes must be above it."""
 _BOXES = 50  # that a program counts for; half of the programs are for first looks at most
-_HOPELESS = 5  # times fewer where boxes are so many that no bound comes of it, only places
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _EVEN = 0.02  # of an arc, that counts where its fingers press in one place under all loads
 _GIVEN = 1e-6  # of a factor, that solvers may be off by
@@ -73,8 +72,6 @@ class TiedSearch:
         search, heap = self.search, list[tuple[float, int]]()
         self.open = dict.fromkeys(search.left.tolist(), (beyond, None))
         programs = most // _BOXES
-        if len(self.open) > programs:
-            programs //= _HOPELESS
         for node in list(self.open):
             arcs, _ = search.box(node)
             if 2 * self.solved > programs:
