@@ -47,7 +47,7 @@ def rows() -> dict[str, Row]:
         "contact_regions": Row(
             rg.contact_regions,
             {"shape": SQUARE_OUTLINE, "grasp": placed().grasp, "load": WEIGHT_IN_PLANE},
-            {"shape": "value"},
+            {"shape": "value", "widest": "word"},
         ),
         "ChosenGrasp.from_dict": Row(rg.ChosenGrasp.from_dict, {"data": placed().to_dict()}),
     }

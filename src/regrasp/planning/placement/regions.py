@@ -142,7 +142,7 @@ def contact_regions(
     if len(set(grasp.frictions.tolist())) > 1:
         raise InvalidInput("contacts of a grasp with regions must all have the same friction")
     given = None if max_force is None else number(max_force, "max_force", above=0)
-    if widest not in _POWERS:
+    if not isinstance(widest, str) or widest not in _POWERS:
         raise InvalidInput(f"widest must be one of {', '.join(_POWERS)}; got {shown(widest)}")
     straight = isinstance(shape, Outline) and isinstance(shape.boundary, PolygonBoundary)
     if widest != "together" and not straight:

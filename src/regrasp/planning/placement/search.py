@@ -209,12 +209,13 @@ class Search:
         boxes = _memory(1 + k + 1, k)
         boxes[0][0] = places[:, None]
         boxes[1][0] = u[:, None]
+        found = np.full(1 + 2 * k, inf)
         search(
             self._table, self._wanted, self._law(friction, friction, law or self.law), inf, 0.0, 0.0, 0.0,
-            boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), np.full(1 + 2 * k, inf),
-            np.zeros((1, 1 + 2 * k)), 0, spare(k, len(self._wanted)),
+            boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), found, np.zeros((1, 1 + 2 * k)), 1,
+            spare(k, len(self._wanted)),
         )  # fmt: skip
-        return float(boxes[2][0]) * self.unit
+        return float(found[0]) * self.unit
 
     def _law(self, mu: float, usable: float, law: Law) -> tuple[float, ...]:
         """As the compiled search takes it."""

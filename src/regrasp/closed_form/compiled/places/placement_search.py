@@ -36,6 +36,7 @@ from regrasp.compilation import kept
 
 OPEN, EXCLUDED, SPLIT, NEAR = 0, 1, 2, 3
 """A box not looked into; without a better placement; halved; without fingers as far apart as they must be."""
+_APART = 1e-6  # of a value, by which what forces reach and a bound agree
 COARSE = 32.0
 """Of the narrowest arcs, those of boxes where no corner has fingers as far apart as they must be."""
 CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
@@ -69,8 +70,10 @@ def pop(heap, count, bounds):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, seen):  # type: ignore[no-untyped-def]
+def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, seen, placed):  # type: ignore[no-untyped-def]
     """The bound of a box and the load behind it, from load ``first`` on; until one reaches ``level``.
+
+    placed: the box is a placement, whose value is asked for: what forces reach, where the bound is less.
 
     seen: (k, 8) of each finger: least and largest centre of pressure; the sides and u of the extreme forces;
     side and u of the largest force under the worst load, or under another where it has none there.
@@ -84,7 +87,9 @@ def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, 
         seen[i, 6] = -1.0
     for number in range(len(loads)):
         load = number if number > first else (number - 1 if number > 0 else first)
-        value = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work[:11])
+        value, reached = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work[:11])
+        if placed and value < level and value < reached * (1.0 - max(precision, _APART)):
+            value = reached
         for c in range(3):
             every[load, c] = best[c]
         worse = value > worst
@@ -139,7 +144,7 @@ def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-unt
     bounding = (mu, size, norm, limit, margin)
     found, load = _judge(
         sides, arcs[node], ends[node], loads, bounding, precision, level, critical[node], twist[0], work,
-        seen[node],
+        seen[node], False,
     )  # fmt: skip
     if found >= bounds[node]:
         bounds[node], critical[node], other[node] = found, load, -1
@@ -211,7 +216,7 @@ def _loop(digest: str) -> Any:
                     flat = flat and arcs[node, i, 0] == arcs[node, i, 1]
                 value, _ = _judge(
                     sides, at_arcs, at_ends, loads, trying, precision, np.inf if flat else most,
-                    critical[node], twist[0], work, nowhere,
+                    critical[node], twist[0], work, nowhere, True,
                 )  # fmt: skip
                 row = state[2] % len(tried)
                 state[2] += 1

@@ -38,6 +38,7 @@ _CLOSE = 1e-11
 _MOST = 80
 _ROUNDING = 1e-13  # of the terms of a sum
 _PIVOT = 1e-13
+_MISSED = 1e-7  # of a load, by which forces may be off it
 
 
 @njit(**VIEWS)
@@ -191,7 +192,10 @@ def bound_by(sides, arcs, ends, law, b, y, work):  # type: ignore[no-untyped-def
 
 @njit(**VIEWS)
 def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ignore[no-untyped-def]
-    """A lower bound of the gauge of b on a box, and in ``best`` its twist; ends early at ``enough``.
+    """A lower bound of the gauge of b on a box, its twist in ``best``, and what its forces reach.
+
+    Ends early at ``enough``. Where rounding ends it, on a knife's edge, the two are apart, the second
+    infinite where forces miss the load: the first is no value of a placement then.
 
     sides: (m, 9) of straight sides: a point, its direction per u, unit normal, least and largest u, and the u
     of the point; (m, 17) of sides of cubics with their control points, too. arcs: (k, 2) first and last side
@@ -209,7 +213,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
         for i in range(len(arcs)):
             forces[c, i, 0] = 0.0
     if most == 0.0:
-        return 0.0
+        return 0.0, 0.0
     for c in range(3):
         for e in range(3):
             g[c, e] = 0.0
@@ -241,4 +245,13 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
             g[leaving, c] = new[c]
             for i in range(len(arcs)):
                 forces[leaving, i, c] = forces[3, i, c]
-    return lower
+    upper = 0.0
+    for j in range(3):
+        upper += max(x[j], 0.0)
+    for c in range(3):
+        missed = b[c]
+        for j in range(3):
+            missed -= max(x[j], 0.0) * g[j, c]
+        if not abs(missed) <= _MISSED * (abs(b[0]) + abs(b[1]) + abs(b[2])):
+            upper = np.inf
+    return lower, per * upper
