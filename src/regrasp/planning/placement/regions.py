@@ -115,7 +115,7 @@ def contact_regions(
     finger is where it stands. So corners prove regions, and the half width is exact to rounding. From there
     the ends of the arcs are moved out one after the other as far as they go. On a curve chords beside parts
     of the arcs, and the cones that all points of a part share, take the place of sides (``curved_regions``):
-    what is returned is proven, too, and nearly the widest that there is. On a mesh regions are polygons on
+    what is returned is proven, too, if not always the widest. On a mesh regions are polygons on
     flat faces, around discs; their corners prove them where forces there hold a little torque about each
     normal on top.
 
