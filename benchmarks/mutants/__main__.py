@@ -2,7 +2,9 @@
 
 Every change of the modules of an area is tried against the tests nearest to them. What was tried is kept in
 ``.mutants``, so that a run that was ended goes on where it was; ``--fresh`` begins anew, a module that
-changed is tried anew, and ``--survivors`` tries those again, against tests that came since. Survivors and the
+changed is tried anew, and ``--survivors`` tries those again where test files changed since. Quick tests that
+are plain functions are asked first, of every change, and all tests then of what these did not notice, which
+``--plain`` leaves open. TIME ends a run after so many seconds, and sums up what was tried. Survivors and the
 reasons for them stand in ``survivors.txt``: a change that no input can tell from the original is no slip, and
 does not count. ``--drawn`` tries only those of ``drawn.txt``, which ``--draw=60 [AREA ...]`` wrote by chance,
 sixty an area (SEED); areas that are not named keep theirs. JOBS sets the number of processes, SLOW the
@@ -14,15 +16,17 @@ import json
 import os
 import random
 import sys
+import time
 from importlib import import_module
 from pathlib import Path
 
 os.environ.setdefault("HYPOTHESIS_STORAGE_DIRECTORY", "/tmp/regrasp-mutants-hypothesis")
+HELP = ("given", "programs/given", "oracles", "kit")  # what tests share
 HERE, ROOT = Path(__file__).parent, Path(__file__).resolve().parents[2]
 sys.path[:0] = [
     str(HERE),
     str(ROOT / "src"),
-    *(str(ROOT / "tests" / of) for of in ("given", "oracles", "kit")),
+    *(str(ROOT / "tests" / of) for of in HELP),
 ]
 SOURCE, TESTS, KEPT = ROOT / "src" / "regrasp", ROOT / "tests", ROOT / ".mutants"
 SURVIVORS, DRAWN = HERE / "survivors.txt", HERE / "drawn.txt"
@@ -101,7 +105,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         0.95,
     ),
     "programs": (["programs/*.py"], ["programs/test_*.py", "programs/asked/test_*.py"], 0.95),
-    "judging": (["programs/judging/*.py"], ["programs/test_*.py", "programs/asked/test_*.py"], 0.95),
+    "judging": (["programs/judging/*.py"], ["programs/**/test_*.py"], 0.95),
     "calls": (["programs/calls/*.py"], ["programs/**/test_*.py", "peers/test_*.py"], 0.95),
     "path": (
         ["planning/changes/path_search.py", "planning/changes/path_program.py"],
@@ -164,7 +168,7 @@ def main() -> int:
 def _run(area: str, fresh: bool) -> int:
     import pytest
 
-    from engine import NONE, NOTICED, SURVIVED, UNSEEN, Engine
+    from engine import NONE, NOTICED, OPEN, SURVIVED, UNSEEN, Engine
 
     sources, tests, least = AREAS[area]
     modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
@@ -174,7 +178,8 @@ def _run(area: str, fresh: bool) -> int:
     kept = KEPT / f"{area}.jsonl"
     if fresh:
         kept.unlink(missing_ok=True)
-    prints = {str(path): hashlib.sha256(path.read_bytes()).hexdigest()[:12] for path in modules}
+    prints = {str(path): _print([path]) for path in modules}
+    against = _print([*map(Path, files), *(p for of in HELP for p in sorted((TESTS / of).rglob("*.py")))])
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
     found = {row["key"].strip(): row for row in rows if prints.get(row["module"]) == row["print"]}
     reasons = _reasons()
@@ -182,23 +187,30 @@ def _run(area: str, fresh: bool) -> int:
     def told(key: str, change: object, verdict: str) -> None:
         module = str(SOURCE / key.split(" ")[0])
         row = {"key": key, "line": change.line, "verdict": verdict, "module": module, "print": prints[module]}
-        found[key] = row
+        found[key] = row = row | {"against": against}
         with kept.open("a") as file:
             file.write(json.dumps(row) + "\n")
-        if verdict not in (NOTICED, NONE) and key not in reasons:
+        quiet = (NOTICED, NONE) if plainly else (NOTICED, NONE, OPEN)
+        if verdict not in quiet and key not in reasons:
             print(f"{verdict:9}{change.line:5} {key}", flush=True)
 
     again = (SURVIVED, UNSEEN) if "--survivors" in sys.argv else ()
-    known = {key for key, row in found.items() if row["verdict"] not in again}
-    known |= {key for key, reason in reasons.items() if reason.startswith("=")}
+    equal = {key for key, reason in reasons.items() if reason.startswith("=")}
     drawn = set(DRAWN.read_text(encoding="utf-8").splitlines()) if "--drawn" in sys.argv else None
+    plainly, end = "--plain" in sys.argv, time.monotonic() + float(os.environ.get("TIME", "inf"))
 
-    def wanted(key: str) -> bool:
-        return key not in known and (drawn is None or key in drawn)
+    def wanted(key: str, first: bool) -> bool:
+        if key in equal or (drawn is not None and key not in drawn) or time.monotonic() > end:
+            return False
+        row = found.get(key)
+        if row is None:
+            return True
+        changed = row.get("against") != against  # the tests, since
+        return (changed or not first) if row["verdict"] == OPEN else changed and row["verdict"] in again
 
-    engine = Engine(modules, wanted, told, KEPT / f"{area}.seen.jsonl")
-    quiet = ["-qq", "-p", "no:cacheprovider", "--capture=no", "--hypothesis-seed=0"]
-    pytest.main([*quiet, *files], plugins=[engine])
+    engine = Engine(modules, wanted, told, KEPT / f"{area}.seen.jsonl", plainly)
+    silent = ["-qq", "-p", "no:cacheprovider", "-p", "no:nbmake", "--tb=no", "--assert=plain"]
+    pytest.main([*silent, "--capture=no", "--hypothesis-seed=0", *files], plugins=[engine])
     rows = [row for row in found.values() if drawn is None or row["key"] in drawn]
     rows += [
         {"key": key, "verdict": SURVIVED}
@@ -207,6 +219,10 @@ def _run(area: str, fresh: bool) -> int:
         if str(SOURCE / key.split(" ")[0]) in prints
     ]
     return _summed_up(area, rows, reasons, least)
+
+
+def _print(paths: list[Path]) -> str:
+    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:12]
 
 
 def _draw(size: int, seed: int, areas: list[str]) -> None:

@@ -2,7 +2,8 @@
 
 Everything is imported and collected once, and what a test enters is kept from run to run. A child of the
 process swaps the code of the changed function in place, runs the tests that enter it, the likeliest and
-quickest first, and says whether one of them failed.
+quickest first, and says whether one of them failed. Every change first meets the quick tests that are plain
+functions; those that these do not notice then meet all tests.
 """
 
 import ast
@@ -15,6 +16,7 @@ import os
 import signal
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from inspect import CO_NEWLOCALS
 from pathlib import Path
@@ -24,29 +26,38 @@ from typing import Any
 import pytest
 
 from changes import Change, changes
+from plain import Test, is_plain
 
 # Tests that take longer [s] are left out: a change that only they notice counts as not noticed.
 SLOW = float(os.environ.get("SLOW", "1"))
 # Tests of a change end after this time [s]; what was not noticed by then counts as not noticed.
 BUDGET = float(os.environ.get("BUDGET", "60"))
+QUICK, QUICKLY = 0.3, 2.5  # the same of the first stage, after which a change is open
 _PRINT = 8  # letters of a file's
 _CACHED = type(functools.cache(lambda: None))
-NOTICED, SURVIVED, UNSEEN, NONE = "noticed", "survived", "unseen", "no change"
+NOTICED, OPEN, SURVIVED, UNSEEN, NONE = "noticed", "open", "survived", "unseen", "no change"
 
 
 class Engine:
-    """A pytest plugin whose run of the tests is the run of the changes."""
+    """A pytest plugin whose run of the tests is the run of the changes.
+
+    ``wanted`` says of a key, and of whether this is the first stage, if the change is to be tried; ``told``
+    hears each verdict; ``kept`` is the file of what tests enter; ``plainly`` ends after the first stage.
+    """
 
     def __init__(
         self,
         modules: list[Path],
-        wanted: Callable[[str], bool],
+        wanted: Callable[[str, bool], bool],
         told: Callable[[str, Change, str], None],
         kept: Path,
+        plainly: bool = False,
     ) -> None:
         self.modules, self.wanted, self.told, self.kept = modules, wanted, told, kept
+        self.plainly = plainly
         self.jobs = int(os.environ.get("JOBS", "2"))
-        self.killers: dict[str, list[int]] = {}
+        self.killers: dict[str, Counter[str]] = {}
+        self.running: dict[int, tuple[str, Change, str, list[Test], int]] = {}
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Run the tests once, then the changes."""
@@ -54,52 +65,68 @@ class Engine:
 
         hypothesis_engine.MAX_SHRINKS = 0  # that it fails is enough
         session.config.option.maxfail = 1
-        seen = [entry for entry in self._baseline(session.items) if entry[2] < SLOW]
-        running: dict[int, tuple[str, Change, int]] = {}
-        for path in self.modules:
-            name = str(path)
-            codes = [code for code in _all_codes(_compiled(path)) if code.co_flags & CO_NEWLOCALS]
-            functions = {code.co_qualname.replace("<locals>.", "") for code in codes}
-            for change, key in named(changes(path.read_text(encoding="utf-8")), name):
-                if not self.wanted(key):
-                    continue
-                looks = [
-                    k for k, (_, entered, _) in enumerate(seen) if f"{name} {change.function}" in entered
-                ]
-                if change.function not in functions:  # of the module or of a class
-                    looks = list(range(len(seen)))
-                if not looks:
-                    self.told(key, change, UNSEEN)
-                    continue
-                while len(running) >= self.jobs:
-                    self._wait(running)
-                often = self.killers.get(f"{name} {change.function}", []) + self.killers.get(name, [])
-                looks.sort(key=lambda k, often=often: (-often.count(k), k))
-                read, write = os.pipe()
-                pid = os.fork()
-                if pid == 0:
-                    _child(path, change, [(k, seen[k][0], seen[k][2]) for k in looks], write)
-                os.close(write)
-                running[pid] = key, change, read
-        while running:
-            self._wait(running)
+        every = self._changes()
+        tests: list[Test] = []
+        for first in (True,) if self.plainly else (True, False):
+            if any(self.wanted(key, first) for *_, key in every):
+                done = {test.item.nodeid for test in tests}
+                rest = [item for item in session.items if item.nodeid not in done]
+                tests += self._baseline([item for item in rest if is_plain(item)] if first else rest, first)
+                tests.sort(key=lambda test: test.seconds)
+                self._stage(every, tests, first)
         return True
 
-    def _wait(self, running: dict[int, tuple[str, Change, int]]) -> None:
-        pid, status = os.wait()
-        if pid not in running:
-            return
-        key, change, read = running.pop(pid)
-        if killer := os.read(read, 20):
-            module = key.split(" ")[0]
-            path = next(str(path) for path in self.modules if str(path).endswith(module))
-            for where in (path, f"{path} {change.function}"):
-                self.killers.setdefault(where, []).append(int(killer))
-        os.close(read)
-        self.told(key, change, {0: SURVIVED, 77: NONE}.get(os.waitstatus_to_exitcode(status), NOTICED))
+    def _changes(self) -> list[tuple[Path, bool, Change, str]]:
+        """All changes, those in functions first: others are asked of every test."""
+        every = []
+        for path in self.modules:
+            codes = [code for code in _all_codes(_compiled(path)) if code.co_flags & CO_NEWLOCALS]
+            functions = {code.co_qualname.replace("<locals>.", "") for code in codes}
+            for change, key in named(changes(path.read_text(encoding="utf-8")), str(path)):
+                every.append((path, change.function in functions, change, key))
+        return sorted(every, key=lambda entry: not entry[1])
 
-    def _baseline(self, items: list[pytest.Item]) -> list[tuple[pytest.Item, set[str], float]]:
-        """Each test with the functions of the modules that it enters, and its time, quickest first."""
+    def _stage(self, every: list[tuple[Path, bool, Change, str]], tests: list[Test], first: bool) -> None:
+        longest, until = (QUICK, QUICKLY) if first else (SLOW, BUDGET)
+        tests = [test for test in tests if test.seconds < longest]
+        for path, inside, change, key in every:
+            if not self.wanted(key, first):
+                continue
+            name = f"{path} {change.function}"
+            looks = [test for test in tests if name in test.entered] if inside else list(tests)
+            if not looks:
+                self.told(key, change, OPEN if first else UNSEEN)
+                continue
+            while len(self.running) >= self.jobs:
+                self._wait(first)
+            near, far = self.killers.get(name, Counter()), self.killers.get(str(path), Counter())
+            worth = {t.item.nodeid: 5 * near[t.item.nodeid] + far[t.item.nodeid] for t in looks}
+            looks.sort(
+                key=lambda t, worth=worth: (-worth[t.item.nodeid] / (0.003 + t.seconds) ** 0.5, t.seconds)
+            )
+            read, write = os.pipe()
+            pid = os.fork()
+            if pid == 0:
+                _child(path, change, looks, write, until)
+            os.close(write)
+            self.running[pid] = key, change, str(path), looks, read
+        while self.running:
+            self._wait(first)
+
+    def _wait(self, first: bool) -> None:
+        pid, status = os.wait()
+        if pid not in self.running:
+            return
+        key, change, path, looks, read = self.running.pop(pid)
+        if killer := os.read(read, 20):
+            for where in (path, f"{path} {change.function}"):
+                self.killers.setdefault(where, Counter())[looks[int(killer)].item.nodeid] += 1
+        os.close(read)
+        left = {0: OPEN if first else SURVIVED, 77: NONE}
+        self.told(key, change, left.get(os.waitstatus_to_exitcode(status), NOTICED))
+
+    def _baseline(self, items: list[pytest.Item], plainly: bool) -> list[Test]:
+        """Each test with the functions of the modules that it enters, and its time."""
         sources = "".join(_print(path) for path in self.modules)
         rows = [json.loads(line) for line in self.kept.read_text().splitlines()] if self.kept.exists() else []
         kept = {(row["test"], row["print"]): row for row in rows}
@@ -118,20 +145,21 @@ class Engine:
                     function.cache_clear()
                 builtins.__entered__ = entered.add  # type: ignore[attr-defined]
                 start = time.process_time()
-                if not _run(item):
-                    print(f"{item.nodeid} fails without a change, and is left out", flush=True)
+                if not Test(item, plainly).passes():
+                    if not plainly:  # as a plain function it may lack what pytest does
+                        print(f"{item.nodeid} fails without a change, and is left out", flush=True)
                     continue
                 taken = time.process_time() - start
                 kept[key] = {"test": key[0], "print": key[1], "entered": sorted(entered), "seconds": taken}
                 with self.kept.open("a") as file:
                     file.write(json.dumps(kept[key]) + "\n")
-            found.append((item, set(kept[key]["entered"]), kept[key]["seconds"]))
+            found.append(Test(item, plainly, frozenset(kept[key]["entered"]), kept[key]["seconds"]))
         _functions.cache_clear()
         _caches.cache_clear()
         for path in self.modules:
             swap(path, ast.parse(path.read_text(encoding="utf-8")))
         gc.freeze()  # forks share what is here
-        return sorted(found, key=lambda entry: entry[2])
+        return found
 
 
 @functools.cache
@@ -170,24 +198,7 @@ def named(found: Iterator[Change], module: str) -> Iterator[tuple[Change, str]]:
         yield change, key if count[key] == 1 else f"{key}  ({count[key]})"
 
 
-def _run(item: pytest.Item) -> bool:
-    reports = []
-
-    class Listener:
-        @pytest.hookimpl
-        def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-            reports.append(report)
-
-    listener = Listener()
-    item.config.pluginmanager.register(listener)
-    try:
-        item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
-    finally:
-        item.config.pluginmanager.unregister(listener)
-    return not any(report.failed for report in reports)
-
-
-def _child(path: Path, change: Change, items: list[tuple[int, pytest.Item, float]], write: int) -> None:
+def _child(path: Path, change: Change, tests: list[Test], write: int, until: float) -> None:
     """Never returns: the status says whether a test failed, ``write`` hears which."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
@@ -200,13 +211,13 @@ def _child(path: Path, change: Change, items: list[tuple[int, pytest.Item, float
     except Exception:
         os._exit(77)
     try:
-        for k, item, usual in items:  # what takes ten times its time goes round for ever, and is noticed
-            signal.alarm(int(60 + 20 * usual))
-            signal.setitimer(signal.ITIMER_PROF, 5 + 10 * usual)
-            if not _run(item):
+        for k, test in enumerate(tests):  # what takes ten times its time goes round for ever, and is noticed
+            signal.alarm(int(60 + 20 * test.seconds))
+            signal.setitimer(signal.ITIMER_PROF, (1 if test.plain else 5) + 10 * test.seconds)
+            if not test.passes():
                 os.write(write, str(k).encode())
                 os._exit(1)
-            if time.process_time() > BUDGET:
+            if time.process_time() > until:
                 break
     except BaseException:
         os._exit(1)

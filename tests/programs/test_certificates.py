@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scipy import sparse
 
 from known_programs import known
-from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
+from programs_by_hand import nonnegative, program, zero
+from regrasp.programs import Block, Cone, Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
@@ -21,20 +21,6 @@ pytestmark = pytest.mark.contract
 
 QP = [name for name in available_backends() if name != "cvxpy"]
 SILENT = ("daqp", "quadprog")  # they hand no certificate of infeasibility out
-
-
-def program(P, q, A, b, *blocks):
-    n = len(q)
-    parts = [sparse.csc_matrix(np.array(M, dtype=float).reshape(-1, n)) for M in (P, A)]
-    return Program(parts[0], np.array(q, dtype=float), parts[1], np.array(b, dtype=float), blocks)
-
-
-def zero(count):
-    return Block(Cone.ZERO, 1, count)
-
-
-def nonnegative(count):
-    return Block(Cone.NONNEGATIVE, 1, count)
 
 
 def random_infeasible(rng, conic):

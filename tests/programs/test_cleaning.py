@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from known_programs import known
+from programs_by_hand import nonnegative, program, zero
 from regrasp.programs import Block, Cone
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.judging.verdict import PROVEN
 from test_certificates import random_infeasible
-from test_judged_by_their_own_units import nonnegative, program, zero
 
 pytestmark = pytest.mark.contract
 

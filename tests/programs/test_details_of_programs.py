@@ -8,6 +8,7 @@ import pytest
 from scipy import sparse
 
 from known_programs import known
+from programs_by_hand import nonnegative, program, zero
 from regrasp.errors import InvalidInput
 from regrasp.programs import (
     Block,
@@ -29,7 +30,7 @@ from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.loose_rows import without_loose_rows
 from regrasp.programs.judging.polish import polished
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
-from test_judged_by_their_own_units import QP, nonnegative, program, zero
+from test_judged_by_their_own_units import QP
 
 pytestmark = pytest.mark.contract
 

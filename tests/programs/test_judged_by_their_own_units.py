@@ -1,7 +1,5 @@
 """What is believed of answers: each row, column and cone by its own unit, whatever stands elsewhere."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -10,40 +8,16 @@ from scipy import sparse
 
 from cones import distance_to_cones, slack
 from loops_audit import measures
+from programs_by_hand import claimed, nonnegative, program, zero
 from regrasp.errors import InvalidInput
 from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.terms import ROUNDING
-from regrasp.programs.judging.verdict import judged
-from regrasp.programs.solution import Solution
 
 pytestmark = pytest.mark.contract
 
 QP = [name for name in available_backends() if name != "cvxpy"]
-
-
-def program(P, q, A, b, *blocks, size=0.0):
-    n = len(q)
-    return Program(
-        sparse.csc_matrix(np.array(P, dtype=float).reshape(n, n)), np.array(q, dtype=float),
-        sparse.csc_matrix(np.array(A, dtype=float).reshape(-1, n)), np.array(b, dtype=float), blocks, size,
-    )  # fmt: skip
-
-
-def zero(count):
-    return Block(Cone.ZERO, 1, count)
-
-
-def nonnegative(count):
-    return Block(Cone.NONNEGATIVE, 1, count)
-
-
-def claimed(of, x, z=None, status=Status.SOLVED, allowed=1e-7):
-    """What is left of a claim, no feasible point being known."""
-    z = np.zeros(of.b.size) if z is None else np.array(z, dtype=float)
-    given = Solution(of, "somebody", status, np.array(x, dtype=float), z, None, 0.0, 0.0, "so they say")
-    return judged(given, allowed, lambda p: replace(given, status=Status.NOT_FOUND))
 
 
 # -- two ways to measure -----------------------------------------------------------------------------------

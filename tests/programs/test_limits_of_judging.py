@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from programs_by_hand import claim, nobody, nonnegative, program, zero
 from regrasp.programs import Block, Cone, Program, Status, solve
 from regrasp.programs import backends as table
 from regrasp.programs.backends import least_room, solved_at_once, solved_quickly
@@ -15,22 +16,10 @@ from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_r
 from regrasp.programs.judging.proofs import infeasibility_residual
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import MISSED, PROVEN, judged
-from regrasp.programs.solution import Solution
-from test_judged_by_their_own_units import nonnegative, program, zero
 
 pytestmark = pytest.mark.contract
 
 BOTH = pytest.mark.parametrize(("share", "inside"), [(0.999, True), (1.001, False)])
-
-
-def claim(p, status, x=None, z=None) -> Solution:
-    x = np.full(p.q.size, np.nan) if x is None else np.array(x, dtype=float)
-    z = np.full(p.b.size, np.nan) if z is None else np.array(z, dtype=float)
-    return Solution(p, "somebody", status, x, z, 7, 0.25, 0.5, "so they say")
-
-
-def nobody(_):
-    raise AssertionError("no point is asked for")
 
 
 # -- quick audits: min x^2 / 2 - x with r x <= r b, unknowns of size 1: floors r, 4 = 2 (|q| + P), 4 and 2

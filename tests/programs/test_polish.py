@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from programs_by_hand import nonnegative, program, zero
 from regrasp.programs import Block, Cone
 from regrasp.programs.judging.audit import audited
 from regrasp.programs.judging.polish import polished, touched
-from test_judged_by_their_own_units import nonnegative, program, zero
 
 pytestmark = pytest.mark.contract
 

@@ -7,12 +7,12 @@ import pytest
 from scipy import sparse
 
 from known_programs import is_a_lie, known
+from programs_by_hand import program, zero
 from regrasp.programs import Block, Cone, Program, Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.audit import MOST, ROUNDING, audited
 from regrasp.programs.judging.own_units import in_own_units
 from regrasp.programs.judging.units import OWN
-from test_judged_by_their_own_units import program, zero
 
 pytestmark = pytest.mark.laws
 SEEDS = {"auto": 80, "proxqp": 12, "scs": 24, "qpalm": 60, "osqp": 60, "cvxpy": 4}

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from regrasp.programs import Block, Cone, Program
+from programs_by_hand import nonnegative, program, zero
+from regrasp.programs import Block, Cone
 from regrasp.programs.calls import deadline
 from regrasp.programs.calls.form import bounded, ordered, split
 from regrasp.programs.facts import is_available
@@ -30,20 +31,6 @@ except ImportError:
 
 def called(name):
     return import_module(f"regrasp.programs.calls.{NAMES.get(name, name)}_call")
-
-
-def zero(count):
-    return Block(Cone.ZERO, 1, count)
-
-
-def nonnegative(count):
-    return Block(Cone.NONNEGATIVE, 1, count)
-
-
-def program(P, q, A, b, *blocks):
-    n = len(q)
-    parts = [sparse.csc_matrix(np.array(M, dtype=float).reshape(-1, n)) for M in (P, A)]
-    return Program(parts[0], np.array(q, dtype=float), parts[1], np.array(b, dtype=float), blocks)
 
 
 def mixed(*b, more=0):

@@ -5,21 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy import sparse
-from test_sessions import (
-    FALLS,
-    NONE,
-    ONE,
-    ONE_X,
-    SOLVERS,
-    TWO,
-    called,
-    clocked,
-    mixed,
-    nonnegative,
-    program,
-    zero,
-)
+from test_sessions import FALLS, NONE, ONE, ONE_X, SOLVERS, TWO, called, clocked, mixed
 
+from programs_by_hand import nonnegative, program, zero
 from regrasp.programs import Block, Cone
 
 pytestmark = pytest.mark.contract

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from regrasp.programs import Block, Cone, Program, Status
+from programs_by_hand import claim, nobody, nonnegative, program, zero
+from regrasp.programs import Block, Cone, Status
 from regrasp.programs.judging.cleaning import cleaned_duals
 from regrasp.programs.judging.convexity import why_not_convex
 from regrasp.programs.judging.elastic import elastic, proven_anyway
@@ -14,33 +15,8 @@ from regrasp.programs.judging.loose_rows import without_loose_rows
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
 from regrasp.programs.judging.units import units_of_unknowns
 from regrasp.programs.judging.verdict import PROVEN, judged
-from regrasp.programs.solution import Solution
 
 pytestmark = pytest.mark.contract
-
-
-def program(P, q, A, b, *blocks, size=0.0):
-    n = len(q)
-    parts = [sparse.csc_matrix(np.array(M, dtype=float).reshape(-1, n)) for M in (P, A)]
-    return Program(parts[0], np.array(q, dtype=float), parts[1], np.array(b, dtype=float), blocks, size)
-
-
-def zero(count):
-    return Block(Cone.ZERO, 1, count)
-
-
-def nonnegative(count):
-    return Block(Cone.NONNEGATIVE, 1, count)
-
-
-def claim(p, status, x=None, z=None) -> Solution:
-    x = np.full(p.q.size, np.nan) if x is None else np.array(x, dtype=float)
-    z = np.full(p.b.size, np.nan) if z is None else np.array(z, dtype=float)
-    return Solution(p, "somebody", status, x, z, 7, 0.25, 0.5, "so they say")
-
-
-def nobody(_):
-    raise AssertionError("no point is asked for")
 
 
 def test_the_limits_of_proofs_to_a_thousandth() -> None:
