@@ -294,7 +294,7 @@ def test_the_program_of_the_least_room() -> None:
     assert wide.A.toarray()[:, 2].tolist() == [0, -5, -7, 0, 0, -1]
     assert wide.A.toarray()[:5, :2].tolist() == rows
     assert wide.b.tolist() == [1, 2, 3, 4, 5, 1]
-    assert (wide.q.tolist(), wide.P.nnz, wide.size) == ([0, 0, 1], 0, 2.0)
+    assert (wide.q.tolist(), wide.P.shape, wide.P.nnz, wide.size) == ([0, 0, 1], (3, 3), 0, 2.0)
     assert wide.blocks == (*p.blocks, nonnegative(1))
     none = Program(
         sparse.csc_matrix((0, 0)), np.zeros(0), sparse.csc_matrix((1, 0)), -np.ones(1), p.blocks[1:2]

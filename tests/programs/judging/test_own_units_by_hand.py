@@ -1,11 +1,11 @@
-"""Programs in their own units and with room for all, by hand: which matrices, which are left alone."""
+"""Programs in their own units by hand: which those are, and which programs are left alone."""
 
 import numpy as np
 import pytest
 from scipy import sparse
 
 from programs_by_hand import claim, nonnegative, program, zero
-from regrasp.programs import Block, Cone, Program, Status
+from regrasp.programs import Program, Status
 from regrasp.programs.judging.elastic import elastic, proven_anyway
 from regrasp.programs.judging.own_units import in_own_units
 from regrasp.programs.judging.proofs import infeasibility_residual
@@ -60,21 +60,6 @@ def test_units_by_hand(q, A, b, unknowns, duals) -> None:
 )
 def test_what_is_in_its_own_units_or_cannot_be_is_left_alone(p) -> None:
     assert in_own_units(p) is None
-
-
-def test_room_for_all_by_hand() -> None:
-    """An equation, an inequality, and a cone whose first row gets the largest of all its rows."""
-    A = [[1, 2], [3, -4], [0, 0], [5, -6]]
-    p = program(
-        np.eye(2), [1, 1], A, [7, 8, 9, 10], zero(1), nonnegative(1), Block(Cone.SECOND_ORDER, 2), size=2.0
-    )
-    found = elastic(p)
-    rows = [[1, 2, 0], [3, -4, -4], [0, 0, -6], [5, -6, 0], [0, 0, -1]]
-    assert found.A.toarray().tolist() == rows
-    assert found.b.tolist() == [7, 8, 9, 10, 1]
-    assert found.q.tolist() == [0, 0, 1]
-    assert (found.P.shape, found.P.nnz, found.size) == ((3, 3), 0, 2.0)
-    assert found.blocks == (*p.blocks, nonnegative(1))
 
 
 def test_a_proof_as_good_as_is_enough_is_one() -> None:

@@ -25,7 +25,7 @@ from regrasp.programs.solution import Solution, Status
 def elastic(program: Program) -> Program:
     """The program of the least t."""
     A, n = sparse.csr_matrix(program.A), program.q.size
-    entries = abs(A).max(axis=1).toarray().ravel() if n else np.zeros(program.b.size)
+    entries = program.terms.in_rows(np.ones(n))
     first = program.cones.nonnegative.copy()
     first[[part.start for part in program.cones.round]] = True
     room = sparse.csr_matrix((first * program.cones.largest(entries))[:, None])

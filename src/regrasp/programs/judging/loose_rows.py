@@ -21,7 +21,7 @@ def without_loose_rows(program: Program) -> tuple[Program, NDArray[np.bool_]] | 
     """The program without its loosest inequalities, and which rows (m,) stay; None if none is loose."""
     signs = [block.cone is Cone.NONNEGATIVE for block in program.blocks]
     inequality = np.repeat(signs, [block.rows for block in program.blocks])
-    entries = abs(program.A).max(axis=1).toarray().ravel() if program.b.size else np.zeros(0)
+    entries = program.terms.in_rows(np.ones(program.q.size))
     sizes = abs(program.b) / np.where(entries > 0, entries, 1.0)
     known = np.unique(sizes[sizes > 0])
     far = np.flatnonzero(known[1:] > _FAR * known[:-1])

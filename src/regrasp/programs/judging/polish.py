@@ -103,7 +103,7 @@ def touched(program: Program, x: Array, z: Array) -> Array:
     s = program.b - terms.A @ x
     units = reciprocal(cones.units(terms.abs_A @ np.abs(x) + np.abs(program.b)))
     of_columns = terms.abs_P @ np.abs(x) + np.abs(program.q) + terms.abs_A.T @ np.abs(z)
-    pulls = cones.units(np.abs(z)) * cones.units(terms.abs_A @ reciprocal(of_columns))
+    pulls = cones.units(z) * cones.units(terms.abs_A @ reciprocal(of_columns))
     one = np.eye(z.size)
     faces = [*one[cones.zero | (cones.nonnegative & (pulls > s * units))]]
     for part in cones.round:
