@@ -1,6 +1,7 @@
 """What contacts withstand of sets, against answers that can be read off: cones and limits along one axis."""
 
 from fractions import Fraction
+from itertools import chain
 from math import sqrt
 from types import SimpleNamespace
 
@@ -9,7 +10,7 @@ import pytest
 
 import regrasp as rg
 from foreign import Plan, cross
-from regrasp.verification.withstood.contacts import Body, Touch
+from regrasp.verification.withstood.contacts import Body, Touch, _worst
 from regrasp.verification.withstood.matrices import coarse, is_semidefinite, product, solved, transposed
 
 pytestmark = pytest.mark.oracle
@@ -80,6 +81,9 @@ def test_corners_of_sets() -> None:
         judged(contact, force, 2.0, CONE, corners=[side, -0.5 * side, 0 * side])
         judged(contact, force, 2.0, CONE, corners=[-side, 0.5 * side, up])
         judged(contact, force, 4.0, CONE, corners=[-up, up, 0.1 * side, -0.1 * side][:2])
+        for first, then in (2.1, 3.0), (3.0, 2.1):  # the first that breaks it is named
+            found = broken(SPACE, [4, 0, 0], corners=np.outer([first, then, -0.1], [0, 1, 0]))
+            assert found.member.force.tolist() == [0, first, 0]
         limited = contact.changed(max_force=5.0)
         judged(limited, force, 1.0, LIMIT, corners=[up, -up])
         judged(limited, force, 0.5, LIMIT, corners=[up, -up], share=0.9)
@@ -172,12 +176,13 @@ def test_what_matrices_do() -> None:
         ([[4, 2, 2], [2, 1, 1], [2, 1, 1]], True), ([[4, 2, 2], [2, 1, 2], [2, 2, 1]], False),
     ):  # fmt: skip
         assert is_semidefinite(exact(rows)) == good, rows
-    for scale in (1.0, 1e-200, 1e200):
-        rows = [[Fraction(scale) / 3, Fraction(scale) * 2]]
-        for x, y in zip(rows[0], coarse(rows)[0], strict=True):
-            assert abs(x - y) <= Fraction(scale) * Fraction(1, 2**98)
-        assert all(x.denominator & (x.denominator - 1) == 0 for x in coarse(rows)[0])  # a binary fraction
-    assert coarse(exact([[0, 0]])) == exact([[0, 0]])
+    third = Fraction(1, 3)
+    rows = [[third * 2**300, -third / 2**300, Fraction(0)], [Fraction(5), Fraction(2**120 + 1), -third]]
+    for x, y in zip(chain(*rows), chain(*coarse(rows)), strict=True):  # each in its own unit
+        assert abs(x - y) <= abs(x) / 2**99
+        assert y.denominator & (y.denominator - 1) == 0  # a binary fraction, of not many digits
+        assert y == 0 or (y / Fraction(2) ** round(np.log2(float(abs(y))))).denominator <= 2**101
+    assert coarse(rows)[1] == [5, 2**120, coarse([[-third]])[0][0]]
 
 
 def leaves(gone: str, extra: float, early: bool, more: str | None = None) -> str:
@@ -208,6 +213,10 @@ def test_losing_fingers_that_leave_one_by_one_and_all_at_once() -> None:
             for gone in ("B", "D", "B, D"):
                 assert tight.count(f"{label}, {gone} lost: force of {more} exceeds its limit") == 1
         assert "start, all fingers at work answering: force of" in tight
+    assert "start: force of B" in leaves("BD", -0.5, True, "B")
+    assert "B lost: force of B" not in leaves("BD", -0.5, True, "B")
+    assert leaves("B", -0.5, True, "A").count("start, B lost: force of A") == 1
+    assert leaves("B", -0.5, True, "A").count("start: force of A exceeds") == 1
 
 
 def test_fingers_that_nothing_is_lost_of() -> None:
@@ -301,3 +310,17 @@ def test_what_was_asked_is_said() -> None:
     assert rg.verify(plan, friction=0.9, early_loss=True).withstood == f"{friction}, with {lost}"
     assert rg.verify(plan, friction=0.9).withstood == friction
     assert rg.verify(plan, early_loss=True).withstood == lost
+
+
+def test_worst_members_are_in_the_ball_and_break_what_they_show() -> None:
+    """Of random forms: a length that rounding leaves a last bit over one has no room left."""
+    rng, found = np.random.default_rng(0), 0
+    for k in [1, 2, 3] * 40:
+        s = rng.normal(size=(k + 1, k + 1))
+        z = _worst(exact(s + s.T))
+        if z is not None:
+            found += 1
+            one = np.append(z, 1.0)
+            assert np.linalg.norm(z) <= 1 + 1e-15
+            assert one @ s @ one < 1e-12
+    assert found > 60

@@ -53,6 +53,19 @@ def test_sizes_are_those_of_all_terms() -> None:
         assert (part.sizes == made.sizes[:, 1:3]).all()
 
 
+def test_changes_keep_their_digits_at_every_scale() -> None:
+    """Levers of 2^-680 m turn forces of 2^-396 N; what is lost below the least double has a size."""
+    f, e, r = np.array([[2.0**-396, 0.0]]), np.array([[2.0**-680 / 3, 1.0]]), np.array([[2.0**680], [0.0]])
+    made = Sized(f, f).changed(r, e)
+    assert made.values[0, 0] == pytest.approx(2.0**-396 * 4 / 3, rel=1e-15)
+    least, large = np.full((1, 1), 2.0**-600), np.full((1, 1), 2.0**300)
+    lost = Sized(large, large).changed(least, least).sizes - large
+    assert lost.tolist() == [[0]]
+    apart = np.array([[0.0, 2.0**300]])
+    lost = Sized(apart, apart).changed(np.array([[2.0**-600], [0]]), np.array([[0, 2.0**-600]])).sizes[0, 0]
+    assert 2.0**-1075 * 2.0**300 < 2.0**-45 * lost < 2.0**-700
+
+
 def test_a_row_is_kept_where_it_is_by_more_than_its_doubt() -> None:
     """g . f + room less the most work, against ``off`` times the sizes of all terms."""
     rng, tried = np.random.default_rng(1), 0

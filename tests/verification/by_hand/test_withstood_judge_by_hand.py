@@ -10,6 +10,7 @@ import pytest
 
 import regrasp as rg
 from foreign import Plan, course, cross, soft_pair, turn
+from regrasp.verification.withstood import judge
 from regrasp.verification.withstood.contacts import Body, Touch
 from regrasp.verification.withstood.plans import Asked, check_promised, check_withstood
 
@@ -49,6 +50,12 @@ def test_limits_of_arcs_between_angles() -> None:
             assert (said == []) == good, (step, size)
             words = f"between 0 and {step:g} rad: force of A exceeds its limit"
             assert good or [x[: len(words)] for x in said] == [words]
+            later = found(turning([1, 1 + step], [one(size, 0)] * 2), friction=1.0)
+            assert (later == []) == good
+    # an end over its part is enough, where tangents meet beyond the limit
+    for sizes, good in ((0.95, 0.8), False), ((0.8, 0.95), False), ((0.87, 0.87), True), ((0.95, 0.5), True):
+        rows = [one(size, 0) for size in sizes]
+        assert (found(turning([0, 1], rows), friction=1.0) == []) == good
     half = np.arccos(0.8)  # of the angle between both forces, which is more than the turn by 1 rad
     most = cos(0.5) ** 2 / 0.8
     for size, good in (most * (1 - NEAR), True), (most * (1 + NEAR), False):
@@ -127,6 +134,11 @@ def test_fingers_without_a_force_take_no_deviation() -> None:
         found(Plan("rotation", None, start, start), disturbance=small) == []
     )  # of idle ones nothing is asked
     assert found(Plan("rotation", None, end, end), disturbance=small) == []
+    along = [[1.0, 0.0], *[[1.0, 1.0]] * 3]  # A gives way but along its normal
+    for q in np.eye(3)[:, :, None]:
+        said = found(Plan("rotation", None, start, end), disturbance=rg.LoadSet.ellipsoid(STILL, 1e-9 * q),
+                     stiffness=along)  # fmt: skip
+        assert any("start: force of A" in x for x in said)
 
 
 def test_springs_share_what_deviates() -> None:
@@ -232,7 +244,8 @@ def test_what_is_asked_in_words_and_what_covers_it() -> None:
 def test_what_is_asked_is_checked_before_any_work() -> None:
     grasp, solid = cross()[0], soft_pair()[0]
     for given, words in (
-        ({"position": []}, "position must have shape"), ({"position": [0.0] * 3}, r"\(n,\) or \(m, n\)"),
+        ({"position": []}, "position must have shape"), ({"position": np.empty((0, 4))}, "must have"),
+        ({"position": [0.0] * 3}, r"\(n,\) or \(m, n\)"),
         ({"position": [[[0.0] * 2] * 2] * 1}, r"\(n,\) or \(m, n\) with n = 4"),
         ({"position": [0.0] * 8}, "position must have shape"), ({"friction": -1e-9}, "friction"),
         ({"surface": [0.0] * 3, "friction": 1.0}, "surface must be one curvature or 4"),
@@ -245,6 +258,10 @@ def test_what_is_asked_is_checked_before_any_work() -> None:
         asked(solid, position=[0.0, 0.0])
     assert asked(grasp, position=[0.0] * 4).positions.shape == (1, 4, 1)
     assert asked(grasp, position=[[0.0] * 4] * 3).positions.shape == (3, 4, 1)
+    alone = rg.Grasp([cross()[0]["A"]])
+    assert asked(alone, position=[0.1]).positions.shape == (1, 1, 1)
+    with pytest.raises(rg.InvalidInput, match="must have shape"):
+        asked(alone, position=np.empty((0, 1)))
     assert asked(solid, position=[[0.0] * 2] * 2).positions.shape == (1, 2, 2)
     assert asked(solid, position=[[[0.0] * 2] * 2] * 3).positions.shape == (3, 2, 2)
     assert asked(grasp, friction=0.0).friction == 0
@@ -271,3 +288,43 @@ def test_what_a_record_says_is_checked_unless_it_is_asked_for() -> None:
     plan = Plan("rotation", None, state, state, record=SimpleNamespace(withstands=wrong))
     assert check_promised(plan, None)[0][0].startswith("record: disturbance must be a LoadSet")
     assert check_promised(Plan("rotation", None, state, state), None) == ([], "")
+
+
+def test_sizes_are_no_less_than_the_numbers_they_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What doubles are told of contacts off and fingers lost is what rationals say, of either sign."""
+    grasp, forces = cross((0.5,) * 4)
+    after = forces.copy()
+    after[[1, 3]] = 0
+    plan = Plan("rotation", None, *(rg.GraspState(grasp, STILL, f) for f in (forces, after)))
+    values = {name: getattr(plan, name) for name in (*Plan.__dataclass_fields__, "forces")}
+    leaving, told, exact = SimpleNamespace(**values, leaving=("B", "D"), arriving=()), [], []
+
+    def seen(touch, given, *_):
+        told.append(given)
+        return np.zeros(len(given.values), bool)
+
+    class Spied(Touch):
+        def broken(self, force, *_):
+            exact.append([float(x) for x in force])
+
+    monkeypatch.setattr(judge, "surely_withstood", seen)
+    monkeypatch.setattr(judge, "Touch", Spied)
+    assert found(leaving, position=[0.3, -0.2, 0.1, 0.4], early=True) == []
+    assert all((x.sizes >= abs(x.values)).all() for x in told)
+    assert min(x.values.min() for x in told) < -0.1
+    given = sorted(tuple(row) for x in told for row in x.values.round(9))
+    assert len(given) == 2 * (4 + 3 + 3 + 2) + 4
+    given = [row for row in given if any(row)]  # of no force that nothing changes nothing is asked
+    assert np.allclose(given, sorted(map(tuple, np.round(exact, 9))))
+
+
+def test_what_neither_breaks_nor_is_proven_is_said_so() -> None:
+    """A load of 1 tilted to within 1e-5 of what friction takes, which the polytope around it exceeds."""
+    contact = rg.Contact([0, 0, 0], [0, 0, 1], 0.5, name="floor")
+    state = rg.GraspState(rg.Grasp([contact]), rg.Wrench([0, 0, 0]), np.zeros((1, 3)))
+    tilted = rg.LoadSet.tilted(rg.Wrench([0, 0, -1]), float(np.arctan(0.5)) * (1 - 1e-5))
+    rows = SimpleNamespace(start=SimpleNamespace(grasp=state.grasp))
+    made = judge.Judge(rows, state.grasp, Body(tilted), 1.0, 1.0, early_loss=False)
+    answer = [[Fraction(-(i == j)) for j in range(6)] for i in range(3)]
+    said = list(made._contacts("now", [Fraction(0)] * 3, answer, [False], Fraction(1)))
+    assert said == ["now: it is not proven that floor withstands all, nor found what it does not"]

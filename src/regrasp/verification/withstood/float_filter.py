@@ -22,7 +22,7 @@ from regrasp.verification.withstood.contacts import Body, Touch
 from regrasp.verification.withstood.matrices import doubles
 from regrasp.verification.withstood.multipliers import multipliers
 
-_LEAST, _MOST = 2.0**-400, 2.0**400
+_LEAST, _MOST, _LOST = 2.0**-400, 2.0**400, 2.0**-1000
 
 Sure = NDArray[np.bool_]
 
@@ -35,8 +35,9 @@ class Sized(NamedTuple):
 
     def changed(self, answer: Array, wrench: Array) -> "Sized":
         """Forces (m, n w) and what answers to the wrench that they make: f + R E f."""
-        more = self.sizes @ abs(wrench).T @ abs(answer).T
-        return Sized(self.values + self.values @ wrench.T @ answer.T, self.sizes + more)
+        whole = answer @ wrench  # first: their lengths cancel, and what underflows is below _LOST
+        more = self.sizes @ (abs(answer) @ abs(wrench) + _LOST).T
+        return Sized(self.values + self.values @ whole.T, self.sizes + more)
 
     def part(self, rows: slice) -> "Sized":
         """Those of some columns."""

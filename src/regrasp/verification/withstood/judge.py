@@ -124,10 +124,8 @@ class Judge:
     ) -> list[list[str]]:
         """What breaks in each state; share: the part of limits that may be used."""
         answer, w = self._answer(controlled), self.grasp.width
-        cases: list[tuple[int, ...]] = [()]
-        if self.early_loss and controlled:
-            cases += [(i,) for i in controlled]
-            cases += [controlled] if len(controlled) > 1 else []
+        losses = [*[(i,) for i in controlled], controlled] if self.early_loss else []
+        cases = list(dict.fromkeys([(), *losses]))
         sure, found = self._surely([f for _, f in states], answer, cases, share), []
         for k, (label, stacked) in enumerate(states):
             broken: list[str] = []
@@ -160,7 +158,7 @@ class Judge:
             forces = forces.changed(response, in_doubles(self.off))
         for gone in cases:
             columns = np.isin(np.arange(n * w) // w, gone)
-            after = forces.changed(response, np.where(columns, -matrix, 0.0)) if gone else forces
+            after = forces.changed(response, np.where(columns, -matrix, 0.0))
             settled = np.ones((len(states), n), dtype=bool)
             for i, touch in enumerate(self.touches):
                 rows = slice(w * i, w * i + w)

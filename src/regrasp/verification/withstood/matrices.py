@@ -10,8 +10,7 @@ from regrasp.verification.exact import Vector, dot, exact, rounded
 Matrix = list[Vector]
 
 _BITS = 100
-"""Responses are rounded to 2^-100 of their largest entry: what the doubles of a plan say is coarser by "
-"far."""
+"""To how many digits answers are rounded: what the doubles of a plan say is coarser by far."""
 
 
 def rational(rows: list[list[float]]) -> Matrix:
@@ -57,20 +56,20 @@ def solved(a: Matrix, b: Matrix) -> Matrix | None:
         head = table[k][k]
         table[k] = [x / head for x in table[k]]
         for i in range(n):
-            if i != k and table[i][k]:
+            if i != k:
                 factor = table[i][k]
                 table[i] = [x - factor * y for x, y in zip(table[i], table[k], strict=True)]
     return [row[n:] for row in table]
 
 
 def coarse(a: Matrix) -> Matrix:
-    """The matrix rounded to 2^-100 of its largest entry."""
-    largest = max(abs(x) for row in a for x in row)
-    if not largest:
-        return a
-    shift = _BITS - largest.numerator.bit_length() + largest.denominator.bit_length()
-    scale = Fraction(2) ** shift
-    return [[Fraction(round(x * scale)) / scale for x in row] for row in a]
+    """Each entry rounded to 2^-100 of itself, in whatever units."""
+    return [[_short(x) for x in row] for row in a]
+
+
+def _short(x: Fraction) -> Fraction:
+    scale = Fraction(2) ** (_BITS - x.numerator.bit_length() + x.denominator.bit_length())
+    return round(x * scale) / scale
 
 
 def is_semidefinite(a: Matrix) -> bool:
@@ -85,7 +84,6 @@ def is_semidefinite(a: Matrix) -> bool:
             continue
         for i in range(k + 1, n):
             factor = table[i][k] / pivot
-            if factor:
-                for j in range(k + 1, n):
-                    table[i][j] -= factor * table[k][j]
+            for j in range(k + 1, n):
+                table[i][j] -= factor * table[k][j]
     return True

@@ -57,7 +57,7 @@ class Asked:
         offsets = None
         if position is not None:
             given = finite(position, "position")
-            if given.size == 0 or given.size % (n * across) or given.shape[-across:] != (n, across)[:across]:
+            if given.size == 0 or given.shape[-across:] != (n, across)[:across]:
                 wanted = "(n,) or (m, n)" if across == 1 else "(n, 2) or (m, n, 2)"
                 raise InvalidInput(f"position must have shape {wanted} with n = {n}, got {given.shape}")
             offsets = given.reshape(-1, n, across)
@@ -123,7 +123,7 @@ def check_withstood(plan: Plan, asked: Asked) -> list[str]:
     body, springs, broken = Body(loads), asked.stiffness if answering else None, list[str]()
     offsets = [None] if asked.positions is None else list(asked.positions)
     for k, offset in enumerate(offsets):
-        where = "" if offset is None or len(offsets) == 1 else f", contacts off as in row {k}"
+        where = "" if len(offsets) == 1 else f", contacts off as in row {k}"
         off = grasp if offset is None else moved(grasp, offset, np.asarray(asked.surface))
         judge = Judge(plan, off, body, asked.friction, springs, asked.early_loss)
         broken += [f"{violation}{where}" for violation in judge.violations()]
