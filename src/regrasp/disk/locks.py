@@ -1,6 +1,8 @@
 """Locks on files and folders that end with the process that holds them, where the system has any."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -24,15 +26,15 @@ def is_locked(number: int, *, wait: bool = False) -> bool:
     return True
 
 
-def lock(folder: Path, *, wait: bool) -> int | None:
-    """An open folder whose lock ends when it is closed; None where there is none to have."""
-    if not HAS_LOCKS:
-        return None
+@contextmanager
+def locked(folder: Path, *, wait: bool) -> Iterator[bool]:
+    """A folder that is ours until the block ends; False where it is another's or there are no locks."""
+    number = None
     try:
-        number = os.open(folder, os.O_RDONLY)
-    except OSError:
-        return None
-    if is_locked(number, wait=wait):
-        return number
-    os.close(number)
-    return None
+        if HAS_LOCKS:
+            with suppress(OSError):
+                number = os.open(folder, os.O_RDONLY)
+        yield number is not None and is_locked(number, wait=wait)
+    finally:
+        if number is not None:
+            os.close(number)

@@ -8,12 +8,12 @@ import os
 import shutil
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import TextIO
+from weakref import finalize
 
-from regrasp.disk.locks import HAS_LOCKS, lock
+from regrasp.disk.locks import HAS_LOCKS, locked
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import file_path
 
@@ -86,62 +86,53 @@ def whole_folder(path: str | Path) -> Iterator[Path]:
             folder = made / path.relative_to(missing)
             folder.mkdir(parents=True)
             yield folder
-            with _locked(beside):
+            with locked(beside, wait=True):
                 if not missing.exists():
                     made.rename(missing)
                     return
                 path.mkdir(parents=True, exist_ok=True)  # by another run meanwhile, if it was not there
-                with nullcontext() if path == beside else _locked(path):
+                with nullcontext() if path == beside else locked(path, wait=True):
                     _exchange(folder, path, temporary)
 
 
 @contextmanager
 def _temporary_in(folder: Path) -> Iterator[Path]:
     """A temporary folder in another, which is ours until the block ends; abandoned ones are cleared first."""
-    with _locked(folder):
-        for left in folder.glob(f"{_PREFIX}*"):
-            if left.is_dir() and _is_abandoned(left):
-                shutil.rmtree(left, ignore_errors=True)
-        made = Path(mkdtemp(prefix=_PREFIX, dir=folder))
-        mine = lock(made, wait=False)
-    try:
-        yield made
-    finally:
-        shutil.rmtree(made, ignore_errors=True)
-        if mine is not None:
-            os.close(mine)
+    made = folder / f"{_PREFIX}{os.urandom(8).hex()}"  # known before it is made: interrupts come at once
+    with ExitStack() as ours:
+        # When the process ends at the latest: an interrupt can keep every block below from its end.
+        clear = finalize(ours, shutil.rmtree, made, ignore_errors=True)
+        try:
+            with locked(folder, wait=True):
+                for left in folder.glob(f"{_PREFIX}*"):
+                    if left.is_dir() and _is_abandoned(left):
+                        shutil.rmtree(left, ignore_errors=True)
+                made.mkdir(mode=0o700)
+                ours.enter_context(locked(made, wait=False))
+            yield made
+        finally:
+            try:
+                shutil.rmtree(made, ignore_errors=True)
+            finally:
+                clear()
 
 
 def _is_abandoned(folder: Path) -> bool:
     """Whether the process whose temporary folder it is has ended; its parent folder is locked by us."""
-    mine = lock(folder, wait=False)
-    if mine is not None:
-        os.close(mine)
-        return True
-    if _has_locks(folder.parent):
+    with locked(folder, wait=False) as ended:
+        if ended:
+            return True
+    if HAS_LOCKS and _knows_locks(folder.parent):
         return False
     with suppress(OSError):
         return time.time() - folder.stat().st_mtime > _OLD
     return False
 
 
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """The only process in a folder, where the system has locks."""
-    held = lock(folder, wait=True)
-    try:
-        yield
-    finally:
-        if held is not None:
-            os.close(held)
-
-
-def _has_locks(folder: Path) -> bool:
-    """Whether this disk knows locks: a folder that we hold cannot be locked once more."""
-    again = lock(folder, wait=False)
-    if again is not None:
-        os.close(again)
-    return HAS_LOCKS and again is None
+def _knows_locks(folder: Path) -> bool:
+    """Whether the disk knows locks: a folder that we hold cannot be locked once more."""
+    with locked(folder, wait=False) as again:
+        return not again
 
 
 def _exchange(new: Path, path: Path, temporary: Path) -> None:
