@@ -1,5 +1,6 @@
 """Chosen grasps against all pairs and triples of sampled points, and against other coordinates."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -143,3 +144,26 @@ def test_no_sampled_placement_answers_more(outline: rg.Outline, fingers: int, co
     assert answered(chosen.grasp) == pytest.approx(chosen.value, rel=1e-5)
     assert chosen.gap <= 5e-3
     assert rg.verify(chosen).ok
+
+
+def test_an_edge_of_a_cone_is_reached_from_within() -> None:
+    """The best are where a force is on an edge of its cone: beside it, towards more friction, none hold."""
+    quadrilateral = rg.Outline([[0, 0], [4, 0], [3, 2], [0, 3]])
+    chosen = rg.choose_grasp(quadrilateral, 2, rg.Wrench([0.2, -1], 0.1), friction=1.2, most_boxes=200)
+    assert chosen.gap <= 1e-3
+    assert chosen.value == pytest.approx(56 / 61, rel=1e-6)
+
+
+def test_sides_that_meet_are_told_apart() -> None:
+    """Loads that press on two sides beside a corner are near in place, and their forces are not."""
+    shape = rg.Outline(
+        [[-0.1, -0.1], [4.0, 0.2], [4.5, 3.1], [1.1, 3.6]], holes=[[[1.5, 1.1], [1.7, 1.0], [2.4, 1.0]]]
+    )
+    loads = [rg.Wrench([-0.3, -1.1], -0.2), rg.Wrench([-0.6, -1.0], 0.2), rg.Wrench([-0.1, -0.8], -0.1)]
+    chosen = rg.choose_grasp(
+        shape, 3, rg.LoadSet.hull(loads), friction=0.5, objective="peak_normal", in_holes=True, most_boxes=1000
+    )
+    assert chosen.gap <= 1e-3
+    assert chosen.value < 0.4615  # 0.852 while such a box was split everywhere else first
+    nothing = replace(chosen, value=0.0)
+    assert nothing.gap == np.inf and replace(nothing, bound=0.0).gap == 0.0

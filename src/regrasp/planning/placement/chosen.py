@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Any, Self
 
 from regrasp.errors import InvalidInput
@@ -77,10 +78,12 @@ class ChosenGrasp(ArrayValue):
     def gap(self) -> float:
         """How much better than ``value`` the best placement can be at most, as a fraction of it [-].
 
-        Of ``friction_use`` and ``angle`` as a fraction of at least 0.001.
+        Of ``friction_use`` and ``angle`` as a fraction of at least 0.001; of others infinite where the value is 0
+        and the bound is not.
         """
         least = 1e-3 if self.objective in ("friction_use", "angle") else 0.0
-        return abs(self.value - self.bound) / max(abs(self.value), least) if self.value != self.bound else 0.0
+        off, size = abs(self.value - self.bound), max(abs(self.value), least)
+        return off / size if size else (inf if off else 0.0)
 
     def to_dict(self) -> dict[str, Any]:
         """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one."""

@@ -94,7 +94,7 @@ def _part(whole: Queue, nodes: np.ndarray, start: int) -> Queue:
     room = _stretch(whole.fingers)
     boxes = (*(values[: start + room] for values in whole.boxes[:-1]), np.zeros_like(whole.boxes[-1]))
     heap = np.concatenate([nodes, np.zeros(room, np.int64)])
-    tried = np.zeros((_EACH, whole.tried.shape[1]))
+    tried = np.zeros((2 * _EACH, whole.tried.shape[1]))  # two of a box at most
     return Queue(boxes, heap, np.array([start, len(nodes), 0]), whole.found.copy(), tried)
 
 

@@ -108,7 +108,10 @@ def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-
         if first < last:
             apart = 0.0
             if seen[i, 2] <= seen[i, 4]:
-                apart = distance(sides, int(seen[i, 3]), seen[i, 2], int(seen[i, 5]), seen[i, 4])
+                j, c = int(seen[i, 3]), int(seen[i, 5])
+                apart = distance(sides, j, seen[i, 2], c, seen[i, 4])
+                # where two sides meet forces differ, too
+                apart += sqrt((sides[j, 4] - sides[c, 4]) ** 2 + (sides[j, 5] - sides[c, 5]) ** 2)
             matters = apart + (0.1 if curved else 1e-6 * (last - first))
         else:
             j = first

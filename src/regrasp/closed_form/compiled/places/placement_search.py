@@ -211,26 +211,41 @@ def _loop(digest: str) -> Any:
                 spread(sides, arcs[node], ends[node], places)
                 stuck = put(sides, places, least, at_arcs, at_ends)
             if not stuck:
-                flat = norm == LARGEST and sides.shape[1] <= CONTROL
+                flat, single = norm == LARGEST and sides.shape[1] <= CONTROL, True
                 for i in range(k):
-                    flat = flat and arcs[node, i, 0] == arcs[node, i, 1]
-                value, _ = _judge(
-                    sides, at_arcs, at_ends, loads, trying, precision, np.inf if flat else most,
-                    critical[node], twist[0], work, nowhere, True,
-                )  # fmt: skip
-                row = state[2] % len(tried)
-                state[2] += 1
-                tried[row, 0] = value
-                for i in range(k):
-                    tried[row, 1 + 2 * i], tried[row, 2 + 2 * i] = places[i, 0], places[i, 1]
-                if value < found[0]:
-                    for c in range(2 * k + 1):
-                        found[c] = tried[row, c]
-                    if fixed < np.inf and value <= fixed:
-                        push(heap, state[1], bounds, node)
-                        state[1] += 1
-                        return IMPROVED
-                    level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
+                    single = single and arcs[node, i, 0] == arcs[node, i, 1]
+                flat = flat and single
+                for again in range(2):
+                    if again:
+                        # on a knife's edge: where forces press that use a little less friction
+                        value, _ = _judge(
+                            sides, arcs[node], ends[node], loads, trying, precision, most, critical[node],
+                            twist[0], work, nowhere, False,
+                        )  # fmt: skip
+                        if value >= most:
+                            break
+                        to_try(arcs[node], ends[node], nowhere, places)
+                        if put(sides, places, least, at_arcs, at_ends):
+                            break
+                    value, _ = _judge(
+                        sides, at_arcs, at_ends, loads, trying, precision, np.inf if flat else most,
+                        critical[node], twist[0], work, nowhere, True,
+                    )  # fmt: skip
+                    row = state[2] % len(tried)
+                    state[2] += 1
+                    tried[row, 0] = value
+                    for i in range(k):
+                        tried[row, 1 + 2 * i], tried[row, 2 + 2 * i] = places[i, 0], places[i, 1]
+                    if value < found[0]:
+                        for c in range(2 * k + 1):
+                            found[c] = tried[row, c]
+                        if fixed < np.inf and value <= fixed:
+                            push(heap, state[1], bounds, node)
+                            state[1] += 1
+                            return IMPROVED
+                        level = fixed if fixed < np.inf else found[0] * (1.0 - tolerance)
+                    if value < most or not single or near:
+                        break
                 if flat:
                     _join(sides, loads, bounding, boxes, node, work)
             if bounds[node] >= level:
