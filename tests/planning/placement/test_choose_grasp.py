@@ -159,11 +159,14 @@ def test_sides_that_meet_are_told_apart() -> None:
     shape = rg.Outline(
         [[-0.1, -0.1], [4.0, 0.2], [4.5, 3.1], [1.1, 3.6]], holes=[[[1.5, 1.1], [1.7, 1.0], [2.4, 1.0]]]
     )
-    loads = [rg.Wrench([-0.3, -1.1], -0.2), rg.Wrench([-0.6, -1.0], 0.2), rg.Wrench([-0.1, -0.8], -0.1)]
+    loads = rg.LoadSet.hull(
+        [rg.Wrench([-0.3, -1.1], -0.2), rg.Wrench([-0.6, -1.0], 0.2), rg.Wrench([-0.1, -0.8], -0.1)]
+    )
     chosen = rg.choose_grasp(
-        shape, 3, rg.LoadSet.hull(loads), friction=0.5, objective="peak_normal", in_holes=True, most_boxes=1000
+        shape, 3, loads, friction=0.5, objective="peak_normal", in_holes=True, most_boxes=1000
     )
     assert chosen.gap <= 1e-3
     assert chosen.value < 0.4615  # 0.852 while such a box was split everywhere else first
     nothing = replace(chosen, value=0.0)
-    assert nothing.gap == np.inf and replace(nothing, bound=0.0).gap == 0.0
+    assert nothing.gap == np.inf
+    assert replace(nothing, bound=0.0).gap == 0.0

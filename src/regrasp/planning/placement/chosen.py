@@ -78,8 +78,8 @@ class ChosenGrasp(ArrayValue):
     def gap(self) -> float:
         """How much better than ``value`` the best placement can be at most, as a fraction of it [-].
 
-        Of ``friction_use`` and ``angle`` as a fraction of at least 0.001; of others infinite where the value is 0
-        and the bound is not.
+        Of ``friction_use`` and ``angle`` as a fraction of at least 0.001; of others infinite where the
+        value is 0 and the bound is not.
         """
         least = 1e-3 if self.objective in ("friction_use", "angle") else 0.0
         off, size = abs(self.value - self.bound), max(abs(self.value), least)
