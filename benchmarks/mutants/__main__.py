@@ -46,6 +46,8 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         [
             *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "c*", "regions*", "what*")),
             "verification/test_placement_proofs.py",
+            "verification/by_hand/test_tied_by_hand.py",
+            "verification/by_hand/test_answers_by_hand.py",
             *(
                 f"planning/**/test_{name}.py"
                 for name in ("choose_grasp", "constraints", "curves", "contact_regions", "w*_placement")

@@ -1,7 +1,7 @@
 """What choices claim, each claim by itself and on both sides of its limit: values, bounds, loads, levers."""
 
 from fractions import Fraction
-from math import atan, hypot, inf, nan, sin, sqrt
+from math import atan, hypot, inf, nan, nextafter, sin, sqrt
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,6 +23,10 @@ LARGEST = ("angle", "force", "answered", "wrench", "wrench_ball")
 
 def plain(**given):
     return SimpleNamespace(**given)
+
+
+def proven(bound, margin=0.0, **given):
+    return plain(bound=bound, margin=margin, **given)
 
 
 def chosen(objective, value=1.0, bound=1.0, **changes):
@@ -80,7 +84,7 @@ def test_values_of_margins(objective, margin, value, step, words) -> None:
 
 @pytest.mark.parametrize("objective", PLAIN)
 def test_bounds_are_those_of_proofs(objective) -> None:
-    proof = plain(bound=3.0)
+    proof = proven(3.0)
     most = 3.0 ** PLAIN[objective]
     for off, good in (-1.0, True), (0.0, True), (0.9 * RESOLUTION, True), (1.1 * RESOLUTION, False):
         found = claims._check_bound(chosen(objective, 100.0, most * (1 + off)), proof)
@@ -96,36 +100,37 @@ def test_bounds_are_no_worse_than_values_and_finite() -> None:
     for objective in claims._MEANINGS:
         way, words = (1, "below") if objective in LARGEST else (-1, "above")
         for step in (1e-15, 0.5, nan):
-            found = claims._check_bound(chosen(objective, 1.0, 1.0 - way * step), plain(bound=9.0))
+            found = claims._check_bound(chosen(objective, 1.0, 1.0 - way * step), proven(9.0))
             assert found == [f"bound {1.0 - way * step:.12g} is {words} the value 1"]
         for value, bound in (-inf, inf)[::way], (1.0, way * inf), (-way * inf, 1.0):
-            found = claims._check_bound(chosen(objective, value, bound), plain(bound=9.0))
+            found = claims._check_bound(chosen(objective, value, bound), proven(9.0))
             assert found == ["value and bound must be finite numbers"]
         if objective not in PLAIN:
             for limit in (None, 0.0, -1.0, inf, nan):
-                found = claims._check_bound(chosen(objective, max_force=limit), plain(bound=9.0))
+                found = claims._check_bound(chosen(objective, max_force=limit), proven(9.0))
                 assert found == ["a level needs the limit of its forces"], limit
 
 
 def test_bounds_of_levels() -> None:
-    """Of a proof of 2 N or more for a limit of 2 N; of less it proves nothing."""
+    """Of a proof of more than the limit of 2 N, or of margins that none of 2 N keep; of less it is none."""
     half = atan(0.5) - atan(0.2)
     for objective, bound, step, given in (
         ("friction_use", 0.4, 0.4 * RESOLUTION, {}),
         ("angle", half, -half * 1e-9, {}),
         ("force", 0.3, -1e-16, {"margin": 0.3}),
     ):
-        for proven, part, good in (2.0, 1.1, False), (2.0, 0.9, True), (2.0, -1.0, True), (1.99, 0.0, False):
+        most = 2.0 if "margin" in given else nextafter(2.0, inf)
+        for norm, part, good in (most, 1.1, 0), (most, 0.9, 1), (most, -1.0, 1), (nextafter(most, 0), 0.0, 0):
             if objective == "force":
                 part = round(part - 0.4)  # to the last bit
-            proof = plain(bound=proven, friction=0.2, **given)
+            proof = proven(norm, friction=0.2, **given)
             value = bound - 0.01 if objective in LARGEST else bound + 0.01
             found = claims._check_bound(chosen(objective, value, bound + part * step, max_force=2.0), proof)
-            assert (not found) == good, (objective, proven, part)
-            words = "is better than what the proof says" if proven == 2.0 else "the proof proves no bound"
+            assert (not found) == good, (objective, norm, part)
+            words = "is better than what the proof says" if norm == most else "the proof proves no bound"
             assert good or found[0].endswith(words)
         mixed = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.5), rg.Contact([1, 0], [-1, 0], 0.6)])
-        found = claims._check_bound(chosen(objective, max_force=2.0, grasp=mixed), plain(bound=2.0))
+        found = claims._check_bound(chosen(objective, max_force=2.0, grasp=mixed), proven(3.0))
         assert found == ["a level of friction is that of one coefficient, the contacts have several"]
 
 
@@ -160,16 +165,20 @@ def test_springs_hold_the_load_itself_first(scale, axis) -> None:
     grasp = rg.Grasp([rg.Contact([-1, 0], [1, 0], 0.5), rg.Contact([1, 0], [-1, 0], 0.5)])
     squeeze = scale * np.array([[9.0, 0], [-9.0, 0]])
 
-    def told(*loads, push=squeeze, **changes):
+    def told(*loads, push=squeeze, objective="wrench", **changes):
         states = [plain(load=plain(vector=w), grasp=grasp, forces=squeeze) for w in loads]
         states[-1].forces = push
         given = {"deviations": deviations, "certificate": plain(loads=center[None]), "states": tuple(states)}
-        return "; ".join(claims._check_withstood(chosen("wrench", 2.0, **given | changes)))
+        return "; ".join(claims._check_answers(chosen(objective, 2.0, **given | changes)))
 
     assert told(center, *shown) == ""
     assert "do not hold the load" in told(center, *shown, deviations=None)
     assert "do not hold the load" in told(center, shown[0])
     assert "equal stiffness" in told(center, *shown, push=1.001 * squeeze)
+    assert told(center, *shown, push=1.001 * squeeze, objective="answered") == ""
+    for objective in "answered", "wrench":
+        for loads in (shown, [*shown, center], [center, center, *shown]):
+            assert "do not hold the load" in told(*loads, objective=objective)
     for row in range(3):
         size = np.abs(shown).max()
         for off, good in (JUST, True), (-JUST, True), (MORE, False), (-MORE, False):
@@ -225,7 +234,7 @@ def test_the_ball_of_a_pair(length) -> None:
         for row, off, good in (0, JUST, True), (0, MORE, False), (1, MORE, False), (1, -1.0, True):
             loads = np.array([[at, 0, 0], [0, 0, at * length]])
             loads[row] *= 1 + off
-            proof = plain(bound=3.0, loads=loads)
+            proof = proven(3.5, loads=loads)
             given = {"grasp": grasp, "length": length, "max_force": 3.0}
             found = claims._check_bound(chosen("wrench_ball", 1.0, bound, **given), proof)
             assert (not found) == good, (bound, row, off)
@@ -243,16 +252,15 @@ def test_what_is_shared_of_surfaces(monkeypatch) -> None:
 def test_springs_are_asked_for_by_the_bound_too() -> None:
     """Without a state there is nothing to show, and another claim says so."""
     given = {"max_force": 3.0, "deviations": np.ones((1, 3))}
-    assert claims._check_bound(chosen("wrench", **given), plain(bound=2.0, **vars(NO_LOAD))) != [
+    assert claims._check_bound(chosen("wrench", **given), proven(2.0, **vars(NO_LOAD))) != [
         "the states do not hold the load, and the deviations times the value on top of it"
     ]
     state = plain(load=plain(vector=np.ones(3)))
-    found = claims._check_bound(chosen("wrench", states=(state, state), **given), plain(bound=9.0))
+    found = claims._check_bound(chosen("wrench", states=(state, state), **given), proven(9.0))
     assert found == ["the states do not hold the load, and the deviations times the value on top of it"]
     for deviations in None, np.ones((1, 3)):
         good = chosen("answered", states=(state, state), max_force=3.0, deviations=deviations)
-        found = claims._check_bound(good, plain(bound=9.0))
-        assert found == ["the states do not hold the deviations times the value"]
+        assert claims._check_bound(good, proven(9.0)) == found
 
 
 NO_LOAD = plain(**{k: v for k, v in vars(BOARD).items() if k != "bound"})

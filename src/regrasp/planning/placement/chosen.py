@@ -44,8 +44,8 @@ class ChosenGrasp(ArrayValue):
         shape: the outline or mesh.
         objective: its word.
         grasp: the contacts, F1, F2, ... along the boundary, relative to the centre of mass.
-        states: the best forces for every load asked: of a round set for a polygon around it; of ``wrench``
-            the set-points, then what they turn into under each deviation.
+        states: the best forces for every load asked: of a round set for a polygon around it; of ``answered``
+            and ``wrench`` for the load, then under each deviation, of ``wrench`` what set-points turn into.
         value: of the worst load, in the unit of the objective.
         bound: no placement reaches less; of a margin or a factor, which are largest at best, more.
         places: (k,) arc lengths of the fingers, or (k, 3) their points in the mesh's coordinates [m].

@@ -88,7 +88,7 @@ def chosen_at_level(
     """The best grasp of a search for a level. ``Infeasible`` where there is none."""
     limit = level.max_force
     if best is None:
-        proof = proof_of(search, asked, limit if search.closed else 0.0)
+        proof = proof_of(search, asked, _above(search, limit) if search.closed else 0.0)
         what = (
             "hold the loads"
             if search.closed
@@ -117,10 +117,15 @@ def chosen_at_level(
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, tuple(map(_plain, states)), value, bound,
         _arc_lengths(search.sides, places, u), _others(search, asked, u, abs),
-        proof_of(search, asked, 0.0 if trivial else limit), max_force=limit,
+        proof_of(search, asked, 0.0 if trivial else _above(search, limit)), max_force=limit,
         deviations=read_only(np.array(level.deviations)) if isinstance(level, AnsweredLevel) else None,
         length=level.length if isinstance(level, BallLevel) else None,
     )  # fmt: skip
+
+
+def _above(search: Search, limit: float) -> float:
+    """What no forces of the limit reach; those that keep a margin are excluded at the limit itself."""
+    return limit if search.margin else float(np.nextafter(limit, np.inf))
 
 
 def _first(

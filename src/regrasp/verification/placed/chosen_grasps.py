@@ -175,15 +175,12 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
         return []
     if chosen.max_force is None or not 0 < chosen.max_force < inf:
         return ["a level needs the limit of its forces"]
-    if chosen.objective == "answered":
-        shown = np.array([state.load.vector for state in chosen.states])
-        if not _scaled(chosen, shown, value):
-            return ["the states do not hold the deviations times the value"]
-    if chosen.objective == "wrench" and chosen.states and (broken := _check_withstood(chosen)):
+    if chosen.objective in ("answered", "wrench") and chosen.states and (broken := _check_answers(chosen)):
         return broken
     if chosen.objective == "wrench_ball" and (broken := _check_ball(chosen, chosen.max_force)):
         return broken
-    if proof.bound < chosen.max_force:  # a search cut short proves nothing beyond what needs no proof
+    beyond = proof.bound >= chosen.max_force if proof.margin else proof.bound > chosen.max_force
+    if not beyond:  # forces of the limit itself are allowed; a search cut short proves what needs no proof
         return _check_trivial(chosen, proof, chosen.max_force)
     mu = min(c.friction for c in chosen.grasp)
     if chosen.objective not in _ANY_LOAD and mu != max(c.friction for c in chosen.grasp):
@@ -219,15 +216,15 @@ def _off_their_places(chosen: Chosen, given: Array) -> list[str]:
     return [] if off <= _CLOSE * np.abs(positions).max() else [f"a contact is {off:.3g} off its place"]
 
 
-def _check_withstood(chosen: Chosen) -> list[str]:
-    """That set-points turn into forces for the deviations times the value, with nobody taking notice."""
+def _check_answers(chosen: Chosen) -> list[str]:
+    """That states hold the load and then the deviations times the value; as equal springs, of ``wrench``."""
     first, *others = chosen.states
     shown = np.array([state.load.vector for state in others])
     center = np.asarray(chosen.certificate.loads)[0]
     off = np.abs(first.load.vector - center).max()
     if not _scaled(chosen, shown, chosen.value) or off > _CLOSE * np.abs(shown).max():
         return ["the states do not hold the load, and the deviations times the value on top of it"]
-    if not answer_alike(chosen.states):
+    if chosen.objective == "wrench" and not answer_alike(chosen.states):
         return ["the states are not what fingers of equal stiffness make of the first"]
     return []
 

@@ -179,10 +179,10 @@ class AnsweredLevel(Level):
         return 2.0 * float(factors.min(axis=1).min(initial=inf))
 
     def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
-        """The states of the deviations at the level, or a little before it."""
+        """The states of the load and of the deviations at the level, or a little before it."""
         for back in AT_THE_EDGE:
             factor = level * (1 - back)
-            given = map(Wrench.from_vector, self.loads(factor)[1:])
+            given = map(Wrench.from_vector, self.loads(factor))
             with suppress(Infeasible):
                 return [choose_state(grasp, w, "peak", max_force=self.max_force) for w in given], factor
         return None
