@@ -136,3 +136,49 @@ def test_halves_of_one_side_meet() -> None:
         nodes += [([(0, 0, 0.0, a)], (0, 0), 0, twist), ([(0, 0, b, 1.0)], (0, 0), 0, twist)]
         found = said(planar(vertices, [[0, -1, 0]], nodes, sides=sides, bound=1e-9))
         assert (found == "") == good, (a, b)
+
+
+def test_parts_that_are_no_arcs_are_no_cover() -> None:
+    """Their numbers match, and one of them goes on beyond its end or begins before its beginning."""
+    sides, twist = np.array([[0, 0, 1.0], [1, 1, 2.0], [2, 2, 3.0]]), (0.0, 1.0, 0.0)
+    for halves, part, inside, good in (
+        (1, 0, [(0, 1, 0.0, 2.0), (2, 1, 2.0, 2.0)], False),
+        (1, 0, [(0, 0, 0.0, 1.0), (1, 1, 1.0, 2.0)], True),
+        (0, 1, [(1, 0, 1.0, 1.0), (1, 2, 1.0, 3.0)], False),
+        (0, 1, [(1, 1, 1.0, 2.0), (2, 2, 2.0, 3.0)], True),
+        (1, 1, [(2, 1, 2.0, 2.5), (2, 2, 2.5, 3.0)], False),
+        (1, 1, [(2, 2, 2.0, 2.5), (1, 2, 2.5, 3.0)], False),
+        (0, 0, [(0, 1, 0.0, 0.5), (0, 0, 0.5, 1.0)], False),
+        (0, 0, [(0, 0, 0.0, 0.5), (1, 0, 0.5, 1.0)], False),
+        (0, 0, [(0, 0, 0.0, 0.5), (0, 0, 0.5, 1.0)], True),
+    ):  # fmt: skip
+        cut = halves + 1.0
+        nodes = [(everything(sides, 1), (1, 2), 0, twist)]
+        nodes += [
+            ([(0, halves, 0.0, cut)], (0, 0), 0, twist),
+            ([(halves + 1, 2, cut, 3.0)], (0, 0), 0, twist),
+        ]
+        nodes[1 + part] = (nodes[1 + part][0], (3, 2), 0, twist)
+        nodes += [([x], (0, 0), 0, twist) for x in inside]
+        words = "" if good else f"proof: box {1 + part} is not covered by the boxes it is split into"
+        assert said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides)) == words
+
+
+def test_a_finger_that_stays_is_where_it_was_in_every_part() -> None:
+    sides = np.array([[0, 0, 1.0], [2, 2, 3.0]])
+    left, right = (0, 0, 0.0, 1.0), (1, 1, 2.0, 3.0)
+    root = everything(sides, 2)
+    for last, good in (root[1], True), (right, False), (left, False):
+        nodes = [(root, (1, 2), 0, (0.0, 1.0, 0.0)), ([left, root[1]], (0, 0), 0, (0.0, 1.0, 0.0))]
+        nodes += [([right, last], (0, 0), 0, (0.0, 1.0, 0.0))]
+        assert (said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides)) == "") == good
+
+
+def test_boxes_of_no_other_are_found() -> None:
+    sides, twist = np.array([[0, 0, 1.0]]), (0.0, 1.0, 0.0)
+    nodes = [(everything(sides, 1), (0, 0), 0, twist)] * 2
+    assert said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides)) == "proof: some boxes belong to no other"
+    for children in (0, 1), (0, 2), (1, -1), (1, 2), (1, 2**40), (-1, 1), (2, 1):
+        nodes[0] = (*nodes[0][:1], children, *nodes[0][2:])
+        words = "is not covered" if children == (1, -1) else "boxes that are not there, or not its own"
+        assert words in said(planar(SHAPES[1], [[0, -1, 0]], nodes, sides=sides))

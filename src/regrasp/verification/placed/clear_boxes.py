@@ -88,12 +88,11 @@ def _most(proof: Proof, boundary: Edges, boxes: np.ndarray, y: Array, z: Array) 
     edge_of, lo, hi = edge.astype(int), least - edge, largest - edge
     values = boundary.roughly(edge_of, lo, hi, along)
     both = also.any(axis=1)
-    if both.any():
-        each = edge_of[both]
-        low, high = (
-            boundary.roughly(each, u, u, along[both]) + boundary.roughly(each, u, u, also[both])
-            for u in (lo[both], hi[both])
-        )
-        values[both] = np.maximum(low, high)
+    each = edge_of[both]
+    low, high = (
+        boundary.roughly(each, u, u, along[both]) + boundary.roughly(each, u, u, also[both])
+        for u in (lo[both], hi[both])
+    )
+    values[both] = np.maximum(low, high)
     result: Array = np.maximum.reduceat(values, starts).reshape(-1, k)
     return result

@@ -70,7 +70,7 @@ class CubicEdges:
             return max(most_eroded(a[0], b[1], limit, Fraction(self.margin), v) for v in along)
         if self.eroded or self.force:
             return limit * max(_on_sector(a[0], b[1], v) for v in along)
-        return self.slant * max(max(_on_arc(a[0], b[0], v), _on_arc(a[1], b[1], v)) for v in along)
+        return self.slant * max(max(_on_sector(a[0], b[0], v), _on_sector(a[1], b[1], v)) for v in along)
 
     def _tangents(self, edge: int, lo: Fraction, hi: Fraction) -> list[Point]:
         control = self.control[edge]
@@ -100,7 +100,7 @@ class CubicEdges:
                 value = _roughly_on_sector(a, b, v)
             else:
                 slant = np.sqrt(1 + self._friction**2)
-                value = slant * np.maximum(_roughly_on_arc(a, e, v), _roughly_on_arc(c, b, v))
+                value = slant * np.maximum(_roughly_on_sector(a, e, v), _roughly_on_sector(c, b, v))
             most = np.maximum(most, value)
         return np.where(plain, most, np.inf)
 
@@ -133,18 +133,10 @@ def _along(a: Point, v: Point) -> Fraction:
     return max(_dot(a, v), Fraction(0)) / root_below(_dot(a, a))
 
 
-def _on_arc(a: Point, b: Point, v: Point) -> Fraction:
-    """The most of v . f over f of length 1 from a to b, less than half a turn counter-clockwise; or 0."""
-    if _cross(a, v) >= 0 and _cross(v, b) >= 0 and max(_dot(a, v), _dot(b, v)) > 0:
-        return root_above(_dot(v, v))
-    return max(_along(a, v), _along(b, v))
-
-
 def _on_sector(a: Point, b: Point, v: Point) -> Fraction:
-    """The same, less than three quarters of a turn."""
-    if _cross(a, b) > 0 or _dot(a, b) > 0:
-        return _on_arc(a, b, v)
-    if _cross(a, v) >= 0 or _cross(v, b) >= 0:
+    """The most of v . f over f of length 1 from a counter-clockwise to b, less than 3/4 of a turn; or 0."""
+    narrow = _cross(a, b) > 0 or _dot(a, b) > 0  # less than half a turn
+    if (all if narrow else any)((_cross(a, v) > 0, _cross(v, b) > 0)):
         return root_above(_dot(v, v))
     return max(_along(a, v), _along(b, v))
 
@@ -160,16 +152,10 @@ def _unit_edges(t: Array, mu: float) -> tuple[Array, Array]:
     return (n + mu * t) / slant, (n - mu * t) / slant
 
 
-def _roughly_on_arc(a: Array, b: Array, v: Array) -> Array:
-    first, second = (a * v).sum(axis=1), (b * v).sum(axis=1)
-    inside = (_cross_of(a, v) >= 0) & (_cross_of(v, b) >= 0) & (first + second > 0)
-    result: Array = np.where(inside, np.hypot(*v.T), np.maximum(first, second))
-    return result
-
-
 def _roughly_on_sector(a: Array, b: Array, v: Array) -> Array:
-    narrow = (_cross_of(a, b) > 0) | ((a * b).sum(axis=1) > 0)
-    inside = (_cross_of(a, v) >= 0) | (_cross_of(v, b) >= 0)
+    narrow = (_cross_of(a, b) > 0) | ((a * b).sum(axis=1) > 0.5)  # 1 where it is no turn at all
+    after, before = _cross_of(a, v) > 0, _cross_of(v, b) > 0
     edge = np.maximum((a * v).sum(axis=1), (b * v).sum(axis=1))
-    result: Array = np.where(narrow, _roughly_on_arc(a, b, v), np.where(inside, np.hypot(*v.T), edge))
+    inside = np.where(narrow, after & before, after | before)
+    result: Array = np.where(inside, np.hypot(*v.T), edge)
     return result

@@ -18,6 +18,8 @@ from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.protocol import Point
 from regrasp.verification.placed.roots import root_above, root_below
 
+_THINNEST = 0.1  # sine of a sector's angle: what rounding moves its tip by is ten times that of its edges
+
 
 def cone_edges(d: Point, mu: Fraction) -> tuple[Point, Point]:
     """The edges of the cone about the normal (-d_y, d_x), the clockwise one first."""
@@ -62,7 +64,7 @@ def roughly_eroded(a: Array, b: Array, limit: float, margin: float, v: Array) ->
         tip = (a + b) * (margin / across)[:, None]
     corners = np.max([(c * v).sum(axis=1) for c in (left, right, tip)], axis=0)
     inside = (limit * one >= margin * speed) & (limit * two >= margin * speed)
-    result: Array = np.where(across <= 1e-9, np.inf, np.where(inside, limit * speed, corners))
+    result: Array = np.where(across < _THINNEST, np.inf, np.where(inside, limit * speed, corners))
     return result
 
 

@@ -37,12 +37,9 @@ Arc = tuple[int, int, float, float]
 
 def check_proof(proof: Proof) -> list[str]:
     """What is wrong with the tree of boxes or with what excludes them, in words; nothing for a proof."""
-    broken = _shapes(proof)
-    if broken:
-        return broken
     try:
-        return _Checked(proof).violations()
-    except (ValueError, OverflowError, ZeroDivisionError) as error:
+        return _shapes(proof) or _Checked(proof).violations()
+    except (ArithmeticError, LookupError, TypeError, ValueError) as error:
         return [f"proof: its numbers are none to compute with: {error}"]
 
 
@@ -66,7 +63,7 @@ def _shapes(proof: Proof) -> list[str]:
     if proof.rings is not None:
         first = np.asarray(proof.rings)
         apart = np.diff(np.append(first, len(proof.vertices))) >= 3
-        if proof.control is not None or not (first[:1] == 0).all() or not apart.all():
+        if proof.control is not None or first[:1].tolist() != [0] or not apart.all():
             return ["proof: rings must begin at vertices, three or more apart, the first at 0"]
     if proof.tied is not None:
         columns = 3 * len(proof.loads) + ties_of(k) * (len(proof.loads) - 1)
@@ -106,7 +103,7 @@ class _Checked:
         broken = [
             f"proof: side {i} is no stretch of an edge"
             for i, (e, lo, hi) in enumerate(self.sides)
-            if not (0 <= e < self.boundary.count and e <= lo < hi <= e + 1)
+            if not (e == self.proof.sides[i, 0] and 0 <= e < self.boundary.count and e <= lo < hi <= e + 1)
             or not self.boundary.turns_little(e, lo - e, hi - e)
         ]
         broken += [
@@ -121,7 +118,7 @@ class _Checked:
         if self._arcs(0) != [everything] * self.proof.fingers:
             return ["proof: box 0 must give every finger the whole boundary"]
         self.clear = clear_boxes(self.proof, self.boundary)
-        seen, waiting = {0}, [0]
+        left, waiting = set(range(1, len(self.proof.children))), [0]
         while waiting:
             box = waiting.pop()
             first, count = (int(c) for c in self.proof.children[box])
@@ -129,13 +126,13 @@ class _Checked:
                 broken += self._excluded(box)
                 continue
             inside = range(first, first + count)
-            if first < 0 or first + count > len(self.proof.children) or not seen.isdisjoint(inside):
+            if not all(b in left for b in inside):
                 return [*broken, f"proof: box {box} is split into boxes that are not there, or not its own"]
-            seen.update(inside)
+            left.difference_update(inside)
             waiting += inside
             if wrong := self._covered(box, inside):  # no box inside need be one
                 return [*broken, *wrong]
-        if len(seen) < len(self.proof.children):
+        if left:
             broken.append("proof: some boxes belong to no other")
         return broken
 
@@ -149,11 +146,9 @@ class _Checked:
         wrong = [f"proof: box {box} is not covered by the boxes it is split into"]
         split = [f for f, arc in enumerate(arcs) if any(part[f] != arc for part in parts)]
         count = len(inside) - 1
-        if not split or len(split) != count:
+        if not split or any(arcs[f] != arcs[split[0]] for f in split):
             return wrong
         at = split[0]
-        if any(arcs[f] != arcs[at] for f in split):
-            return wrong
         left, right = parts[0][at], parts[-1][at]
         if not self._halves(arcs[at], left, right):
             return wrong
