@@ -271,7 +271,13 @@ def _swap_constants(module: ModuleType, new: CodeType) -> bool:
         old = getattr(module, name, None)
         if isinstance(value, type) and isinstance(old, type) and old.__module__ == module.__name__:
             changed |= _swap_defaults(old, value)
-        if name.startswith("__") or not _is_plain(value) or not _is_plain(old) or value == old:
+        if (
+            name.startswith("__")
+            or value is old  # NaN, too
+            or not _is_plain(value)
+            or not _is_plain(old)
+            or value == old
+        ):
             continue
         for other in list(sys.modules.values()):
             if isinstance(other, ModuleType) and vars(other).get(name) is old:

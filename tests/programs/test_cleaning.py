@@ -111,7 +111,7 @@ def test_duals_on_the_boundary_of_a_cone_stay_there(noise, unit) -> None:
     assert proven >= 19
 
 
-@pytest.mark.parametrize(("share", "kept"), [(0.9995, True), (0.998, False)])
+@pytest.mark.parametrize(("share", "kept"), [(1 - 0.9995e-3, True), (1 - 1.0005e-3, False)])
 def test_how_near_a_boundary_is_touched(share, kept) -> None:
     """z1 of the cone is to grow by a thousandth: it meets the boundary only where this is touched."""
     rows = [[1.0, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1.001, 0], [-1, 0, 0]]
@@ -133,3 +133,36 @@ def test_a_proof_of_a_thousand_rows_is_cleaned() -> None:
     p = program(np.zeros((n, n)), np.zeros(n), rows, np.r_[-np.ones(n - 1), 0], nonnegative(n))
     z = 1 + 1e-3 * np.random.default_rng(0).normal(size=n)
     assert infeasibility_residual(p, cleaned_duals(p, z, PROVEN)) <= PROVEN
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
+def test_every_guess_of_noise_on_both_sides(noise) -> None:
+    """x <= 1 and x >= 2 by 1.0005 of it, y by 0.9995 of it, beside a w <= 0 and w >= 0 by one."""
+    rows = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, -1]]
+    p = program(np.zeros((3, 3)), np.zeros(3), rows, [1, -2, 0, 0, 0], nonnegative(5))
+    true, off = 1.0005 * noise or 1e-11, 0.9995 * noise
+    z = np.array([true, true, off, 1.0, 1.0])
+    clean = cleaned_duals(p, z, 0.0, steps=0)
+    assert clean.tolist() == [true, true, 0, 1, 1]
+    d = np.array([1.0, true, off])
+    ray = program(np.zeros((3, 3)), [0, -1, 0], [[0, 0, 1]], [0], zero(1))
+    assert cleaned_direction(ray, d, 0.0, steps=0).tolist() == [1, true, 0]
+
+
+def test_the_smallest_entries_are_moved_before_any_is_noise() -> None:
+    """A trillionth of the largest, of which one of 1e-3 is off."""
+    rows = [[1, 0], [-1, 0], [0, 1], [0, -1]]
+    p = program(np.zeros((2, 2)), np.zeros(2), rows, [1, -2, 0, 0], nonnegative(4))
+    clean = cleaned_duals(p, np.array([1e-12, 1.001e-12, 1, 1]), PROVEN)
+    assert clean[0] == pytest.approx(1.0005e-12, rel=1e-6)
+    assert infeasibility_residual(p, clean) <= PROVEN
+
+
+def test_three_steps_are_taken_from_every_guess(monkeypatch) -> None:
+    import scipy.sparse.linalg as linear
+
+    seen, given = [], linear.lsmr
+    monkeypatch.setattr(linear, "lsmr", lambda *a, **k: (seen.append(1), given(*a, **k))[1])
+    free = program([[0.0]], [0.0], [[1.0], [1.0]], [1, 2], nonnegative(2))
+    cleaned_duals(free, np.ones(2), 0.0)
+    assert len(seen) == 3 * 5

@@ -255,6 +255,13 @@ def test_rows_that_are_one_to_rounding_count_as_one() -> None:
     np.testing.assert_allclose(x, [1, 0], atol=1e-9)
 
 
+def test_rows_that_differ_by_less_than_a_millionth_are_not_told_apart() -> None:
+    """A second y = 1e-6 would be, by rows that differ by 1e-7 of it: 1e-14 of what steps are found by."""
+    p = program(np.eye(2), [0, 0], [[1, 0], [1, 1e-7]], [1, 1 + 1e-13], zero(2))
+    x, _ = polished(p, np.array([1 + 1e-5, 1e-5]), np.array([-1.0, 0]), 1e-12)
+    np.testing.assert_allclose(x, [1, 0], atol=1e-9)
+
+
 def test_five_steps_are_enough_by_the_curvature_of_cones() -> None:
     """min -x1 - 2 x2 in an ellipse, and beside a plane: by nothing but the curvature is x found."""
     for width in (1.0, 3.0, 0.2):
