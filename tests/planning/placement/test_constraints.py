@@ -34,7 +34,7 @@ def sampled_best(fingers: int, count: int, objective: str, allowed=lambda grasp:
     [("sum_normal", {"max_force": 0.65}), ("effort", {"min_normal": 0.45}), ("peak", {"min_normal": 0.5})],
 )
 def test_no_sampled_placement_within_the_limits_is_better(objective: str, limits: dict[str, float]) -> None:
-    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective=objective, most_boxes=3000, **limits)
+    chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective=objective, most_boxes=512, **limits)
     free = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective=objective)
     sampled = sampled_best(2, 14, objective, **limits)
     assert free.bound <= chosen.value * (1 + 1e-9)
@@ -69,6 +69,46 @@ def test_a_gripper_of_little_reach_gets_what_it_reaches_and_an_honest_gap() -> N
     assert rg.verify(chosen).ok
 
 
+def test_fingers_that_must_be_opposite_are_found_though_no_box_leads_there() -> None:
+    def opposite(first: np.ndarray, second: np.ndarray, angle: float) -> np.ndarray:
+        return np.abs((first - second)[:, 0]) < 0.02
+
+    chosen = rg.choose_grasp(
+        BRACKET, 2, TILTED, friction=0.4, objective="peak", keep=opposite, most_boxes=256
+    )
+    com = BRACKET.centre_of_mass
+    values = []
+    for x in np.linspace(1.05, 3.95, 30):  # along the foot, from below and above
+        pair = [rg.Contact([x, y] - com, normal=[0, 1 - 2 * y], friction=0.4) for y in (0.0, 1.0)]
+        try:
+            values.append(max(rg.choose_state(rg.Grasp(pair), load, "peak").value for load in LOADS))
+        except rg.Infeasible:
+            continue
+    assert values and chosen.bound <= chosen.value <= min(values) * (1 + 1e-6)
+    assert bool(opposite(*chosen.grasp.positions[:, None], 0.0)[0])
+
+
+def test_who_stays_when_a_finger_leaves_holds_by_forces_that_are_no_rounding() -> None:
+    """Of two loads each pair of the first choice held one, and the other by a million times its force."""
+    shape = rg.Outline(
+        [[1.156, 0.168], [0.58, 0.81], [-0.1, 0.942], [-1.048, 1.008], [-1.063, 0.647], [-0.646, -0.165],
+         [-0.71, -1.078], [-0.19, -1.318], [0.719, -0.714], [0.447, -0.27]]
+    )  # fmt: skip
+    loads = [rg.Wrench([-0.76, -0.863], -0.092), rg.Wrench([0.562, -0.843], 0.144)]
+    chosen = rg.choose_grasp(
+        shape, 3, rg.LoadSet.hull(loads), friction=0.3, objective="peak_normal", removable=True,
+        most_boxes=256,
+    )  # fmt: skip
+
+    def largest(pair: tuple[rg.Contact, ...]) -> float:
+        try:
+            return max(rg.choose_state(rg.Grasp(pair), load, "peak").value for load in loads)
+        except rg.Infeasible:
+            return np.inf
+
+    assert min(map(largest, combinations(chosen.grasp, 2))) <= 1.2e3
+
+
 def test_a_finger_can_leave_what_is_chosen_removable() -> None:
     chosen = rg.choose_grasp(
         BRACKET, 3, TILTED, friction=0.4, objective="effort", removable=True, max_force=1.0, most_boxes=3000
@@ -89,5 +129,7 @@ def test_a_limit_too_low_is_refused_with_a_proof_and_a_filter_without() -> None:
         rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, max_force=0.3)
     assert rg.verify(caught.value.certificate).ok
     with pytest.raises(rg.Infeasible, match="not proven") as caught:
-        rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, keep=lambda p, q, a: [False], most_boxes=256)
+        rg.choose_grasp(
+            BRACKET, 2, TILTED, friction=0.4, keep=lambda p, q, a: len(p) * [False], most_boxes=256
+        )
     assert rg.verify(caught.value.certificate).ok

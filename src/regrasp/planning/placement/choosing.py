@@ -14,7 +14,7 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
-from regrasp.planning.placement.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
+from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.laws import LEVELS, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
@@ -82,7 +82,7 @@ def choose_grasp(
             one and (k, 2) of the other, relative to the centre of mass [m], and the object's angle, here 0,
             that returns (k,) booleans; it is asked for every two fingers of a grasp.
         removable: whether one finger at least must be free to leave: the others hold all the loads, too, with
-            forces of at most ``max_force``.
+            forces of at most ``max_force``, or of a thousand times the loads without it.
         disturbance: a hull of deviations, added to the load, for ``answered`` and ``wrench``.
         length: by which torques are divided, for ``wrench_ball`` [m]; the farthest reach of the outline from
             its centre of mass if not given.

@@ -80,13 +80,8 @@ class Search:
 
     def _try_points(self) -> None:
         """Take the best placement on some points spread evenly for found, where one holds."""
-        sides, k = self.sides, self.fingers
-        widths = np.diff(sides.ends, axis=1)[:, 0]
-        lengths = widths * sides.lengths[sides.edges]
-        until = np.cumsum(lengths)
-        along = (np.arange(_POINTS[k]) + 0.5) / _POINTS[k] * until[-1]
-        on = np.searchsorted(until, along)
-        u = sides.ends[on, 1] - (until[on] - along) / lengths[on] * widths[on]
+        k = self.fingers
+        on, u = self.sides.spread(_POINTS[k])
         for few in map(list, combinations(range(len(u)), k)):
             norm = self.norm_at(on[few], u[few]) if self.are_apart(on[few], u[few]) else inf
             if norm < self.best:

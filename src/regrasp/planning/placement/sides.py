@@ -83,6 +83,15 @@ class Sides(ArrayValue):
         spans = [(max(lo + turn, edge), min(hi + turn, edge + 1.0)) for turn in (0.0, -around)]
         return [(a, b) for a, b in spans if a < b]
 
+    def spread(self, count: int) -> tuple[np.ndarray, Array]:
+        """The sides and u of places evenly spread over all sides."""
+        widths = np.diff(self.ends, axis=1)[:, 0]
+        lengths = widths * self.lengths[self.edges]
+        until = np.cumsum(lengths)
+        along = (np.arange(count) + 0.5) / count * until[-1]
+        on = np.searchsorted(until, along)
+        return on, self.ends[on, 1] - (until[on] - along) / lengths[on] * widths[on]
+
     def moved(self, place: int, u: float, way: float) -> tuple[int, float]:
         """A place some way along its side, a fraction of the edge, or at the end of the side."""
         least, most = self.ends[place].tolist()

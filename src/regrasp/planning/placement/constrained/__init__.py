@@ -1,0 +1,1 @@
+"""Constraints that bounds know nothing of, and where to begin with them."""

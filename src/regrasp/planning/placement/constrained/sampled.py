@@ -1,0 +1,144 @@
+"""Placements of points spread over the sides that may keep constraints, and how fingers slide from there."""
+
+from collections.abc import Callable, Iterator
+from itertools import combinations
+from math import inf
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array, Flags
+from regrasp.planning.placement.laws import Law
+from regrasp.planning.placement.search import Search
+
+Placed = tuple[float, np.ndarray, Array]
+May = Callable[[Array, Array], Flags]
+"""Which of two points (m, 2) and (m, 2) fingers may be at."""
+Value = Callable[[np.ndarray, Array, float], float]
+"""Of a placement where it is below a level; infinite elsewhere."""
+_POINTS = {2: 160, 3: 48, 4: 20}  # of so many fingers: 5,000 to 17,000 placements
+_OF_SAME_EDGES = 2
+_DRAWN = 3  # ways for all fingers at once, drawn at each step, a finger
+_GAIN = 1e-6  # of a value, the least that counts
+
+LARGEST = Law("force", "largest")
+_POWER = {"sum": 1.0, "squares": 0.5, "largest": 0.0}  # of k, the norm of k ones
+
+
+def sampled(
+    search: Search,
+    may: May,
+    limit: float,
+    min_normal: float,
+    leaving: float | None,
+) -> list[Placed]:
+    """Placements of points that hold the loads with forces of at most ``limit``, what may be best first.
+
+    Few of the same edges are given. Their norms are what forces reach that push with ``min_normal`` along
+    each normal, and as little as possible on top; those that cannot come last.
+
+    Args:
+        search: its sides, loads and law.
+        may: which of two points (m, 2) and (m, 2) fingers may be at.
+        limit: of every force [N], perhaps infinite.
+        min_normal: with which every finger pushes at the least [N].
+        leaving: the same of those that must hold the loads without some finger; None where none has to leave.
+    """
+    k = search.fingers
+    on, u = _points(search, _POINTS[k])
+    norms: dict[tuple[int, ...], float] = {}
+
+    def largest(few: tuple[int, ...]) -> float:
+        if few not in norms:
+            norms[few] = search.norm_at(on[list(few)], u[list(few)], LARGEST)
+        return norms[few]
+
+    squeezing, pushes = search.anew(), min_normal * _pushes(search, on, u)
+    found: list[tuple[float, float, np.ndarray, Array]] = []
+    for few in _cliques(_allowed(search, may, on, u), k):
+        at = list(few)
+        if leaving is not None and all(largest(rest) > leaving for rest in combinations(few, k - 1)):
+            continue
+        norm = search.norm_at(on[at], u[at])
+        if norm == inf or (limit < inf and largest(few) > limit):
+            continue
+        reached = norm
+        if min_normal:
+            squeezing.under(search.loads + pushes[at].sum(axis=0))
+            reached = min_normal * k ** _POWER[search.law.norm] + squeezing.norm_at(on[at], u[at])
+        found.append((reached, norm, on[at], u[at]))
+    found.sort(key=lambda one: one[:2])
+    taken: dict[tuple[int, ...], int] = {}
+    first: list[Placed] = []
+    for reached, _, places, u in found:
+        edges = tuple(places)
+        taken[edges] = taken.get(edges, 0) + 1
+        if taken[edges] <= _OF_SAME_EDGES:
+            first.append((reached, places, u))
+    return first
+
+
+def slid(search: Search, placed: Placed, value: Value, step: float, last: float) -> Placed:
+    """The best placement that fingers find by sliding, one alone or all at once, by steps that are halved.
+
+    step, last: parts of an edge.
+    """
+    best, places, u = placed
+    rng, alone = np.random.default_rng(0), np.vstack([np.eye(len(u)), -np.eye(len(u))])
+    while step > last:
+        helped = False
+        for way in np.vstack([alone, rng.uniform(-1, 1, (_DRAWN * len(u), len(u)))]):
+            moved = [
+                search.sides.moved(int(on), float(at), step * side)
+                for on, at, side in zip(places, u, way, strict=True)
+            ]
+            on, at = np.array([m[0] for m in moved]), np.array([m[1] for m in moved])
+            if np.array_equal(at, u):
+                continue
+            found = value(on, at, best * (1 - _GAIN))
+            if found < inf:
+                best, places, u, helped = found, on, at, True
+        step *= 1.0 if helped else 0.5
+    return best, places, u
+
+
+def _points(search: Search, count: int) -> tuple[np.ndarray, Array]:
+    """Sides and u of so many points, evenly spread; of few sides the ends are among them."""
+    ends = search.sides.ends
+    if 2 * ends.size > count:
+        return search.sides.spread(count)
+    on, u = search.sides.spread(count - ends.size)
+    on, u = np.concatenate([on, np.repeat(np.arange(len(ends)), 2)]), np.concatenate([u, ends.ravel()])
+    order = np.argsort(u, kind="stable")
+    return on[order], u[order]
+
+
+def _allowed(search: Search, may: May, on: np.ndarray, u: Array) -> Flags:
+    """(n, n) which two points fingers may be at, the first before the second."""
+    points = search.sides.points(on, u)
+    first, second = np.triu_indices(len(u), 1)
+    apart = np.hypot(*(points[first] - points[second]).T) >= search.apart
+    first, second = first[apart], second[apart]
+    allowed = np.zeros((len(u), len(u)), bool)
+    allowed[first, second] = may(points[first], points[second])
+    return allowed
+
+
+def _cliques(allowed: Flags, k: int) -> Iterator[tuple[int, ...]]:
+    """Every k points of which each two are allowed."""
+
+    def longer(few: tuple[int, ...], more: Flags) -> Iterator[tuple[int, ...]]:
+        if len(few) == k:
+            yield few
+            return
+        for i in map(int, np.flatnonzero(more)):
+            yield from longer((*few, i), more & allowed[i])
+
+    return longer((), np.ones(len(allowed), bool))
+
+
+def _pushes(search: Search, on: np.ndarray, u: Array) -> Array:
+    """(n, 3) wrenches of unit forces along the normals of places [N, N m]."""
+    contacts = [search.sides.contact(int(side), float(at), 0.0, "F") for side, at in zip(on, u, strict=True)]
+    p, n = np.array([c.position for c in contacts]), np.array([c.normal for c in contacts])
+    result: Array = np.column_stack([n, p[:, 0] * n[:, 1] - p[:, 1] * n[:, 0]])
+    return result
