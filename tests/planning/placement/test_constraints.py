@@ -84,7 +84,8 @@ def test_fingers_that_must_be_opposite_are_found_though_no_box_leads_there() -> 
             values.append(max(rg.choose_state(rg.Grasp(pair), load, "peak").value for load in LOADS))
         except rg.Infeasible:
             continue
-    assert values and chosen.bound <= chosen.value <= min(values) * (1 + 1e-6)
+    assert values
+    assert chosen.bound <= chosen.value <= min(values) * (1 + 1e-6)
     assert bool(opposite(*chosen.grasp.positions[:, None], 0.0)[0])
 
 

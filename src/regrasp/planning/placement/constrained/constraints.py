@@ -6,7 +6,7 @@ A constraint leaves out placements, so what no placement at all goes below, no p
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from math import inf
+from math import inf, sqrt
 
 import numpy as np
 
@@ -160,9 +160,9 @@ def _norm(
     order = np.argsort(u, kind="stable")
     grasp = grasp_at(search.sides, places[order], u[order], asked.friction)
     limits = {"max_force": kept.max_force, "min_normal": kept.min_normal or None}
-    return _worst(grasp, asked.loads, asked.objective, level**asked.law.power, limits) ** (
-        1 / asked.law.power
-    )
+    power = float(asked.law.power)
+    worst: float = _worst(grasp, asked.loads, asked.objective, level**power, limits)
+    return worst if power == 1.0 else sqrt(worst)
 
 
 def _worst(

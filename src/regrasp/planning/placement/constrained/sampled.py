@@ -33,8 +33,8 @@ def sampled(
 ) -> list[Placed]:
     """Placements of points that hold the loads with forces of at most ``limit``, what may be best first.
 
-    Few of the same edges are given. Their norms are what forces reach that push with ``min_normal`` along
-    each normal, and as little as possible on top; those that cannot come last.
+    Few of the same edges are given. Their norms are about what forces reach that push with ``min_normal`` and
+    what friction it allows, and as little as possible on top; those that cannot come last.
 
     Args:
         search: its sides, loads and law.
@@ -52,7 +52,7 @@ def sampled(
             norms[few] = search.norm_at(on[list(few)], u[list(few)], LARGEST)
         return norms[few]
 
-    squeezing, pushes = search.anew(), min_normal * _pushes(search, on, u)
+    squeezing, (along, across) = search.anew(), min_normal * _pushes(search, on, u)
     found: list[tuple[float, float, np.ndarray, Array]] = []
     for few in _cliques(_allowed(search, may, on, u), k):
         at = list(few)
@@ -63,7 +63,7 @@ def sampled(
             continue
         reached = norm
         if min_normal:
-            squeezing.under(search.loads + pushes[at].sum(axis=0))
+            squeezing.under(_pressed(search.loads + along[at].sum(axis=0), across[at].T, search))
             reached = min_normal * k ** _POWER[search.law.norm] + squeezing.norm_at(on[at], u[at])
         found.append((reached, norm, on[at], u[at]))
     found.sort(key=lambda one: one[:2])
@@ -137,8 +137,20 @@ def _cliques(allowed: Flags, k: int) -> Iterator[tuple[int, ...]]:
 
 
 def _pushes(search: Search, on: np.ndarray, u: Array) -> Array:
-    """(n, 3) wrenches of unit forces along the normals of places [N, N m]."""
+    """(2, n, 3) wrenches of unit forces along the normals of places, and across [N, N m]."""
     contacts = [search.sides.contact(int(side), float(at), 0.0, "F") for side, at in zip(on, u, strict=True)]
     p, n = np.array([c.position for c in contacts]), np.array([c.normal for c in contacts])
-    result: Array = np.column_stack([n, p[:, 0] * n[:, 1] - p[:, 1] * n[:, 0]])
+    t = n[:, ::-1] * [-1, 1]
+    result: Array = np.array([np.column_stack([f, p[:, 0] * f[:, 1] - p[:, 1] * f[:, 0]]) for f in (n, t)])
+    return result
+
+
+def _pressed(loads: Array, across: Array, search: Search) -> Array:
+    """Loads (L, 3) after the friction of fingers that push has taken up as much as it may, roughly.
+
+    across: (3, k) wrenches of forces across the normals.
+    """
+    scale = np.array([1, 1, 1 / search.sides.size])
+    shares = np.linalg.lstsq(scale[:, None] * across, -(scale * loads).T, rcond=None)[0]
+    result: Array = loads + (across @ np.clip(shares, -search.friction, search.friction)).T
     return result
