@@ -59,7 +59,7 @@ def said(regions) -> str:
 def test_arcs_are_on_one_side(turn) -> None:
     assert said(made(turn=turn)) == ""
     assert said(made(arcs=((2, 2), (8, 8)), turn=turn)) == ""
-    for k, end, (part, good) in product((0, 1), (0, 1), ((0.0, True), (0.8, True), (1.2, False))):
+    for k, end, (part, good) in product((0, 1), (0, 1), ((0.0, True), (0.9, True), (1.1, False))):
         arcs = np.array([[1.0, 3], [7, 9]])
         arcs[k, end] = ((0, 4), (6, 10))[k][end] + (-1, 1)[end] * part * SLACK
         found = said(made(arcs=arcs, turn=turn))
@@ -68,9 +68,10 @@ def test_arcs_are_on_one_side(turn) -> None:
     for far in ((-1, 3), (1, 5)):
         assert said(made(arcs=(far, (7, 9)), turn=turn)) == "arc 1 is not on one straight side"
     assert said(made(arcs=((3, 1), (7, 9)), turn=turn)) == "arc 1 must not end before it begins"
-    regions = made(turn=turn)
-    regions.arcs[0, 1] = nan
-    assert said(regions) == "arc 1 must not end before it begins"
+    for end, wrong in (1, nan), (1, inf), (0, -inf), (0, nan):
+        regions = made(turn=turn)
+        regions.arcs[0, end] = wrong
+        assert said(regions) == "arc 1 must not end before it begins"
 
 
 def test_the_outline_ends_where_it_begins() -> None:
@@ -83,7 +84,7 @@ def test_the_outline_ends_where_it_begins() -> None:
     state = squeeze([-2, -1], [2, 0.5], normals=sides)
     for s in (0.0, 12.0):  # where the first side begins, its normal counts
         regions = made(((s, s), (5.5, 5.5)), (s, 5.5), grasp=state.grasp, corners=(state,))
-        assert said(regions) == "4 states of corners are missing"
+        assert said(regions) == "contact 1 is not at its place"
 
 
 def test_contacts_are_at_their_places() -> None:
@@ -92,6 +93,12 @@ def test_contacts_are_at_their_places() -> None:
             at = [low(2.0), high(8.0)]
             at[k][axis] += sign * part * SLACK
             found = said(made(grasp=squeeze(*at).grasp))
+            assert found == ("" if good else f"contact {k + 1} is not at its place")
+    for k, sign in product((0, 1), (-1, 1)):
+        for part, good in (0.9, True), (1.1, False):
+            normals = [[0, 1.0], [0, -1.0]]
+            normals[k][0] = sign * part * 4 * float(RESOLUTION)
+            found = said(made(grasp=squeeze(low(2), high(8), normals=normals).grasp))
             assert found == ("" if good else f"contact {k + 1} is not at its place")
     for places in ((2.5, 8), (2, 8.5)):
         found = said(made(places=places, grasp=squeeze(low(2), high(8)).grasp))
@@ -105,7 +112,7 @@ def test_half_widths_reach_to_the_ends_of_sides() -> None:
             arcs[k, end] += (1, -1)[end] * part * SLACK
             found = said(made(arcs=arcs, half_width=1.0))
             assert found == ("" if good else f"arc {k + 1} is less than the half width 1 about its place")
-        for part, good in (1.9e-6, True), (2.1e-6, False):  # a place 0.5 from the end of a side
+        for part, good in (1.9995e-6, True), (2.0005e-6, False):  # a place 0.5 from the end of a side
             arcs, places, away = np.array([[1.0, 3], [7, 9]]), np.array([2.0, 8.0]), (-1, 1)[end]
             side = ((0, 4), (6, 10))[k][end]
             places[k] = side - away * 0.5
@@ -126,7 +133,24 @@ def test_what_regions_need() -> None:
     for k in range(4):
         corners = [state for number, state in enumerate(made().corners) if number != k]
         assert said(made(corners=tuple(corners))) == "1 states of corners are missing"
+    three = rg.Grasp([*corners[0].grasp, rg.Contact([2, 0], [-1, 0], 3.0)])
+    other = rg.GraspState(three, rg.Wrench([0, 0]), [*corners[0].forces, [0, 0]])
+    assert said(made(corners=(*corners, other))) == "1 states of corners are missing"
     assert said(made(corners=made().corners[:1])) == "3 states of corners are missing"
+
+
+def test_no_force_is_above_the_limit() -> None:
+    state = squeeze(low(2), high(8))
+    still = rg.GraspState(state.grasp, rg.Wrench([0, 0]), np.zeros((2, 2)))
+    light = rg.GraspState(state.grasp, rg.Wrench([0, 0]), state.forces / 8)  # 2 / 8
+    more = squeeze(low(2), high(8), 0.25)
+    for corner, limit, above in (
+        (still, 0.0, False), (still, -5e-324, True), (light, 0.25, False),
+        (light, np.nextafter(0.25, 0), True), (more, 2.5, False), (more, 2.25, True),
+    ):  # fmt: skip
+        found = said(made(((2, 2), (8, 8)), corners=(corner,), max_force=limit))
+        assert ("corner state 1: a force of" in found) == above, limit
+        assert ("is above" in found) == above
 
 
 def test_margins_are_those_of_the_worst_corner() -> None:

@@ -3,7 +3,9 @@
 A force of a finger at p, h off the chord A B, acts along a line that meets the chord within h tan(gamma) of
 the foot of p, gamma the widest angle between forces of the cone at A and B and the chord's normal. Where all
 feet are so far from A and from B, mixtures of the forces at A and at B press at each of these places: one of
-them is a force of the finger at p. It is in the cone of p if that contains the cone at A and B.
+them is a force of the finger at p. It is in the cone of p if that contains the cone at A and B. Control
+points stand for their curve, those of its derivative for its tangents. Doubles are off by a few 2^-53 of the
+reach, and tangents by as much of the longest that they are mixed from: 2^-46 is left for both.
 """
 
 from math import atan, tan
@@ -14,6 +16,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.verification.exact import RESOLUTION
 
 _WIDEST = 1.5  # [rad] of gamma
+_ROUNDING = 2.0**-46
 
 
 def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float, friction: float) -> bool:
@@ -23,27 +26,27 @@ def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float
     """
     lo, hi = span.tolist()
     edges = np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1))
-    a, b = np.clip(lo - edges, 0.0, 1.0), np.clip(hi - edges, 0.0, 1.0)
+    a, b = np.maximum(lo - edges, 0.0), np.minimum(hi - edges, 1.0)
     pieces = np.moveaxis(control[edges.astype(int) % len(control)], 1, 0)
     points = np.concatenate([_polar(pieces, at) for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))])
-    tangents = np.concatenate([_polar(np.diff(pieces, axis=0), at) for at in ((a, a), (a, b), (b, b))])
-    tangents = tangents / np.hypot(*tangents.T)[:, None]
-    inward = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
-    slack = float(RESOLUTION)
-    apart = np.arctan2(np.abs(normal[0] * inward[:, 1] - normal[1] * inward[:, 0]), inward @ normal)
-    if not (apart + atan(inner) <= atan(friction) + slack).all():
+    ways = np.diff(pieces, axis=0)
+    tangents = np.concatenate([_polar(ways, at) for at in ((a, a), (a, b), (b, b))])
+    apart = np.abs(np.arctan2(tangents @ normal, tangents @ [normal[1], -normal[0]]))
+    doubt = _ROUNDING * np.hypot(*ways.T).max()
+    if not ((apart + atan(inner) - atan(friction)) * np.hypot(*tangents.T) <= -doubt).all():
         return False
     chord = ends[1] - ends[0]
     length = float(np.hypot(*chord))
     reach = float(np.abs(control).max())
-    if length <= slack * reach:
-        return bool((np.hypot(*(points - ends[0]).T) <= slack * reach).all())
+    slack = float(RESOLUTION) * reach
+    if length <= slack:
+        return bool((np.hypot(*(points - ends[0]).T) <= slack).all())
     t = chord / length
     gamma = abs(float(np.arctan2(normal @ t, t[0] * normal[1] - t[1] * normal[0]))) + atan(inner)
     if gamma > _WIDEST:
         return False
     along, off = (points - ends[0]) @ t, np.abs(points @ [-t[1], t[0]] - ends[0] @ [-t[1], t[0]]).max()
-    need = off * tan(gamma)
+    need = off * tan(gamma) + _ROUNDING * reach * (1 + tan(gamma))
     return bool(along.min() >= need and along.max() + need <= length)
 
 
@@ -59,6 +62,12 @@ def covered(cells: Array, box: Array) -> bool:
                 left[i, 1] = right[i, 0] = cut
                 return covered(cells[before], left) and covered(cells[after], right)
     return False
+
+
+def chords(control: Array, span: Array) -> float:
+    """The length of a span from below [m], and nearly all of it."""
+    at = np.linspace(span[0], span[1], 65)
+    return float(np.hypot(*np.diff([point_at(control, u) for u in at], axis=0).T).sum())
 
 
 def point_at(control: Array, u: float) -> Array:

@@ -8,6 +8,7 @@ keep them. Finger by finger, the corners of a box of arcs prove the whole of it.
 beside it (``curved_regions``).
 """
 
+from fractions import Fraction
 from itertools import product
 from math import inf
 from typing import Any, Protocol
@@ -17,12 +18,13 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
-from regrasp.verification.exact import RESOLUTION, check_state, least_angle
-from regrasp.verification.placed.curved_regions import beside, covered, point_at
+from regrasp.verification.exact import RESOLUTION, check_state, dot, exact, least_angle, root
+from regrasp.verification.placed.curved_regions import beside, chords, covered, point_at
 from regrasp.verification.placed.protocol import Shape
 from regrasp.verification.verdict import Verification
 
 _TO_THE_END = 1 - 2e-6  # of the way to the end of a side, which counts as all of it
+_TURNED = 4 * float(RESOLUTION)  # normals that differ by no more are the same
 
 
 class Curved(Shape, Protocol):
@@ -75,17 +77,15 @@ class Regions(Protocol):
 def verify_regions(regions: Regions) -> Verification:
     """The verdict on regions: that wherever in them the fingers are, they hold the loads of the corners."""
     broken = _check_corners(regions)
-    residuals, slacks, angles = [0.0], [inf], [inf]
+    residuals, slacks, angles, limit = [0.0], [inf], [inf], regions.max_force
     for i, state in enumerate(regions.corners, 1):
         residual, slack, violations = check_state(state, f"corner state {i}")
         residuals.append(residual)
         slacks.append(slack)
         angles.append(least_angle(state.grasp, state.forces))
-        largest = float(np.hypot(*state.forces.T).max())
-        if not largest <= regions.max_force:
-            violations.append(
-                f"corner state {i}: a force of {largest:.12g} is above {regions.max_force:.12g}"
-            )
+        largest = max(dot(f, f) for f in map(exact, state.forces.tolist()))
+        if not (limit >= 0 and (limit == inf or largest <= Fraction(limit) ** 2)):
+            violations.append(f"corner state {i}: a force of {root(largest):.12g} is above {limit:.12g}")
         broken += violations
     return Verification(tuple(broken), max(residuals), min(angles), min(slacks))
 
@@ -105,7 +105,7 @@ def _check_corners(regions: Regions) -> list[str]:
     if np.shape(regions.arcs) != (len(regions.grasp), 2) or places.shape != (len(regions.grasp),):
         return ["an arc and a place for each finger are needed"]
     for i, (lo, hi) in enumerate(regions.arcs.tolist(), 1):
-        if not lo <= hi:
+        if not -inf < lo <= hi < inf:
             return [f"arc {i} must not end before it begins"]
         middle = 0.5 * (lo + hi) % starts[-1]
         edge = min(int(np.searchsorted(starts, middle, side="right")) - 1, len(vertices) - 1)
@@ -114,8 +114,10 @@ def _check_corners(regions: Regions) -> list[str]:
             return [f"arc {i} is not on one straight side"]
         unit = along[edge] / lengths[edge]
         place = float(places[i - 1]) + off - lo
-        point = vertices[edge] + (place - starts[edge]) * unit
-        if not np.abs(point - regions.grasp.positions[i - 1]).max() <= slack:
+        point, normal = vertices[edge] + (place - starts[edge]) * unit, np.array([-unit[1], unit[0]])
+        contact = regions.grasp[i - 1]
+        turned = np.abs(normal - contact.normal).max() > _TURNED
+        if turned or not np.abs(point - contact.position).max() <= slack:
             return [f"contact {i} is not at its place"]
         before, after = place - off, off + hi - lo - place
         room = (place - starts[edge]) * _TO_THE_END, (starts[edge + 1] - place) * _TO_THE_END
@@ -123,44 +125,51 @@ def _check_corners(regions: Regions) -> list[str]:
         if not (0 <= half < inf and short <= slack):
             return [f"arc {i} is less than the half width {half:.12g} about its place"]
         ends.append([vertices[edge] + (s - starts[edge]) * unit for s in (off, off + hi - lo)])
-        normals.append([-unit[1], unit[0]])
-    return _missing(regions, ends, normals, slack)
+        normals.append(normal)
+    return _missing(regions, regions.corners, ends, normals, regions.grasp.frictions, slack)
 
 
 def _check_curved(regions: Regions, control: Array) -> list[str]:
     """The same on a curve, where the ends are those of chords beside it."""
-    k, spans = len(regions.grasp), regions.spans
-    if spans is None or not np.shape(spans) == np.shape(regions.arcs) == (k, 2):
+    k, n, spans = len(regions.grasp), len(control), np.asarray(regions.spans)
+    if not spans.shape == np.shape(regions.arcs) == (k, 2):
         return ["an arc and its span are needed for each finger"]
     if np.shape(regions.places) != (k,):
         return ["a place is needed for each finger"]
     if not regions.corners:
         return ["no corner has a state"]
     cells = np.asarray([spans] if regions.cells is None else regions.cells)
-    if cells.shape[1:] != (k, 2) or not covered(cells, np.asarray(spans)):
+    if cells.shape[1:] != (k, 2) or not covered(cells, spans):
         return ["the cells do not cover the arcs"]
+    if not ((cells >= -n) & (cells[:, :, :1] <= cells) & (cells <= 2 * n)).all():
+        return ["a cell must not end before it begins, nor run around more than once"]
     each, rest = divmod(len(regions.corners), len(cells))
-    if rest or not each:
+    if rest:
         return ["some states of corners are missing"]
-    for number, cell in enumerate(cells):
-        broken = _cell_wrong(regions, control, cell, regions.corners[number * each : (number + 1) * each])
-        if broken:
-            return broken
     slack = float(RESOLUTION) * float(np.abs(control).max())
     for i in range(k):
         place, half = float(regions.places[i]), regions.half_width
         if not np.hypot(*(regions.shape.points(place) - regions.grasp.positions[i])) <= 100 * slack:
             return [f"contact {i + 1} is not at its place"]
         before, after = place - regions.arcs[i, 0], regions.arcs[i, 1] - place
-        if not (0 <= half < inf and half - min(before, after) <= slack):
+        if not (half >= 0 and half - min(before, after) <= slack):
             return [f"arc {i + 1} is less than the half width {half:.12g} about its place"]
+        if not before + after <= 2 * chords(control, spans[i]) + slack:
+            return [f"arc {i + 1} is longer than its span"]
         for u, s in zip(spans[i], regions.arcs[i], strict=True):
             if not np.hypot(*(point_at(control, float(u)) - regions.shape.points(s))) <= 100 * slack:
                 return [f"the span of arc {i + 1} is another arc"]
+    for number, cell in enumerate(cells):
+        states = regions.corners[number * each : (number + 1) * each]
+        broken = _cell_wrong(regions, control, cell, states, slack)
+        if broken:
+            return broken
     return []
 
 
-def _cell_wrong(regions: Regions, control: Array, cell: Array, states: tuple[GraspState, ...]) -> list[str]:
+def _cell_wrong(
+    regions: Regions, control: Array, cell: Array, states: tuple[GraspState, ...], slack: float
+) -> list[str]:
     """That states beside a curve stand for all places of a cell (k, 2)."""
     k, first, last = len(cell), states[0].grasp, states[-1].grasp
     if len(first) != k or len(last) != k or not (first.normals == last.normals).all():
@@ -169,35 +178,26 @@ def _cell_wrong(regions: Regions, control: Array, cell: Array, states: tuple[Gra
     for i in range(k):
         at = np.array([first.positions[i], last.positions[i]])
         friction = float(regions.grasp.frictions[i])
-        if not cell[i, 0] <= cell[i, 1]:
-            return [f"arc {i + 1} must not end before it begins"]
         if not beside(control, cell[i], at, first.normals[i], float(first.frictions[i]), friction):
             return [f"the corners do not stand for all places of arc {i + 1}"]
         ends.append(list(at))
-    slack = float(RESOLUTION) * float(np.abs(control).max())
-    return _missing(regions, ends, first.normals.tolist(), slack, first.frictions, states)
+    return _missing(regions, states, ends, first.normals, first.frictions, slack)
 
 
 def _missing(
-    regions: Regions,
-    ends: list[Any],
-    normals: list[Any],
-    slack: float,
-    frictions: Array | None = None,
-    states: tuple[GraspState, ...] | None = None,
+    regions: Regions, states: Any, ends: list[Any], normals: Any, frictions: Array, slack: float
 ) -> list[str]:
     loads = {tuple(state.load.vector.tolist()) for state in regions.corners}
     if not loads:
         return ["no corner has a state"]
-    frictions = regions.grasp.frictions if frictions is None else frictions
     missing = 0
     for corner in product(*ends):
         here = {
             tuple(state.load.vector.tolist())
-            for state in (regions.corners if states is None else states)
+            for state in states
             if len(state.grasp) == len(corner)
             and np.abs(state.grasp.positions - corner).max() <= slack
-            and np.abs(state.grasp.normals - normals).max() <= 4 * float(RESOLUTION)
+            and np.abs(state.grasp.normals - normals).max() <= _TURNED
             and (state.grasp.frictions <= frictions).all()
         }
         missing += len(loads - here)
