@@ -44,7 +44,8 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
             for name in ("chosen*", "touching", "arc_lengths", "re*", "whole_sets", "curved*", "protocol")
         ],
         [
-            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "c*", "regions*", "what*")),
+            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "c*", "what*")),
+            "verification/proofs/regions/*.py",
             "verification/test_placement_proofs.py",
             "verification/by_hand/test_tied_by_hand.py",
             "verification/by_hand/test_answers_by_hand.py",
