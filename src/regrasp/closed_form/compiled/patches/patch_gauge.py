@@ -18,7 +18,8 @@ from regrasp.closed_form.compiled.compiling import VIEWS
 NEVER = 1e5
 """Norm, as a multiple of the wrench's, from which nothing is held: what columns cost that no finger makes."""
 _MOST = 150  # columns made
-_TILT = 1e-7  # of the wrench, which keeps it off faces of the bodies that columns span
+_TILT = 1e-10  # of the wrench, which keeps it off faces of the bodies that columns span
+_MISSED = 1e-8  # of the wrench, by which forces may be off it
 
 
 @njit(**VIEWS)
@@ -183,6 +184,29 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
             for c in range(3):
                 pushes[leaving, i, c] = pushed[i, c]
     return proven
+
+
+@njit(**VIEWS)
+def reached(w, k, work):  # type: ignore[no-untyped-def]
+    """The norm of forces that make w of the columns that ``gauge`` left; infinite where they miss it.
+
+    Columns of no finger, and of less than nothing, are what they miss.
+    """
+    inverse, shares = work[6], work[11]
+    total, missed, scale = 0.0, 0.0, 0.0
+    for r in range(6):
+        amount, there = 0.0, False
+        scale += abs(w[r])
+        for c in range(6):
+            amount += inverse[r, c] * w[c]
+        for i in range(k):
+            there = there or shares[r, i] > 0.0
+        total += max(amount, 0.0)
+        if not there:
+            missed = max(missed, abs(amount) / NEVER)
+        elif amount < 0.0:
+            missed = max(missed, -amount)
+    return total if missed <= _MISSED * scale else np.inf
 
 
 def workspace(k: int) -> tuple[Any, ...]:

@@ -14,7 +14,7 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.patches import patch_gauge
-from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, workspace
+from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, reached, workspace
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.closed_form.compiled.places.placement_search import (
     CLOSED,
@@ -30,6 +30,7 @@ from regrasp.closed_form.compiled.places.placement_search import (
 from regrasp.compilation import kept
 
 _CORNERS = 3  # rows of a triangle
+_AGREE = 1e-6  # of a norm, by which what forces reach and a bound agree
 
 
 @njit(**VIEWS)
@@ -38,9 +39,10 @@ def _apart(p, q):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _judge(rows, first, count, loads, law, level, start, twist, seen, work):  # type: ignore[no-untyped-def]
+def _judge(rows, first, count, loads, law, level, start, twist, seen, work, placed):  # type: ignore[no-untyped-def]
     """The bound of patches, the load behind it, and where forces press; until one load reaches ``level``.
 
+    placed: patches are points, and the norm is asked for that forces reach, where the bound is less.
     seen: (k, 6) of each finger: weight, weight times place (3), times its square, row of the largest weight.
     """
     mu, size, norm, precision = law
@@ -55,6 +57,10 @@ def _judge(rows, first, count, loads, law, level, start, twist, seen, work):  # 
     for number in range(len(loads)):
         load = number if number > start else (number - 1 if number > 0 else start)
         found = gauge(rows, first, count, loads[load], mu, size, norm, level, precision, best, work[:13])
+        if placed and found < level:
+            norm_of_forces = reached(loads[load], k, work[:13])
+            if found < norm_of_forces * (1.0 - max(precision, _AGREE)):
+                found = norm_of_forces
         if found > worst:
             worst, critical = found, load
             for c in range(6):
@@ -173,7 +179,7 @@ def value_of(spots, loads, law, level, start, least, spare):  # type: ignore[no-
         for j in range(i):
             if _apart(spots[i], spots[j]) < least:
                 return np.inf
-    found, _ = _judge(spots, one, single, loads, law, level, start, scrap, nowhere, work)
+    found, _ = _judge(spots, one, single, loads, law, level, start, scrap, nowhere, work, True)
     return found
 
 
@@ -188,14 +194,15 @@ def spare(k: int) -> tuple[Any, ...]:
 def _loop(digest: str) -> Any:
     @kept("the search for places on surfaces", error_model="numpy", _nrt=False)
     def search(  # type: ignore[no-untyped-def]
-        rows, spans, tree, radius, loads, law, usable, tolerance, least, narrow, boxes, heap, state, found,
-        tried, budget, spare,
+        rows, spans, tree, radius, loads, trials, law, usable, tolerance, least, narrow, boxes, heap, state,
+        found, tried, budget, spare,
     ):  # fmt: skip
         """Goes on with a search; see the module. Returns why it ends.
 
         rows: (R, 6) points and inward normals. spans: (K, 2) first row and rows of each patch. tree: (K, 3)
-        its halves, -1 for none, and the edge across which a triangle is halved. radius: (K,) of each. law:
-        mu, size, norm, precision; usable: mu for placements tried.
+        its halves, -1 for none, and the edge across which a triangle is halved. radius: (K,) of each. trials:
+        loads, and more that placements tried must hold, too. law: mu, size, norm, precision; usable: mu for
+        placements tried.
         boxes: patches (N, k), bounds (N,), twists (N, 6), loads' numbers (N,), kinds (N,), first children and
         their number (N, 2), placements to try (N, k, 6), fingers to split (N,). state: numbers of boxes, of
         those in the heap, of placements tried, of patches, of rows. found: (1 + 6 k) the least value and its
@@ -209,7 +216,9 @@ def _loop(digest: str) -> Any:
         trying = (usable, size, norm, precision)
         if state[0] == 1 and kinds[0] == OPEN and state[2] == 0 and bounds[0] == 0.0:
             _locate(spans, radius, patches[0], first, count, wide)
-            bounds[0], critical[0] = _judge(rows, first, count, loads, law, np.inf, 0, twists[0], seen, work)
+            bounds[0], critical[0] = _judge(
+                rows, first, count, loads, law, np.inf, 0, twists[0], seen, work, False
+            )
             fingers[0] = _plan(rows, first, count, wide, narrow, seen, places[0])
         while state[1] > 0:
             level = found[0] * (1.0 - tolerance)
@@ -222,7 +231,7 @@ def _loop(digest: str) -> Any:
             looked += 1
             box = pop(heap, state[1], bounds)
             state[1] -= 1
-            value = value_of(places[box], loads, trying, found[0], critical[box], least, spare)
+            value = value_of(places[box], trials, trying, found[0], critical[box], least, spare)
             row = state[2] % len(tried)
             state[2] += 1
             tried[row, 0] = value
@@ -268,7 +277,7 @@ def _loop(digest: str) -> Any:
                 bounds[child] = max(known, bounds[box])
                 if known < level:
                     proven, load = _judge(
-                        rows, first, count, loads, law, level, critical[box], twist, seen, work
+                        rows, first, count, loads, law, level, critical[box], twist, seen, work, False
                     )
                     if proven > known and proven >= bounds[box]:
                         bounds[child], critical[child] = proven, load

@@ -12,6 +12,8 @@ from regrasp.closed_form.compiled.patches.patch_search import value_of
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.compilation import kept
 
+_WAYS, _TOGETHER = 8, 24  # directions in which one finger is moved, and moves of all
+
 
 @njit(**VIEWS)
 def _foot(rows, one, p, foot):  # type: ignore[no-untyped-def]
@@ -70,17 +72,27 @@ def _loop(digest: str) -> Any:
     ):
         """Moves spots (k, 6) while that lowers ``value``, computed if infinite, which it returns.
 
-        Steps of ``step`` in eight directions along the face are halved where none helps, to ``shortest``.
+        Steps of ``step`` in eight directions along the face, of one finger and of all, are halved where none
+        helps, to ``shortest``.
         """
         _ = digest
         k = len(spots)
-        p, foot = scratch[0], scratch[1]
+        p, foot, chance = scratch[0], scratch[1], 0.5
         if value == np.inf:
             value = value_of(spots, loads, law, value, 0, least, spare)
         while step > shortest:
             helped = False
-            for i in range(k):
-                for way in range(8):
+            for move in range(_WAYS * k + _TOGETHER):
+                for j in range(k):
+                    for c in range(6):
+                        trial[j, c] = spots[j, c]
+                for i in range(k):
+                    turn = 0.7853981633974483 * (move % _WAYS)
+                    if move >= _WAYS * k:  # all of them, each some way: along valleys between loads
+                        chance = (chance * 0.7548776662466927 + 0.5698402909980532) * 997.0 % 1.0
+                        turn = 6.283185307179586 * chance
+                    elif move // _WAYS != i:
+                        continue
                     n = spots[i, 3:6]
                     axis = 0
                     for c in range(3):
@@ -88,22 +100,19 @@ def _loop(digest: str) -> Any:
                             axis = c
                     # u = e - (e.n) n and v = n x u
                     length = sqrt(1.0 - n[axis] * n[axis])
-                    turn = 0.7853981633974483 * way
                     cs, sn = np.cos(turn) * step / length, np.sin(turn) * step / length
                     for c in range(3):
                         u = (1.0 if c == axis else 0.0) - n[axis] * n[c]
                         a, b = (c + 1) % 3, (c + 2) % 3
                         v = n[a] * (1.0 if b == axis else 0.0) - n[b] * (1.0 if a == axis else 0.0)
                         p[c] = spots[i, c] + cs * u + sn * v
+                    _put(rows, triangles, p, trial[i], foot)
+                found = value_of(trial, loads, law, value, 0, least, spare)
+                if found < value * (1.0 - 1e-9):
+                    value, helped = found, True
                     for j in range(k):
                         for c in range(6):
-                            trial[j, c] = spots[j, c]
-                    _put(rows, triangles, p, trial[i], foot)
-                    found = value_of(trial, loads, law, value, 0, least, spare)
-                    if found < value * (1.0 - 1e-9):
-                        value, helped = found, True
-                        for c in range(6):
-                            spots[i, c] = trial[i, c]
+                            spots[j, c] = trial[j, c]
             if not helped:
                 step *= 0.5
         return value

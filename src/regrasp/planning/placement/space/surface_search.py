@@ -20,6 +20,7 @@ _SAFE = 1e-9  # of a bound, given up to rounding
 _STEP, _SHORTEST = 0.2, 1e-5  # of slides, of the size
 HELD = 1e-2
 """Of ``NEVER``: a load is held by less, so by forces of at most a thousand times its size."""
+_ASIDE = 1e-7  # of the largest load: a placement that holds nothing so far beside a load is on a knife's edge
 _GAINED = 0.01  # a placement better by so much is worth a slide
 
 
@@ -45,6 +46,9 @@ class SurfaceSearch:
         self._unit = np.repeat([1.0, self.size], 3)
         self.unit = float(np.abs(loads / self._unit).max()) or 1.0
         self._wanted = np.ascontiguousarray(-loads / self._unit / self.unit)
+        # two fingers hold no torque about their line, so that every placement is on a knife's edge
+        aside = np.vstack([np.eye(6), np.full(6, -1.0)]) * (_ASIDE if fingers > 2 else 0.0)
+        self._trials = np.vstack([self._wanted, (self._wanted[:, None] + aside).reshape(-1, 6)])
         size, norm = law.codes()
         self._law = (friction, size, norm, min(0.1 * tolerance, _PRECISE))
         self._usable = kept_friction(friction, 2 * RESERVE)
@@ -68,17 +72,18 @@ class SurfaceSearch:
         from regrasp.closed_form.compiled.patches.patch_search import search, spare
         from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL
 
-        memory, slid = spare(self.fingers), inf
+        memory, slid, due = spare(self.fingers), inf, _FIRST_BOXES
         try:
             while True:
                 ended = search(
-                    self._rows, self._spans, self._tree, self._radius, self._wanted, self._law, self._usable,
-                    tolerance, self.apart / self.size, narrow, self._boxes, self._heap, self._state,
-                    self._found, self._tried, _AT_A_TIME, memory,
+                    self._rows, self._spans, self._tree, self._radius, self._wanted, self._trials,
+                    self._law, self._usable, tolerance, self.apart / self.size, narrow, self._boxes,
+                    self._heap, self._state, self._found, self._tried, _AT_A_TIME, memory,
                 )  # fmt: skip
-                if self._found[0] < slid * (1 - _GAINED):
-                    self._slide(_STEP, _SHORTEST if ended == CLOSED else 0.1 * _STEP)
-                    slid = self._found[0]
+                if self._found[0] < slid * (1 - _GAINED) or self.count >= due:
+                    fine = ended == CLOSED or self.count >= due
+                    self._slide(_STEP, _SHORTEST if fine else 0.1 * _STEP)
+                    slid, due = self._found[0], max(due, 2 * self.count if fine else due)
                 if progress is not None:
                     progress(self.bound, self.best)
                 self.closed = ended == CLOSED
@@ -119,7 +124,7 @@ class SurfaceSearch:
         law = (self._usable, *self._law[1:3], _TRY_PRECISE)
         return float(
             slide(
-                self._rows, 0, self._wanted, law, self.apart / self.size, 0.0, 1.0, scaled, inf,
+                self._rows, 0, self._trials, law, self.apart / self.size, 0.0, 1.0, scaled, inf,
                 scaled.copy(), np.zeros((2, 3)), spare(self.fingers),
             )
         )  # fmt: skip
@@ -133,7 +138,7 @@ class SurfaceSearch:
         spots = self._found[1:].reshape(-1, 6).copy()
         law = (self._usable, *self._law[1:3], _TRY_PRECISE)
         value = slide(
-            self._rows, len(self.patches.order), self._wanted, law, self.apart / self.size, step, shortest,
+            self._rows, len(self.patches.order), self._trials, law, self.apart / self.size, step, shortest,
             spots, self._found[0], spots.copy(), np.zeros((2, 3)), spare(self.fingers),
         )  # fmt: skip
         self._take(spots, value)
