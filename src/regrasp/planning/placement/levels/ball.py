@@ -17,7 +17,8 @@ from regrasp.planning.states.choosing import choose_state
 _AROUND = 5  # directions to begin with along each side of a cube
 _SAME = 1e-6
 _LEAST = 1e-5  # gap, well above what directions told apart make
-_STEP = 1e-6  # of the radius, beyond none at all
+_NEARER = 0.999  # of the tolerance: what is given back to rounding is within it, too
+_STEP = 1e-6  # of the limit, beyond none at all
 _FLAT = 1e-14
 _ROUNDING = 1e-12
 
@@ -50,7 +51,7 @@ class BallLevel(Level):
 
     def beyond(self, level: float, tolerance: float) -> float:
         """Larger by a fraction of it."""
-        return level * (1 + max(tolerance, _LEAST)) + _STEP * self.max_force
+        return level + max(max(_NEARER * tolerance, _LEAST) * level, _STEP * self.max_force)
 
     def top(self, search: Search) -> float:
         """Forces of the limit make no larger one."""
