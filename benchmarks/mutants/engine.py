@@ -269,7 +269,7 @@ def _swap_constants(module: ModuleType, new: CodeType) -> bool:
     changed = False
     for name, value in values.items():
         old = getattr(module, name, None)
-        if isinstance(value, type) and isinstance(old, type) and old.__module__ == module.__name__:
+        if getattr(old, "__module__", "") == module.__name__:
             changed |= _swap_defaults(old, value)
         if (
             name.startswith("__")
@@ -286,16 +286,22 @@ def _swap_constants(module: ModuleType, new: CodeType) -> bool:
     return changed
 
 
-def _swap_defaults(old: type, new: type) -> bool:
-    """Put changed plain defaults of a class's fields in its place; they are its constructor's."""
+def _swap_defaults(old: Any, new: Any) -> bool:
+    """Put changed plain defaults of a function, or of those of a class (so of fields), in its place."""
+    if isinstance(old, type) and isinstance(new, type):
+        functions = [
+            (one, vars(new).get(name)) for name, one in vars(old).items() if not isinstance(one, type)
+        ]
+        return sum(_swap_defaults(*pair) for pair in functions) > 0
+    if not (isinstance(old, FunctionType) and isinstance(new, FunctionType)):
+        return False
     changed = False
-    for name in ("__init__", "__new__"):
-        one, other = getattr(old, name), getattr(new, name)
-        if isinstance(one, FunctionType) and isinstance(other, FunctionType):
-            pairs = zip(one.__defaults__ or (), other.__defaults__ or (), strict=True)
-            if any(a != b for a, b in pairs if _is_plain(a) and _is_plain(b)):
-                one.__defaults__ = other.__defaults__
-                changed = True
+    for name in ("__defaults__", "__kwdefaults__"):
+        one, other = getattr(old, name) or (), getattr(new, name) or ()
+        values = [list(each.values() if isinstance(each, dict) else each) for each in (one, other)]
+        if any(a != b for a, b in zip(*values, strict=True) if _is_plain(a) and _is_plain(b)):
+            setattr(old, name, other)
+            changed = True
     return changed
 
 
