@@ -65,6 +65,29 @@ def test_a_goal_that_is_chosen_keeps_its_distance(apart: float) -> None:
     assert (least >= 1.8 - 1e-9) == (apart > 0)
 
 
+def test_a_goal_that_is_chosen_is_as_far_apart_as_it_must_be_and_on_the_arcs_of_the_fingers() -> None:
+    length, asked = ELLIPSE.length, []
+
+    def apart(p: np.ndarray, q: np.ndarray, angle: float) -> np.ndarray:
+        asked.append(angle)
+        return np.hypot(*(p - q).T) > 1.5
+
+    def goal(**more: object) -> list[rg.Contact]:
+        plan = rg.plan_regrasp(ELLIPSE, START, None, LOAD, friction=0.5, candidates=16, **more)  # type: ignore[arg-type]
+        return list(plan.steps[-1].grasp)[-3:]
+
+    free, near = goal(goal_orientation=pi / 2), goal(goal_orientation=pi / 2, keep=apart)
+    assert [
+        all(np.hypot(*(a.position - b.position)) > 1.5 for a, b in combinations(g, 2)) for g in (free, near)
+    ] == [False, True]
+    assert pi / 2 in asked
+    arcs = [(-0.1 * length, 0.3 * length), (0.3 * length, 0.55 * length), (0.7 * length, 0.9 * length)]
+    shares = sorted(ELLIPSE.nearest(c.position) / length % 1 for c in goal(arcs=arcs))
+    low, middle, high = sorted((s + 0.1) % 1 - 0.1 for s in shares)
+    assert low <= 0.3 <= middle <= 0.55
+    assert 0.7 <= high <= 0.9
+
+
 def test_fingers_move_through_the_air_to_the_goal_that_is_taken() -> None:
     found = rg.plan_regrasp(
         ELLIPSE,
@@ -121,6 +144,11 @@ def test_open_ends_that_mean_nothing_are_refused() -> None:
         ({"start": "any"}, "start must be a Grasp, several of them"),
         ({"goal": None, "weights": rg.RegraspWeights()}, "give one start and one goal"),
         ({"goal": [START] * 101}, "1 starts and 101 goals are more than 100 pairs"),
+        (
+            {"outline": BOX, "start": FOUR, "goal": None, "keep": print, "arcs": [None] * 4},
+            "keep and arcs cannot",
+        ),
+        ({"goal": None, "arcs": [None] * 2}, "arcs must have an entry for each of three fingers"),
         ({"outline": box, "goal": None}, "the shape is in space and load in the plane"),
     ):
         call = {"outline": ELLIPSE, "start": START, "goal": START, "load": LOAD, **OPTIONS, **given}

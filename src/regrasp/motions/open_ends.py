@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from itertools import product
+from itertools import permutations, product
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput, shown
-from regrasp.mechanics.checks import rotation
+from regrasp.mechanics.checks import Array, rotation
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -23,6 +23,7 @@ _FINGERS = 3  # in space they hold while a fourth moves
 _MORE_IN_SPACE = 1  # grasps besides the best
 _FOURTHS = 40  # points where a fourth finger may be
 _APART = 0.05  # of the size: no nearer to the three
+_BOXES = 2000  # of a search whose bound knows nothing of what is kept
 MOST_ENDS = 100
 
 
@@ -104,6 +105,10 @@ def _chosen(what: str, shape: Any, load: Wrench, options: dict[str, Any]) -> lis
     if "friction" not in options:
         raise InvalidInput(f"friction is needed to choose {what}; give the coefficient of the candidates")
     if isinstance(shape, Mesh):
+        if ignored := [name for name in ("keep", "arcs") if options.get(name) is not None]:
+            raise InvalidInput(
+                f"{' and '.join(ignored)} cannot be kept by a {what} that is chosen on a mesh; give a {what}"
+            )
         few = choose_grasp(
             shape,
             _FINGERS,
@@ -119,18 +124,79 @@ def _chosen(what: str, shape: Any, load: Wrench, options: dict[str, Any]) -> lis
         if not found_some:
             raise Infeasible(f"no place for a fourth finger was found beside the three chosen for {what}")
         return found_some[: 1 + _MORE_IN_SPACE]
-    limit = options.get("max_force")
+    return _chosen_on_outline(what, shape, load, options)
+
+
+def _chosen_on_outline(what: str, outline: Any, load: Wrench, options: dict[str, Any]) -> list[Grasp]:
+    """The grasps of least largest normal force, each finger on its arc, every two as ``keep`` allows."""
+    from regrasp.planning.placement.choosing import choose_grasp
+
+    own = _OwnArcs(outline, options.get("arcs"))
+    keep, turn = options.get("keep"), float(options.get("goal_orientation", 0.0)) if what == "goal" else 0.0
+
+    def may(first: Array, second: Array, _: float) -> Any:
+        allowed = None if keep is None else keep(first, second, turn)
+        if own.arcs is None or (allowed is not None and np.shape(allowed) != (len(first),)):
+            return allowed  # and is refused
+        reached = own.of_two(first, second)
+        return reached if allowed is None else reached & np.asarray(allowed, dtype=bool)
+
     found = choose_grasp(
-        shape,
+        outline,
         _FINGERS,
         load,
         friction=options["friction"],
         objective="peak_normal",
-        max_force=limit,
+        max_force=options.get("max_force"),
         min_distance=options.get("min_distance") or None,
+        keep=may if (constrained := keep is not None or own.differ) else None,
+        arcs=own.stretches,
         tolerance=0.01,
+        most_boxes=_BOXES if constrained else None,
     )
-    return [found.grasp, *(other.grasp for other in found.others)]
+    grasps = [found.grasp, *(other.grasp for other in found.others)]
+    placed = [grasp for grasp in map(own.placed, grasps) if grasp is not None]
+    if not placed:
+        raise Infeasible(f"no {what} was found among {len(grasps)} whose fingers are on their arcs; give one")
+    return placed
+
+
+class _OwnArcs:
+    """The arcs of fingers on an outline, if any."""
+
+    def __init__(self, outline: Any, arcs: Any) -> None:
+        from regrasp.planning.regrasps.settings.arcs import arc_lengths, on_arcs, stretches
+
+        self.arcs = arcs
+        every = None if arcs is None else stretches(arcs, outline.length)
+        self.stretches = None if every is None else every.tolist()
+        self.differ = arcs is not None and not all(np.array_equal(arc, arcs[0]) for arc in arcs)
+
+        known: dict[bytes, Any] = {}
+
+        def allowed(points: Array) -> Any:
+            new = {p.tobytes(): p for p in points if p.tobytes() not in known}
+            if new:
+                there = on_arcs(arcs, arc_lengths(outline, np.array(list(new.values()))), outline.length)
+                known.update(zip(new, there.T, strict=True))
+            return np.array([known[p.tobytes()] for p in points]).T
+
+        self._allowed = allowed
+
+    def of_two(self, first: Array, second: Array) -> Any:
+        """Which of points (m, 2) and (m, 2) two fingers may be at."""
+        one, other = np.split(self._allowed(np.vstack([first, second])), 2, axis=1)
+        return np.any([one[f] & other[g] for f, g in permutations(range(_FINGERS), 2)], axis=0)
+
+    def placed(self, grasp: Grasp) -> Grasp | None:
+        """The grasp in an order in which each finger is on its arc; None where there is none."""
+        if self.arcs is None:
+            return grasp
+        allowed = self._allowed(grasp.positions)
+        for way in permutations(range(_FINGERS)):
+            if allowed[range(_FINGERS), way].all():
+                return Grasp([grasp[i] for i in way])
+        return None
 
 
 def _with_a_fourth(shape: "Mesh", three: Grasp, load: Wrench, options: dict[str, Any]) -> Grasp | None:

@@ -84,7 +84,8 @@ def plan_regrasp(
 
     An end may be left open, as several grasps or None: the regrasp of fewest moves is taken, and of these the
     one of the widest margin. None stands for the few grasps of least largest normal force that
-    ``choose_grasp`` finds under the load, in the orientation asked for; on a mesh for three fingers of least
+    ``choose_grasp`` finds under the load, in the orientation asked for, every finger on its arc and every two
+    where ``keep`` allows it; on a mesh, where these two are refused with it, for three fingers of least
     largest force and a fourth where, of 40 points, it makes that least.
 
     With ``motions`` the best sequence is taken if its free fingers have ways (``plan_motions``). Where a

@@ -39,6 +39,14 @@ def arc_lengths(outline: Outline, positions: Array) -> Array:
     return np.array([outline.nearest(p + outline.centre_of_mass) % outline.length for p in positions])
 
 
+def stretches(arcs: Arcs, length: float) -> Array | None:
+    """(m, 2) the arcs of all fingers; None where one may touch everywhere."""
+    on_arcs(arcs, np.zeros(0), length)
+    if any(arc is None for arc in arcs):
+        return None
+    return np.vstack([_intervals(arc, finger, length) for finger, arc in enumerate(arcs)])
+
+
 def _intervals(arc: ArrayLike | None, finger: int, length: float) -> Array:
     if arc is None:
         return np.array([[0.0, length]])
