@@ -51,6 +51,9 @@ def rows() -> dict[str, Row]:
             },
         ),
         "RegraspProblem": Row(rg.RegraspProblem, {"outline": outline, **asked, **small}, or_none),
+        "RegraspProblem that turns": Row(
+            rg.RegraspProblem, {"outline": outline, **asked, "candidates": 4}, or_none
+        ),
         "RegraspProblem.sequences": Row(problem().sequences, {}),
         "RegraspProblem.plans": Row(problem().plans, {}),
         "RegraspProblem.allowing": Row(problem().allowing, {"force": 9.0}, {"force": "positive"}),

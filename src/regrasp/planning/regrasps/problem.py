@@ -165,6 +165,7 @@ class RegraspProblem(ArrayValue):
             raise InvalidInput(f"one_finger must be True or False, got {shown(self.one_finger)}")
         if self.limits is not None:
             instance(self.limits, "limits", ForceLimits)
+        _ = self.ends
         if self.orientations != 1:
             refuse_set_without_none(self.criteria, self.start)
         if self.weights is not None and not isinstance(self.weights, RegraspWeights):
