@@ -10,7 +10,7 @@ from proofs import everything, planar
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.eroded import most_eroded
-from regrasp.verification.placed.roots import root_below
+from regrasp.verification.placed.roots import root_above, root_below
 from regrasp.verification.placed.straight import StraightEdges
 
 pytestmark = pytest.mark.oracle
@@ -80,7 +80,8 @@ TURNS = [(1, 0), (4, 3), (3, 4)]  # of 53 degrees together, in any order
     ],
 )  # fmt: skip
 def test_most_work_between_the_outermost_normals(size, mu, along) -> None:
-    for legs in (TURNS[k:] + TURNS[:k] for k in range(3)):
+    for k in range(3):
+        legs = np.multiply(TURNS[k:] + TURNS[:k], 8.0 ** (k - 1))
         edges = of_legs(legs, size=size, friction=mu, bound=7.0)
         for v, square in along:
             judged(edges, v, square)
@@ -224,96 +225,44 @@ def test_margins_exclude_what_is_beyond_their_region(fingers) -> None:
         assert said(proof) == ("" if good else "proof: the twist of box 0 does not exclude it")
 
 
-def tied(rows, *, numbers=(-2,), fingers=2, **changes):
-    """Fingers on the floor that answer two loads of 1 by equal stiffness; more numbers are of parts."""
-    sides = np.array([[0, 0, 1.0]])
-    (arc,) = everything(sides, 1)
-    nodes = [([arc] * fingers, (0, 0), numbers[0], UP)]
-    if len(numbers) == 2:
-        parts = (0, 0, 0.0, 0.5), (0, 0, 0.5, 1.0)
-        nodes = [([arc], (1, 2), 0, UP)]
-        nodes += [([part], (0, 0), number, UP) for part, number in zip(parts, numbers, strict=True)]
-    given = {"size": "force", "norm": "largest", "friction": 1.0, "sides": sides}
-    return planar(SQUARE, [DOWN, DOWN], nodes, **given | {"tied": np.array(rows, dtype=float)} | changes)
-
-
-@pytest.mark.parametrize(
-    ("row", "limit"),
-    [
-        ([*UP, *UP, 0], 1 / 2),  # 2 of work, 4 by forces of 1
-        ([0, 2, 0, *UP, 0], 1 / 2),
-        ([*DOWN, 0, 2, 0, 0], 1 / 4),
-        ([*UP, *UP, 3 / 16], 2 / 5),  # along (+-3/4, 1) where they are farthest apart
-        ([*UP, *UP, 1 / 2], 2**0.5 / 6),  # along (+-2, 1), beyond the cones
-        ([0, 0, 0, *UP, 3 / 16], 1 / (2.5 + 0.75 * 2**0.5)),
-    ],
-)
-def test_loads_together_prove_a_bound_to_its_last_digits(row, limit) -> None:
-    for scale in 1.0, 1e-9:
-        proof = tied([np.multiply(row, scale)])
-        for factor, good in (0, True), (-1, True), (1 - 1e-14, True), (1 + 1e-14, False), (2, False):
-            proof.bound = limit * factor
-            assert said(proof) == ("" if good else "proof: the duals of box 0 do not exclude it")
-
-
-def test_duals_without_work_exclude_nothing() -> None:
-    for row, bound, good in (
-        (np.zeros(7), 1e-300, False), (np.zeros(7), 0.0, True), ([*DOWN, *DOWN, 0], 1e-300, False),
-        ([*DOWN, *DOWN, 0], 0.0, True), ([1, 0, 0, 1, 0, 0, 0], 1e-300, False),
+def test_most_work_on_a_straight_side() -> None:
+    for mu, v, square in (
+        (0.0, (0, 1), 1), (0.0, (0, -1), None), (0.0, (1, 0), None), (0.0, (3, 4), 16), (0.75, (0, -1), None),
+        (0.75, (4, 1), "256/25"), (0.75, (-4, 1), "256/25"), (0.75, (3, 4), 25), (0.75, (-3, 5), 34),
+        (0.75, (4, -4), None), (0.75, (4, -2), "16/25"),
     ):  # fmt: skip
-        assert (said(tied([row], bound=bound)) == "") == good
+        judged(StraightEdges(floor(size="force", friction=mu)), v, square)
 
 
-def test_rows_of_all_loads_are_those_of_their_boxes() -> None:
-    good, worse = [*UP, *UP], [0, -1, 0, *UP]
-    for rows, numbers, words in (
-        ([good, worse], (-2, -2), ""), ([worse, good], (-3, -3), ""), ([good, good], (-2, -3), ""),
-        ([worse, good], (-2, -3), "duals of box 1 do"), ([worse, good], (-3, -2), "duals of box 2 do"),
-        ([good], (-2, -3), "box 2 has no load"), ([good], (-3, -2), "box 1 has no load"),
-        ([good], (-2, 0), ""), ([worse], (0, 1), ""), ([good], (-2, 2), "box 2 has no load"),
-        ([good], (-2, -1), "box 2 may be far enough"),
-    ):  # fmt: skip
-        found = said(tied(rows, numbers=numbers, bound=0.999))
-        assert words in found
-        assert bool(words) == bool(found), (numbers, found)
-    assert "box 0 has no load" in said(tied([], tied=None, bound=0.5))
-    assert said(tied([[*UP, *UP, 0]], numbers=(0,), bound=0.49)) == ""
+def test_bounds_that_are_just_reached_are_proven() -> None:
+    """On a floor 4 long, of 2 to either side of the centre: fingers lift by 1 and turn by 2."""
+    centre = np.array([2.0, 0])
+    for bound, good in (1.0, True), (1 + 2.0**-52, False):
+        assert (said(floor(bound=bound)) == "") == good
+        proof = floor((0, 0, 1.0), load=(0, 0, -2.0), friction=0.0, bound=bound, centre_of_mass=centre)
+        assert (said(proof) == "") == good
+        proof.norm, proof.bound = "largest", 2 * bound  # both ways together 2, at either end
+        proof.pairs, proof.seconds = np.array([[0, 0]]), np.array([[0, 0, -1.0]])
+        proof.loads = np.array([[0, 0, -2.0], [0, 0, 2.0]])
+        proof.pairs[0, 1] = 1
+        assert (said(proof) == "") == good
 
 
-def test_rows_of_all_loads_are_of_one_side_each() -> None:
-    sides = np.array([[0, 0, 0.5], [0, 0.5, 1.0]])
-    node = (everything(sides, 1), (0, 0), -2, UP)
-    proof = planar(SQUARE, [DOWN, DOWN], [node], size="force", norm="largest", sides=sides, bound=1e-9)
-    proof.tied = np.array([[*UP, *UP]])
-    assert said(proof) == "proof: a finger of box 0 has more than one side"
+def test_on_a_curve_the_most_is_done_between_its_ends() -> None:
+    """Along (-3, 4), in the middle of a bend from (0, 1) to (-4, 3), 5, and 4.8 at its end."""
+    curve = np.concatenate([[[0, 0]], np.cumsum(TURNS, axis=0)]).astype(float)
+    node = ([(0, 0, 0.0, 1.0)], (0, 0), 0, (-3.0, 4.0, 0.0))
+    for bound, good in (1 - 1e-15, True), (1 + 1e-15, False):
+        proof = planar([curve[0]], [(3, -4, 0)], [node], control=curve[None], friction=0.0, bound=5 * bound)
+        assert (said(proof) == "") == good
 
 
-@pytest.mark.parametrize(
-    ("columns", "fingers", "loads"), [(6, 1, 2), (3, 1, 1), (7, 2, 2), (3, 2, 1), (11, 2, 3), (12, 3, 2)]
-)
-def test_rows_have_twists_of_loads_and_ties_of_all_but_one(columns, fingers, loads) -> None:
-    for count in columns - 1, columns, columns + 1:
-        proof = tied([np.zeros(count)], numbers=(0,), fingers=fingers, bound=0.1)
-        proof.loads = np.array([DOWN] * loads)
-        assert (said(proof) == "") == (count == columns)
-        assert count == columns or f"tied must have shape (1, {columns})" in said(proof)
-    for changes in {"size": "normal"}, {"norm": "sum"}, {"size": "normal", "norm": "sum"}:
-        assert "tied for a largest force alone" in said(tied([[*UP, *UP, 0]], **changes))
-
-
-def test_rows_of_all_loads_on_a_curve() -> None:
-    """Edge 1 turns from (1, 0) by (6, 5) to (3, 4); half of it is bounded by its own normals."""
-    curve = np.cumsum([(4, 0), *TURNS], axis=0).astype(float)
-    other = [curve[0], curve[0], curve[0], curve[0]]
-    for half, v, limit in (
-        ((1, 1.0, 1.5), (-4, 3), 25 * 61**0.5 / 38), ((1, 1.5, 2.0), (-3, 4), 24 * 61**0.5 / 39),
-        ((1, 1.0, 2.0), (-4, 3), 5.0), ((1, 1.5, 2.0), (-4, 3), 5.0),
-    ):  # fmt: skip
-        sides = np.array([half])
-        node = (everything(sides, 1), (0, 0), -2, UP)
-        control = np.array([other, curve])
-        proof = planar(control[:, 0], [(4.0, -3, 0)], [node], sides=sides, control=control)
-        proof.size, proof.norm, proof.friction, proof.tied = "force", "largest", 0.0, np.array([[*v, 0.0]])
-        for factor, good in (1 - 1e-12, True), (1 + 1e-12, False):
-            proof.bound = limit * factor
-            assert (said(proof) == "") == good, (half, v)
+def test_roots_are_on_their_side_and_near() -> None:
+    assert root_above(Fraction(0)) == 0
+    for value in (
+        Fraction(n, d) ** p for n in (1, 2, 10, 99) for d in (1, 3, 100) for p in (-60, -1, 1, 2, 75)
+    ):
+        low, high = root_below(value), root_above(value)
+        assert low**2 <= value < high**2
+        assert high - low <= high * Fraction(1, 2**90)
+    assert root_below(Fraction(25, 16)) == Fraction(5, 4)

@@ -176,7 +176,7 @@ class _Checked:
         number, arcs = int(self.proof.number[box]), self._arcs(box)
         if number == -1:
             return [] if self._near(arcs) else [f"proof: fingers of box {box} may be far enough apart"]
-        if number < -1 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
+        if number < 0 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
             return self._tied(box, self.proof.tied[-2 - number].tolist(), arcs)
         told = [(number, self.proof.twists[box].tolist())]
         told += [self.second[box]] if box in self.second else []

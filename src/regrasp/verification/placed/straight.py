@@ -66,7 +66,7 @@ class StraightEdges:
             edges = cone_edges((dx, dy), self.mu)
             return most_eroded(*edges, Fraction(self.limit), Fraction(self.margin), (vx, vy))
         ahead, aside = dx * vy - dy * vx, abs(dx * vx + dy * vy)  # times |edge|
-        if self.force and ahead > 0 and aside <= self.mu * ahead:
+        if self.force and aside < self.mu * ahead:
             return root_above(vx * vx + vy * vy)
         value = max(ahead + self.mu * aside, Fraction(0))
         return value * self.per[edge] * (self.slant if self.force else 1)
@@ -89,6 +89,6 @@ class StraightEdges:
                 value = ahead + self._friction * aside
                 if self.force:
                     # inside the cone, and a little around it, the whole of v
-                    value = np.where(aside <= self._friction * ahead, np.hypot(vx, vy), value / slant)
+                    value = np.where(aside < self._friction * ahead, np.hypot(vx, vy), value / slant)
             most = np.maximum(most, value)
         return most
