@@ -170,3 +170,18 @@ def test_sides_that_meet_are_told_apart() -> None:
     nothing = replace(chosen, value=0.0)
     assert nothing.gap == np.inf
     assert replace(nothing, bound=0.0).gap == 0.0
+
+
+def test_a_corner_that_all_loads_press_is_looked_at_before_the_others_are_halved_to_the_end() -> None:
+    rng = np.random.default_rng(26)
+    angle, radius = np.sort((np.arange(20) + 0.8 * rng.random(20)) / 20 * 2 * np.pi), 0.5 + rng.random(20)
+    outline = rg.Outline(np.round(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]), 2))
+    loads = rg.LoadSet.hull([
+        rg.Wrench([x, y], torque)
+        for x, y in ((1, 0), (-0.5, 0.9), (-0.5, -0.9)) for torque in (0.05, -0.05)
+    ])  # fmt: skip
+    chosen = rg.choose_grasp(
+        outline, 3, loads, friction=0.4, objective="peak", from_corners=0.0, most_boxes=2000
+    )
+    assert chosen.gap <= 1e-3
+    assert chosen.value < 0.89  # 1.67 where the other two were halved to the end

@@ -8,6 +8,8 @@ from numba import njit
 from regrasp.closed_form.compiled.compiling import VIEWS
 from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, bend, farthest, polar
 
+_TURN = 0.25  # of the size, that a turn by one radian on an arc of sides counts for
+
 
 @njit(**VIEWS)
 def point(sides, j, u):  # type: ignore[no-untyped-def]
@@ -99,6 +101,15 @@ def spread(sides, arcs, ends, places):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
+def turn(sides, first, last):  # type: ignore[no-untyped-def]
+    """The largest chord between the normal of a side and those of the sides after it up to ``last``."""
+    most = 0.0
+    for j in range(first + 1, last + 1):
+        most = max(most, (sides[j, 4] - sides[first, 4]) ** 2 + (sides[j, 5] - sides[first, 5]) ** 2)
+    return sqrt(most)
+
+
+@njit(**VIEWS)
 def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-def]
     """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
     chosen, most = -1, -1.0
@@ -112,7 +123,7 @@ def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-
                 apart = distance(sides, j, seen[i, 2], c, seen[i, 4])
                 # where two sides meet forces differ, too
                 apart += sqrt((sides[j, 4] - sides[c, 4]) ** 2 + (sides[j, 5] - sides[c, 5]) ** 2)
-            matters = apart + (0.1 if curved else 1e-6 * (last - first))
+            matters = apart + (0.1 if curved else _TURN * turn(sides, first, last))
         else:
             j = first
             length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
