@@ -18,6 +18,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from inspect import CO_NEWLOCALS
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -118,6 +119,8 @@ class Engine:
         if pid not in self.running:
             return
         key, change, path, looks, read = self.running.pop(pid)
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(pid, signal.SIGKILL)  # what it started
         if killer := os.read(read, 20):
             for where in (path, f"{path} {change.function}"):
                 self.killers.setdefault(where, Counter())[looks[int(killer)].item.nodeid] += 1
@@ -205,6 +208,7 @@ def _child(path: Path, change: Change, tests: list[Test], write: int, until: flo
     os.dup2(null, 2)
     signal.alarm(60)
     os.nice(5)
+    os.setpgid(0, 0)
     try:
         if not swap(path, change.tree):
             os._exit(77)
@@ -212,7 +216,7 @@ def _child(path: Path, change: Change, tests: list[Test], write: int, until: flo
         os._exit(77)
     try:
         for k, test in enumerate(tests):  # what takes ten times its time goes round for ever, and is noticed
-            signal.alarm(int(60 + 20 * test.seconds))
+            signal.alarm(int((15 if test.plain else 60) + 20 * test.seconds))
             signal.setitimer(signal.ITIMER_PROF, (1 if test.plain else 5) + 10 * test.seconds)
             if not test.passes():
                 os.write(write, str(k).encode())

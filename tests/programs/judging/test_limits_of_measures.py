@@ -53,18 +53,22 @@ def test_equations_pull_both_ways() -> None:
     assert infeasibility_residual(p, np.array([1.0, -1])) == pytest.approx(e / (2 + e), rel=1e-9)
 
 
-@pytest.mark.parametrize(("z", "status"), [(0.97, Status.INFEASIBLE), (0.8, Status.STOPPED)])
-def test_duals_that_are_nowhere_near_a_proof_are_asked_for_none(z, status) -> None:
-    """x <= 1 and x >= 2 with 1 and z: (1 - z) / (1 + z) of (2 z - 1) / (2 z + 1) is 0.05, or 0.48."""
+@pytest.mark.parametrize(("r", "infeasible"), [(0.09995, True), (0.10005, False), (0.5, False)])
+def test_duals_that_are_nowhere_near_a_proof_are_asked_for_none(r, infeasible) -> None:
+    """x <= 1 and x >= 2 by 1 and z: (1 - z) / (1 + z) of (2 z - 1) / (2 z + 1) is r."""
+    z = (1 - r + np.sqrt((1 - r) ** 2 + 8 * (1 + r) ** 2)) / (4 * (1 + r))
     p = program([[0.0]], [0.0], [[1], [-1]], [1, -2], nonnegative(2))
-    assert verdict.judged(claim(p, Status.STOPPED, [1.5], [1, z]), 1e-9, nobody).status is status
+    found = verdict.judged(claim(p, Status.STOPPED, [1.5], [1, z]), 1e-9, nobody)
+    assert found.status is (Status.INFEASIBLE if infeasible else Status.STOPPED)
 
 
-@pytest.mark.parametrize(("off", "status"), [(0.1, Status.UNBOUNDED), (0.5, Status.STOPPED)])
-def test_directions_that_are_nowhere_near_one_are_asked_for_none(off, status) -> None:
-    """min -y with x + y = 0 and a z that is free: along (off - 1, 1) the row leaves off of 2 - off."""
+@pytest.mark.parametrize(("r", "unbounded"), [(0.09995, True), (0.10005, False), (0.5, False)])
+def test_directions_that_are_nowhere_near_one_are_asked_for_none(r, unbounded) -> None:
+    """min -y with x + y = 0 along (off - 1, 1): off of 2 - off is r."""
+    off = 2 * r / (1 + r)
     p = program(np.zeros((2, 2)), [0, -1], [[1, 1]], [0], zero(1))
-    assert verdict.judged(claim(p, Status.STOPPED, [off - 1, 1], [0]), 1e-9, nobody).status is status
+    found = verdict.judged(claim(p, Status.STOPPED, [off - 1, 1], [0]), 1e-9, nobody)
+    assert found.status is (Status.UNBOUNDED if unbounded else Status.STOPPED)
 
 
 def test_what_is_proven_to_the_limit_is_left_as_it_is(monkeypatch) -> None:
