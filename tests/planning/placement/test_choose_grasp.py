@@ -185,3 +185,13 @@ def test_a_corner_that_all_loads_press_is_looked_at_before_the_others_are_halved
     )
     assert chosen.gap <= 1e-3
     assert chosen.value < 0.89  # 1.67 where the other two were halved to the end
+
+
+def test_placements_that_nearly_hold_slide_to_those_that_do() -> None:
+    """All friction can be spared on an open set of placements, and none of 20,000 tried was in it."""
+    corners = [[0.717, 0.899], [-0.229, 1.002], [-1.101, 0.53], [-1.119, -0.539], [-0.223, -0.978]]
+    shape = rg.Outline.smooth([*corners, [0.691, -0.867], [1.193, 0.0]])
+    two = rg.LoadSet.hull([rg.Wrench([0.07, -1.38], -0.06), rg.Wrench([-0.07, -0.87], -0.26)])
+    chosen = rg.choose_grasp(shape, 3, two, friction=0.2, objective="angle", max_force=2.37, most_boxes=15000)
+    assert chosen.gap <= 1e-3
+    assert chosen.value == pytest.approx(np.arctan(0.2), rel=1e-3)

@@ -10,6 +10,7 @@ from regrasp.planning.placement.search import Progress, Search
 
 _STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
 _SETTLING, _NEARER = 24, 2
+_LATE, _STARTS = 1024, 3  # boxes without a placement that holds, after which so many near to it slide
 _SLIDES, _SLOW, _SHORTEST = 8, 1e-4, 1e-4  # rounds, least gain of one, shortest step as a part of an edge
 
 
@@ -22,13 +23,19 @@ def run_level(
     it is the largest there is.
     """
     best: float | None = None
+    due, before = _LATE, 0
     aim, top = level.start, level.top(search)
     fixed = level.max_force * (1 + _STRICT)
     level.put(search, aim)
     try:
         while search.goes_on(fixed, 0.0, most) or search.best <= level.max_force:
-            if search.best <= level.max_force:
-                reached, places, u = _improved(search, level, aim, *search.found)
+            at = search.found if search.best <= level.max_force else None
+            if at is None and search.count >= due:
+                at = _slid_below(search, level.max_force, search.tried_since(before)[:_STARTS])
+                due, before = search.count + max(_LATE, search.count // 4), search.tries
+            if at is not None:
+                due, before = search.count + _LATE, search.tries
+                reached, places, u = _improved(search, level, aim, *at)
                 best = reached if best is None else max(best, reached)
                 aim = level.beyond(best, tolerance)
                 level.put(search, aim)
@@ -93,6 +100,14 @@ def _improved(
         if gained <= _SLOW * abs(reached):
             break
     return reached, places, u
+
+
+def _slid_below(
+    search: Search, norm: float, starts: list[tuple[float, np.ndarray, Array]]
+) -> tuple[np.ndarray, Array] | None:
+    """Where the first of some placements comes that reaches a norm by sliding; None where none does."""
+    slid = (_slid(search, places, u) for _, places, u in starts)
+    return next((at for at in slid if search.norm_at(*at) <= norm), None)
 
 
 def _slid(search: Search, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
