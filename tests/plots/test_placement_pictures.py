@@ -60,6 +60,30 @@ def test_maps_show_values_where_fingers_hold_and_a_ring_at_the_best() -> None:
     assert parts["best"] + parts["no hold"] == len(found.places)
 
 
+@pytest.mark.parametrize("shape", [SQUARE_OUTLINE, rg.Outline.ellipse(0.2, 0.1)], ids=["square", "ellipse"])
+def test_regions_of_two_fingers_are_a_box_on_their_map_either_way_around(shape: rg.Outline) -> None:
+    """On the ellipse one arc runs past the first vertex: its box is drawn at both ends."""
+    pair = [shape.contact_at(f * shape.length, friction=0.5, name=str(f)) for f in (0.02, 0.52)]
+    if shape is SQUARE_OUTLINE:
+        pair = list(placed().grasp)
+    regions = rg.contact_regions(shape, rg.Grasp(pair), WEIGHT_IN_PLANE)
+    found = rg.placement_map(shape, WEIGHT_IN_PLANE, friction=0.5, count=12)
+    ax = plots.plot_placement_map(found, regions=regions)
+    boxes = [p for p in ax.patches if p.get_gid() == "region"]
+    corners = {
+        tuple(np.round([box.get_xy(), np.add(box.get_xy(), (box.get_width(), box.get_height()))], 9).ravel())
+        for box in boxes
+    }
+    (a, b), (c, d) = regions.arcs.round(9)
+    for x, y, right, top in ((a, c, b, d), (c, a, d, b)):
+        assert (x, y, right, top) in corners
+    past = (regions.arcs < 0).any() or (regions.arcs > shape.length).any()
+    assert len(corners) == (4 if past else 2)
+    beside = rg.placement_map(shape, WEIGHT_IN_PLANE, friction=0.5, fixed=[0.01], free=2, count=6)
+    with pytest.raises(rg.InvalidInput, match="two fingers"):
+        plots.plot_placement_map(beside, regions=regions)
+
+
 def test_the_map_of_one_finger_is_drawn_on_the_outline_only() -> None:
     found = rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, fixed=[0.2], free=1, count=16)
     ax = plots.plot_placement_outline(found)
@@ -74,7 +98,11 @@ def test_regions_on_faces_are_drawn_where_they_are() -> None:
     ax = plots.plot_contact_regions(on_faces())
     ids = [artist.get_gid() for artist in ax.collections]
     assert sum(str(name).startswith("region ") for name in ids) == 3
-    assert " m at once" in ax.get_legend().get_texts()[0].get_text()
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    for name, word, radius in zip(on_faces().grasp.names, words, on_faces().radii, strict=False):
+        assert word.startswith(f"{name} {radius:.3g}".rstrip("0"))
+        assert ", alone " in word
+    assert " m at once" in words[-1]
 
 
 def test_the_map_of_a_mesh_has_the_colours_of_the_nearest_points() -> None:

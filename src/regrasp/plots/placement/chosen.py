@@ -88,8 +88,8 @@ def plot_contact_regions(
         units: what one unit of length, force and time is called; nothing is converted.
     """
     if isinstance(regions, FaceRegions):
-        ax = equal_scale(draw_regions(ax, regions, units), units)
-        _say_radius(ax, regions.radius, units)
+        ax = equal_scale(draw_regions(ax, regions), units)
+        _say_widths(ax, regions, units)
         return ax
     instance(regions, "regions", ContactRegions)
     ax = plot_outline(regions.shape, ax, units=units)
@@ -122,10 +122,19 @@ def plot_contact_regions(
     return ax
 
 
-def _say_radius(ax: Axes, radius: float, units: Units) -> None:
-    half = f"{short(float(f'{radius:.3g}'))} {units.length}"
-    words = f"regions; all may be off by {half} at once"
-    legend(ax, [Line2D([], [], color=GREY, linewidth=4, label=words)])
+def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:
+    """In the legend, how far each finger may be off, and while the others are not, and all at once."""
+    radii, alone = (
+        [short(float(f"{r:.3g}")) for r in each] for each in ([*regions.radii, regions.radius], regions.alone)
+    )
+    words = [
+        f"{name} {radius}, alone {one} {units.length}"
+        for name, radius, one in zip(regions.grasp.names, radii, alone, strict=False)
+    ]
+    words.append(f"all off by {radii[-1]} {units.length} at once")
+    colours = [*contact_colours(regions.grasp).values(), GREY]
+    lines = [Line2D([], [], color=c, linewidth=4, label=w) for c, w in zip(colours, words, strict=True)]
+    legend(ax, lines, ncols=2)
 
 
 def _cone(ax: Axes, contact: Contact, length: float, colour: str) -> None:

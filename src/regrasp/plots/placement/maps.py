@@ -1,5 +1,6 @@
 """Maps of placement: values over the places of two fingers, and on the outline itself."""
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -7,10 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, instance
 from regrasp.planning.placement.maps import PlacementMap
+from regrasp.planning.placement.regions import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.style import INK, NO_HOLD, SMALL, TEXT, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
@@ -19,17 +22,31 @@ from regrasp.plots.placement.values import as_drawn, drawn_in
 _WORST = 90.0  # percentile of values that colours tell apart: the worst grow without end
 
 
-def plot_placement_map(placements: PlacementMap, ax: Axes | None = None, *, units: Units = SI) -> Axes:
+def plot_placement_map(
+    placements: PlacementMap,
+    ax: Axes | None = None,
+    *,
+    regions: ContactRegions | None = None,
+    units: Units = SI,
+) -> Axes:
     """The value of two fingers over both arc lengths; grey where they do not hold, a ring at the best.
 
     Args:
         placements: what ``regrasp.placement_map`` found for two fingers that move.
         ax: the axes to draw on; new ones if not given.
+        regions: of two fingers on the same outline: a box in which all placements hold, and how far one
+            finger alone may be off, as lines through the grasp.
         units: what one unit of length, force and time is called; nothing is converted.
     """
     instance(placements, "placements", PlacementMap)
     if placements.values.ndim != 2:
         raise InvalidInput("expected the map of two fingers; plot_placement_outline draws that of one")
+    if regions is not None:
+        instance(regions, "regions", ContactRegions)
+        if len(regions.places) != 2 or placements.fixed.size or regions.shape != placements.shape:
+            raise InvalidInput(
+                "regions must be those of two fingers on the outline of the map, which are all"
+            )
     length, values = placements.shape.length, as_drawn(placements.objective, placements.values)
     ax = axes_or_new(ax, height=3.3, bar=True)
     edges = _edges(placements.places, length)
@@ -37,18 +54,45 @@ def plot_placement_map(placements: PlacementMap, ax: Axes | None = None, *, unit
     ax.pcolormesh(edges, edges, none, cmap=ListedColormap([NO_HOLD]), zorder=1, gid="no hold")
     drawn = ax.pcolormesh(edges, edges, values, **_colours(placements, values), zorder=1, gid="values")
     _bar(ax, drawn, placements, units)
+    handles = []
+    if regions is not None:
+        handles = _draw_regions(ax, regions)
     if placements.at.size:
-        best = placements.at
-        ax.plot(*np.array([best, best[::-1]]).T, "o", mfc="none", mec="white", ms=8, mew=2.6, zorder=3)
-        ax.plot(
-            *np.array([best, best[::-1]]).T, "o", mfc="none", mec=INK, ms=8, mew=1.2, zorder=4, gid="best"
-        )
+        best = np.array([placements.at, placements.at[::-1]]).T
+        ax.plot(*best, "o", mfc="none", mec="white", ms=8, mew=2.6, zorder=5)
+        ax.plot(*best, "o", mfc="none", mec=INK, ms=8, mew=1.2, zorder=6, gid="best")
     ax.set(xlim=(0, length), ylim=(0, length))
     ax.set_aspect("equal", adjustable="box")
     label_axis(ax.xaxis, "one finger at arc length", units.length, length)
     label_axis(ax.yaxis, "the other at", units.length, length)
-    ax.set_title(f"{placements.share:.0%} of all placements hold", fontsize=TEXT, loc="left")
+    if handles:
+        legend(ax, handles, ncols=2)
+    else:
+        ax.set_title(f"{placements.share:.0%} of all placements hold", fontsize=TEXT, loc="left")
     return ax
+
+
+def _draw_regions(ax: Axes, regions: ContactRegions) -> list[Line2D]:
+    """Boxes and lines, for either finger on either axis, also where arcs run past the first vertex."""
+    length, at = regions.shape.length, np.stack([regions.places, regions.places], axis=1)
+    alone = at + regions.alone * [-1, 1]
+    for turns in product((-length, 0.0, length), repeat=2):
+        for i, j in ((0, 1), (1, 0)):
+            for x, y, gid in (
+                (regions.arcs[i], regions.arcs[j], "region"),
+                (alone[i], at[j], "alone"),
+                (at[i], alone[j], "alone"),
+            ):
+                low, high = np.array([x + turns[0], y + turns[1]]).T
+                if (high <= 0).any() or (low >= length).any():
+                    continue
+                for colour, width in (("white", 2.6), (INK, 1.2)):
+                    box = Rectangle(low, *(high - low), fill=False, ec=colour, lw=width)
+                    box.set(zorder=3 if gid == "region" else 2, gid=gid if colour == INK else None)
+                    ax.add_patch(box)
+    keys = (("s", "both within"), ("+", "one alone"))
+    look = {"linestyle": "none", "mfc": "none", "mec": INK, "ms": 7, "mew": 1.2}
+    return [Line2D([], [], marker=marker, label=words, **look) for marker, words in keys]  # type: ignore[arg-type]
 
 
 def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, units: Units = SI) -> Axes:

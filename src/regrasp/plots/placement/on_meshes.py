@@ -10,11 +10,10 @@ from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.space.face_regions import FaceRegions
 from regrasp.plots.grasps.body import extent
-from regrasp.plots.grasps.space_body import dot, draw_body_in_space, write
+from regrasp.plots.grasps.space_body import dot, draw_body_in_space
 from regrasp.plots.look.solids import Triangles
 from regrasp.plots.look.space_axes import space_axes
-from regrasp.plots.look.style import GREY, contact_colours, short
-from regrasp.plots.look.units import Units
+from regrasp.plots.look.style import GREY, contact_colours
 from regrasp.plots.look.view import facing_view
 
 _CONE = 0.18  # sides of cones, as a fraction of the object's extent
@@ -40,15 +39,13 @@ def draw_chosen(ax: Any, chosen: ChosenGrasp, mesh: Mesh) -> Any:
     return ax
 
 
-def draw_regions(ax: Any, regions: FaceRegions, units: Units) -> Any:
-    """The polygon of each finger on its face, and how far it may be off."""
-    ax, triangles = draw_fingers(ax, regions.shape, regions.grasp, 0.6 * _CONE)
-    colours, size = contact_colours(regions.grasp), extent(regions.grasp, triangles[0])
-    for contact, patch, radius in zip(regions.grasp, regions.patches, regions.radii, strict=True):
+def draw_regions(ax: Any, regions: FaceRegions) -> Any:
+    """The polygon of each finger on its face."""
+    ax, _ = draw_fingers(ax, regions.shape, regions.grasp, 0.6 * _CONE)
+    colours = contact_colours(regions.grasp)
+    for contact, patch in zip(regions.grasp, regions.patches, strict=True):
         colour = colours[contact.name or ""]
         face = Poly3DCollection([patch], facecolor=colour, edgecolor=colour, alpha=0.45, zorder=3)
         face.set_gid(f"region {contact.name}")
         ax.add_collection3d(face)
-        words = f"{short(float(f'{radius:.3g}'))} {units.length}"
-        write(ax, words, contact.position, -contact.normal, 0.1 * size, gid="radius", color=colour)
     return ax

@@ -38,12 +38,13 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     instance(surface, "surface", SurfaceMap)
     new, ax = ax is None, space_axes(ax, height=3.8)
     if new:
-        ax.set_position((0.06, 0.04, 0.68, 0.84))
+        ax.set_position((0.02, 0.04, 0.72, 0.9))
         looked_at = surface.normals[np.argsort(surface.best)[:_BEST]].mean(axis=0)
         ax.view_init(-_RAISED if looked_at[2] > 0 else _RAISED, _TURNED)
     mesh = surface.shape.surface()
     pieces, normals = _pieces(*mesh)
-    seen = normals @ sight(ax.elev, ax.azim) <= 0  # inward normals: those of faces that look at the reader
+    towards = sight(ax.elev, ax.azim)
+    seen = normals @ towards <= 0  # inward normals: those of faces that look at the reader
     reach = float(np.linalg.norm(mesh[0], axis=1).max())
     away = np.linalg.norm((pieces.mean(axis=1)[:, None] - surface.points) / reach, axis=2)
     away += _FACING * np.linalg.norm(normals[:, None] - surface.normals, axis=2)
@@ -58,11 +59,11 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     )
     drawn.set_gid("values")
     ax.add_collection3d(drawn)
-    draw_edges(ax, creases(mesh), GREY, gid="edges")
+    draw_edges(ax, creases((mesh[0], mesh[1][face_normals(mesh) @ towards >= 0])), GREY, gid="edges")
     include(ax, mesh[0])
     bar = ax.figure.colorbar(
         ScalarMappable(scale, "viridis_r"),
-        cax=ax.figure.add_axes((0.83, 0.25, 0.035, 0.5)) if new else None,
+        cax=ax.figure.add_axes((0.85, 0.25, 0.03, 0.5)) if new else None,
         ax=ax,
         shrink=0.6,
         pad=0.16,

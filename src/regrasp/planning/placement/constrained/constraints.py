@@ -26,8 +26,9 @@ _EVERYTHING = 1e200  # a level that leaves no box out
 _ENOUGH = 1e3  # times the loads, forces of those that stay without any limit
 _JUDGED = 3  # placements of a batch of boxes whose forces are computed, the best first
 _LEAST, _ROUGH = 20, 0.01  # placements of the least largest forces to begin with, and their gap [-]
-_SEEDS, _SLIDING, _FARTHER = 200, 6, 2  # placements of points; those of other edges that slide, and farther
-_FIRST, _THEN, _LAST = 0.125, 0.01, 1e-4  # steps of sliding, as parts of an edge
+_SEEDS = 200  # placements of points to begin with
+_FIRST, _LAST = 0.125, 1e-4  # steps of sliding, as parts of an edge
+_STAGES = ((14, _FIRST, 0.1), (6, 0.06, 0.02), (2, 0.015, _LAST))  # how many slide, from which step to which
 
 
 @dataclass(frozen=True)
@@ -147,10 +148,12 @@ def _begun(search: Search, asked: Asked, kept: Constraints, most: int, value: Va
     )
     found = [placed for placed in found if placed[0] < inf]
     best = {tuple(places): (norm, places, u) for norm, places, u in found}  # of the same edges
-    first = [slid(search, placed, value, _FIRST, _THEN) for placed in list(best.values())[-_SLIDING:]]
-    first.sort(key=lambda placed: -placed[0])
-    first += [slid(search, placed, value, _THEN, _LAST) for placed in first[-_FARTHER:]]
-    return sorted(found + first, key=lambda placed: -placed[0])
+    sliding = list(best.values())
+    for many, step, last in _STAGES:
+        sliding = [slid(search, placed, value, step, last) for placed in sliding[-many:]]
+        sliding.sort(key=lambda placed: -placed[0])
+        found += sliding
+    return sorted(found, key=lambda placed: -placed[0])
 
 
 def _norm(

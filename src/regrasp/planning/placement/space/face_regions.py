@@ -86,6 +86,11 @@ def regions_on_faces(
     for i in range(k):
         radii[i] = _farthest(partial(search.holds_with, radii, i), radius, far, _OWN_HALVINGS)
         alone[i] = _farthest(partial(search.holds_with, none, i), radius, far, _OWN_HALVINGS)
+    ends = [
+        float(np.linalg.norm(p - c.position, axis=1).max())
+        for p, c in zip(search.patches(alone), grasp, strict=True)
+    ]
+    alone = np.maximum(radius, np.minimum(alone, ends))  # a face that holds everywhere ends there
     moments, tilts, focus, forces = map(read_only, search.proof(radii))
     return FaceRegions(
         mesh, grasp, tuple(map(read_only, search.patches(radii))), radius, read_only(radii), read_only(alone),
