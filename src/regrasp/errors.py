@@ -9,6 +9,14 @@ _SHOWN = 120
 _HEAD, _TAIL = 330, 160
 
 
+def told(error: BaseException) -> str:
+    """An error of others: its kind and, where it can be read, its message."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except Exception:
+        return type(error).__name__
+
+
 def shown(value: Any) -> str:
     """A value as a message shows it: on one line, not long, whatever it is."""
     try:
@@ -19,7 +27,7 @@ def shown(value: Any) -> str:
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
-def _readable(message: str) -> str:
+def readable(message: str) -> str:
     """A message on one line; of a long one, as of a grasp of a thousand names, both ends."""
     line = re.sub(r"\s*\n\s*", " ", str(message))
     return line if len(line) <= _HEAD + _TAIL + 5 else f"{line[:_HEAD]} ... {line[-_TAIL:]}"
@@ -39,14 +47,14 @@ class InvalidInput(RegraspError, ValueError):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__(_readable(message))
+        super().__init__(readable(message))
 
 
 class InvalidFile(InvalidInput):
     """A file with any number of problems, a line each."""
 
     def __init__(self, message: str) -> None:
-        super(InvalidInput, self).__init__("\n".join(map(_readable, message.splitlines())))
+        super(InvalidInput, self).__init__("\n".join(map(readable, message.splitlines())))
 
 
 class Infeasible(RegraspError):
@@ -61,7 +69,7 @@ class Infeasible(RegraspError):
     """
 
     def __init__(self, message: str, certificate: Any = None) -> None:
-        super().__init__(_readable(message))
+        super().__init__(readable(message))
         self.certificate = certificate
         self._helps: Callable[[], str] | None = None
 
@@ -82,7 +90,7 @@ class Infeasible(RegraspError):
         if self._helps is not None:
             helps, self._helps = self._helps, None
             if words := helps():
-                self.args = (_readable(f"{self.args[0]}; {words}"),)
+                self.args = (readable(f"{self.args[0]}; {words}"),)
         return str(self.args[0])
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -103,6 +111,6 @@ class SolverFailed(RegraspError):
     """
 
     def __init__(self, message: str, program: Any = None, solution: Any = None) -> None:
-        super().__init__(message)
+        super().__init__(readable(message))
         self.program = program
         self.solution = solution

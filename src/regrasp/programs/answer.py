@@ -2,7 +2,11 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
+import numpy as np
+
+from regrasp.errors import shown
 from regrasp.programs.blocks import Array
 
 
@@ -36,3 +40,13 @@ class Answer:
     build_time: float | None = None
     setup_time: float | None = None
     solve_time: float | None = None
+
+
+def given_numbers(values: Any, size: int) -> Array:
+    """(size,) numbers of a solver's, copied, NaN for None. Raises ``ValueError`` where they are none."""
+    if values is None:
+        return np.full(size, np.nan)
+    given = np.asarray(values)
+    if given.dtype.kind not in "fiu" or given.shape != (size,):
+        raise ValueError(f"{size} numbers were to come, got {shown(values)}")
+    return np.array(given, dtype=float)

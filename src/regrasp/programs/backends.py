@@ -8,7 +8,10 @@ from importlib import import_module
 from math import nan
 from typing import Any
 
-from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown
+import numpy as np
+
+from regrasp.errors import InvalidInput, RegraspError, SolverFailed, SolverUnavailable, shown, told
+from regrasp.programs.answer import given_numbers
 from regrasp.programs.blocks import Array
 from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS, Backend, available_backends, is_installed, named
@@ -66,7 +69,11 @@ def solve(
         raise InvalidInput(f"solve takes a Program, got {shown(program)}")
     if not isinstance(backend, str):
         raise InvalidInput(f"backend must be a name, got {shown(backend)}")
-    if time_limit is not None and not (isinstance(time_limit, (int, float)) and 0 < time_limit <= _LONGEST):
+    for name, word in (("throw", throw), ("isolated", isolated)):
+        if not isinstance(word, (bool, np.bool_)):
+            raise InvalidInput(f"{name} must be True or False, got {shown(word)}")
+    is_number = isinstance(time_limit, (int, float, np.number)) and not isinstance(time_limit, bool)
+    if time_limit is not None and not (is_number and 0 < time_limit <= _LONGEST):
         raise InvalidInput(
             f"time_limit must be a positive number of seconds or None, got {shown(time_limit)}"
         )
@@ -132,11 +139,16 @@ def asked(program: Program, backend: str, options: dict[str, Any]) -> Solution:
     """What a back end answers in this process, not audited."""
     call: Callable[..., Solution] = import_module(_module(_entry(backend))).solve
     try:
-        return call(program, backend, **options)
+        answer = call(program, backend, **options)
+        value, duals = (
+            given_numbers(answer.value, program.q.size),
+            given_numbers(answer.duals, program.b.size),
+        )
+        return replace(answer, value=value, duals=duals)
     except (RegraspError, KeyboardInterrupt, SystemExit, GeneratorExit):
         raise
     except BaseException as error:  # Rust's panics are no exceptions
-        return failed(program, backend, f"{type(error).__name__}: {error}")
+        return failed(program, backend, told(error))
 
 
 def least_room(program: Program, backend: str) -> float:

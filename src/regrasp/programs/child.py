@@ -13,7 +13,7 @@ from multiprocessing import Pipe
 from threading import TIMEOUT_MAX, Event, Timer
 from typing import TYPE_CHECKING, Any
 
-from regrasp.errors import InvalidInput, RegraspError
+from regrasp.errors import InvalidInput, RegraspError, told
 from regrasp.programs.program import Program
 from regrasp.programs.solution import Solution, failed
 
@@ -41,17 +41,21 @@ def solved_apart(
             f"a process of its own for {backend} is handed a pipe as POSIX systems do; "
             "leave isolated and time_limit out"
         )
+    try:
+        question = pickle.dumps((program, backend, options))
+    except Exception as error:
+        raise InvalidInput(f"options for another process must be plain values; {told(error)}") from None
     ours, process = piped(_CODE)
     answering, late = False, Event()
     try:
         with ended_after(process, _START) as late:
-            ours.send_bytes(pickle.dumps((program, backend, options)))
+            ours.send_bytes(question)
             awaited(ours, process)
             ours.recv_bytes()
         answering = True
         with ended_after(process, inf if time_limit is None else time_limit) as late:
             awaited(ours, process)
-            answer = pickle.loads(ours.recv_bytes())
+            reply = ours.recv_bytes()
     except (EOFError, OSError):
         if late.is_set():
             no = f"no answer within {time_limit:.3g} s"
@@ -65,6 +69,10 @@ def solved_apart(
         end_group(process)
         process.wait()
         ours.close()
+    try:
+        answer = pickle.loads(reply)
+    except Exception as error:
+        return failed(program, backend, f"its answer is none that can be read; {told(error)}")
     if isinstance(answer, RegraspError):
         raise answer
     given: Solution = answer

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from regrasp.programs.answer import Answer, Claim
-from regrasp.programs.blocks import Array
+from regrasp.programs.answer import Answer, Claim, given_numbers
 from regrasp.programs.calls.deadline import Deadline
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.proofs import unboundedness_residual
@@ -53,14 +52,9 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     if (claim is Claim.INFEASIBLE and z is None) or (claim is Claim.UNBOUNDED and x is None):
         status, said = Status.NOT_FOUND, f"{said}, without a certificate"
     return Solution(
-        program, name, status, _filled(x, program.q.size), _filled(z, program.b.size), answer.iterations,
-        max(took - solving, 0.0), solving, said,
+        program, name, status, given_numbers(x, program.q.size), given_numbers(z, program.b.size),
+        answer.iterations, max(took - solving, 0.0), solving, said,
     )  # fmt: skip
-
-
-def _filled(values: Array | None, size: int) -> Array:
-    """The numbers, or NaN where there are none: several solvers fill in whatever they had."""
-    return np.full(size, np.nan) if values is None else np.array(values, dtype=float)
 
 
 def _by_steps(program: Program, ask: Callable[[Program], Answer]) -> Answer:
@@ -72,9 +66,10 @@ def _by_steps(program: Program, ask: Callable[[Program], Answer]) -> Answer:
 
     Returns:
         Where P's diagonal is positive, what is answered to the program as it is. Else, of the steps, the
-        first answer that is no point, or that moved by so little that its duals miss those of the
-        program by at most ``_PULL`` s. Where all steps move on, the last answer: it falls for ever along the
-        last step where that is a direction of descent to ``_FALLING``, and is a point to be judged elsewhere.
+        first answer that is no point, or an infinite one, or that moved by so little that its duals miss
+        those of the program by at most ``_PULL`` s. Where all steps move on, the last answer: it falls for
+        ever along the last step where that is a direction of descent to ``_FALLING``, and is a point to be
+        judged elsewhere.
     """
     P, q = program.P, program.q
     if P.diagonal().min(initial=np.inf) > 0:
@@ -86,8 +81,9 @@ def _by_steps(program: Program, ask: Callable[[Program], Answer]) -> Answer:
         answer = ask(replace(program, P=sparse.csc_matrix(P + weight * identity), q=q - weight * x))
         if answer.status != Claim.FOUND.value or answer.x is None:
             return answer
-        step, x = answer.x - x, answer.x
-        if weight * abs(step).max() <= _PULL * size:
+        last, x = x, given_numbers(answer.x, q.size)
+        step = x - last
+        if not _PULL * size < weight * abs(step).max() < np.inf:
             return answer
     if unboundedness_residual(program, step) <= _FALLING:
         return replace(answer, status=Claim.UNBOUNDED.value, x=step, said=f"{answer.said}, falling for ever")

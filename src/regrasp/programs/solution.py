@@ -7,6 +7,7 @@ from math import inf, isnan
 
 import numpy as np
 
+from regrasp.errors import readable
 from regrasp.programs.blocks import Array
 from regrasp.programs.judging.audit import Audit, audited
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
@@ -115,7 +116,7 @@ class Solution:
         return inf if any(map(isnan, values)) else max(values)
 
     def __str__(self) -> str:
-        return (
+        return readable(
             f"{self.backend}: {self.status.name} ({self.said}), objective {self.objective:.9g}, "
             f"residuals primal {self.primal_residual:.1e}, dual {self.dual_residual:.1e}, "
             f"complementarity {self.complementarity:.1e}, gap {self.gap:.1e}"
