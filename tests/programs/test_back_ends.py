@@ -139,25 +139,12 @@ def test_a_linear_program_that_falls_for_ever_has_no_answer(backend):
         assert abs(answer.value[1]) <= 1e-9 * answer.value[0] or answer.value[1] > 0
         assert np.isnan(answer.duals).all()
     else:
-        assert answer.status is Status.NOT_FOUND
+        assert answer.status in (Status.NOT_FOUND, Status.STOPPED)
         with pytest.raises(SolverFailed):
             solve(falling(), backend)
 
 
-@pytest.mark.parametrize("backend", ["daqp", "quadprog"])
-def test_a_qp_back_end_without_an_answer_gives_no_numbers(backend):
-    if backend not in QP_ONLY:
-        pytest.skip(f"{backend} is not installed")
-    solution = solve(contradiction(), backend, throw=False)
-    assert solution.status is Status.NOT_FOUND
-    assert np.isnan(solution.value).all()
-    with pytest.raises(SolverFailed, match="gave no reason") as failed:
-        solve(contradiction(), backend)
-    assert failed.value.program is not None
-    assert failed.value.solution.status is Status.NOT_FOUND
-
-
-@pytest.mark.parametrize("backend", [name for name in QP_ONLY if name not in ("daqp", "quadprog")])
+@pytest.mark.parametrize("backend", QP_ONLY)
 def test_a_qp_back_end_with_a_certificate_has_it_used(backend):
     solution = solve(contradiction(), backend)
     assert solution.status is Status.INFEASIBLE
@@ -265,7 +252,7 @@ def falling_beside(far, says="found"):
     return rows.program([0.0, -1.0]), Session
 
 
-@pytest.mark.parametrize(("says", "status"), [("found", Status.UNBOUNDED), ("failed", Status.NOT_FOUND)])
+@pytest.mark.parametrize(("says", "status"), [("found", Status.UNBOUNDED), ("failed", Status.STOPPED)])
 def test_the_last_step_is_the_direction_however_far_away_it_begins(monkeypatch, says, status) -> None:
     """The point itself falls, too, but along the equation's far side."""
     program, session = falling_beside(1e9, says)

@@ -27,7 +27,7 @@ _log = logging.getLogger("regrasp.programs")
 
 # Statuses that say something of the program; the others say something of the back end.
 _CLAIMS = (Status.SOLVED, Status.INFEASIBLE, Status.UNBOUNDED)
-_DOUBTFUL = (Status.STOPPED, Status.UNSOUND)
+_DOUBTFUL = (Status.STOPPED, Status.UNSOUND, Status.NOT_FOUND)
 _LONGEST = sys.float_info.max
 _WHOLE = 1e-7
 """Largest measure of a solution that was found without some of the rows."""
@@ -96,20 +96,27 @@ def _solved(
             f"cones (facets=...), or one of {takers}"
         )
 
+    def ask(given: Program) -> Solution:
+        return _asked(given, backend, entry, limit, isolated, options)
+
     def feasibility(given: Program) -> Solution:
         if limit.is_over:
             return failed(given, backend, "no time is left to look for a point")
         return _solved(given.without_objective(), backend, False, limit, isolated, {})
 
-    claim = _asked(program, backend, entry, limit, isolated, options)
-    solution = judged(claim, entry.tolerance, feasibility)
-    if solution.status in _DOUBTFUL and claim.status is not Status.SOLVED and not limit.is_over:
-        from regrasp.programs.judging.elastic import proven_anyway
+    def answered(given: Program) -> Solution:
+        claim = ask(given)
+        solution = judged(claim, entry.tolerance, feasibility)
+        if solution.status in _DOUBTFUL and claim.status is not Status.SOLVED and not limit.is_over:
+            from regrasp.programs.judging.elastic import proven_anyway
 
-        def ask(given: Program) -> Solution:
-            return _asked(given, backend, entry, limit, isolated, options)
+            return proven_anyway(solution, ask, PROVEN) or solution
+        return solution
 
-        solution = proven_anyway(solution, ask, PROVEN) or solution
+    solution = answered(program)
+    if solution.status not in _CLAIMS and not limit.is_over and (own := in_own_units(program)):
+        whole = judged(own.answer(answered(own.program), program), entry.tolerance, feasibility)
+        solution = whole if whole.status in _CLAIMS else solution
     if throw and solution.status not in _CLAIMS:
         raise SolverFailed(f"{program}: {solution}; {solution.status.advice}", program, solution)
     return solution
@@ -252,14 +259,6 @@ def _first_sound(
     def anyhow(given: Program) -> Solution:
         return _first_sound(given.without_objective(), False, limit, isolated, {})
 
-    own = None if limit.is_over else in_own_units(program)
-    for name in names:
-        if own is None or limit.is_over:
-            break
-        found = _solved(own.program, name, False, limit, isolated, {})
-        whole = judged(own.answer(found, program), _entry(name).tolerance, anyhow)
-        if whole.status in _CLAIMS:
-            return whole
     looser = None if limit.is_over else without_loose_rows(program)
     if looser is not None:
         rest, kept = looser

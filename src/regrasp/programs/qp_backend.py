@@ -20,6 +20,8 @@ _STATUS = {
     Claim.FOUND: Status.SOLVED,
     Claim.INFEASIBLE: Status.INFEASIBLE,
     Claim.UNBOUNDED: Status.UNBOUNDED,
+    Claim.FAILED: Status.STOPPED,
+    Claim.REFUSED: Status.NOT_FOUND,
 }
 # Weights of the proximal steps beside the linear objective: near it first, then far at one stride.
 _WEIGHTS = np.repeat(1 / 10.0 ** np.arange(1, 8), [2, 2, 10, 4, 3, 3, 3])
@@ -46,11 +48,13 @@ def solve(program: Program, name: str, **options: Any) -> Solution:
     took = perf_counter() - started
     solving = took if answer.solve_time is None else answer.solve_time
     claim = Claim(answer.status)
-    x = answer.x if claim in (Claim.FOUND, Claim.UNBOUNDED) else None
-    z = answer.duals if claim in (Claim.FOUND, Claim.INFEASIBLE) else None
-    status, said = _STATUS.get(claim, Status.NOT_FOUND), answer.said
+    x = answer.x if claim in (Claim.FOUND, Claim.UNBOUNDED, Claim.FAILED) else None
+    z = answer.duals if claim in (Claim.FOUND, Claim.INFEASIBLE, Claim.FAILED) else None
+    status, said = _STATUS[claim], answer.said
     if (claim is Claim.INFEASIBLE and z is None) or (claim is Claim.UNBOUNDED and x is None):
         status, said = Status.NOT_FOUND, f"{said}, without a certificate"
+    elif claim is Claim.FAILED and (x is None or z is None):
+        status = Status.NOT_FOUND
     return Solution(
         program, name, status, given_numbers(x, program.q.size), given_numbers(z, program.b.size),
         answer.iterations, max(took - solving, 0.0), solving, said,

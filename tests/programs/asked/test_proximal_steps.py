@@ -107,7 +107,9 @@ def test_what_moves_by_exactly_as_little_as_is_allowed_stands_still(monkeypatch)
     [
         (found(1.0, status="infeasible"), Status.INFEASIBLE),
         (found(1.0, status="unbounded"), Status.UNBOUNDED),
-        (found(1.0, status="failed"), Status.NOT_FOUND),
+        (found(1.0, status="failed"), Status.STOPPED),
+        (Answer("failed", np.ones(1)), Status.NOT_FOUND),
+        (Answer("failed", None, np.ones(1)), Status.NOT_FOUND),
         (found(1.0, status="refused"), Status.NOT_FOUND),
         (Answer("found", None, np.zeros(1)), Status.SOLVED),
     ],
@@ -118,9 +120,10 @@ def test_the_first_answer_that_is_no_point_is_the_answer(monkeypatch, last, stat
     answer = qp_backend.solve(line([-1.0]), "daqp")
     assert len(solver.asked) == 3
     assert (answer.status, answer.said) == (status, last.said)
-    given = last.x is not None and status in (Status.SOLVED, Status.UNBOUNDED)
+    given = last.x is not None and last.status not in ("infeasible", "refused")
     assert np.isnan(answer.value).all() != given
-    assert np.isnan(answer.duals).all() != (status in (Status.SOLVED, Status.INFEASIBLE))
+    given = last.duals is not None and last.status not in ("unbounded", "refused")
+    assert np.isnan(answer.duals).all() != given
 
 
 @pytest.mark.parametrize(("miss", "status"), [(0.9999e-3, Status.UNBOUNDED), (1.0001e-3, Status.SOLVED)])

@@ -61,7 +61,7 @@ def honest(program) -> Solution:
 # -- one back end ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("status", [Status.STOPPED, Status.INFEASIBLE])
+@pytest.mark.parametrize("status", [Status.STOPPED, Status.INFEASIBLE, Status.NOT_FOUND])
 def test_what_stopped_or_proved_nothing_is_asked_for_the_room_that_is_missing(monkeypatch, status) -> None:
     program = empty()
     asked = Asked(monkeypatch, lambda p: told(p, status) if p is program else honest(p))
@@ -71,7 +71,7 @@ def test_what_stopped_or_proved_nothing_is_asked_for_the_room_that_is_missing(mo
     assert [p.q.size for p in asked] == [1, 2]
 
 
-@pytest.mark.parametrize("claim", [Status.SOLVED, Status.FAILED, Status.NOT_FOUND])
+@pytest.mark.parametrize("claim", [Status.SOLVED, Status.FAILED])
 def test_others_are_not(monkeypatch, claim) -> None:
     """A solver that calls a wrong point its answer is asked no more, nor one that failed."""
     asked = Asked(monkeypatch, lambda p: told(p, claim, [0.5], [0.0, 0.0]))
@@ -86,6 +86,27 @@ def test_room_that_is_there_proves_nothing(monkeypatch) -> None:
     answer = solve(program, "clarabel", throw=False)
     assert (answer.status, answer.said) == (Status.STOPPED, "so")
     assert len(asked) == 2
+
+
+@pytest.mark.parametrize("backend", ["clarabel", "auto"])
+@pytest.mark.parametrize("solved", [True, False])
+def test_who_fails_is_asked_in_own_units(monkeypatch, backend, solved) -> None:
+    """x at its bound of 2^-30, in units of which it is one; what fails there, too, is what failed first."""
+    program = bounded(2.0**-30, q=-1.0)
+
+    def answer(p):
+        return told(p, Status.STOPPED) if p is program or not solved else honest(p)
+
+    asked = Asked(monkeypatch, answer)
+    found = solve(program, backend, throw=False)
+    assert asked[2].b.tolist() == [0.0, 1.0]
+    assert found.program is program
+    if solved:
+        assert (found.status, found.said) == (Status.SOLVED, "Solved, in own units")
+        assert found.value[0] == pytest.approx(2.0**-30)
+        assert (asked.names, [p.q.size for p in asked]) == (["clarabel"] * 3, [1, 2, 1])
+    else:
+        assert (found.status, found.said) == (Status.STOPPED, "so")
 
 
 def test_who_takes_second_order_cones_is_named() -> None:

@@ -84,7 +84,7 @@ def test_a_program_without_a_point_and_one_that_falls(name, monkeypatch) -> None
         return
     assert none.status == "infeasible"
     if name in ("daqp", "quadprog"):
-        assert (none.x, none.duals) == (None, None)
+        assert none.duals is None
     elif name == "proxqp":  # its iterate is on its way to one
         assert (none.duals > 0).all()
     else:
@@ -94,22 +94,19 @@ def test_a_program_without_a_point_and_one_that_falls(name, monkeypatch) -> None
     elif name not in ("highs", "proxqp"):
         assert falls.status == "unbounded"
         if name == "daqp":
-            assert (falls.x, falls.duals) == (None, None)
+            assert falls.x.shape == (2,)
         else:
             np.testing.assert_allclose(falls.x / falls.x[0], [1, 0], atol=1e-5)
-    if name in ("piqp", "proxqp"):
-        assert none.x is None
-        assert falls.duals is None
 
 
 @pytest.mark.parametrize("name", [name for name in SOLVERS if name not in ("quadprog", "highs")])
-def test_options_reach_it_and_who_stops_has_found_nothing(name) -> None:
+def test_options_reach_it_and_who_stops_tells_how_far_it_came(name) -> None:
     key = {"daqp": "iter_limit", "scs": "max_iters", "qoco": "max_iters"}.get(name, "max_iter")
     call = called(name)
     answer = call.Session(call.layout(mixed(*ONE)), **{key: 1}).solve()
     assert (answer.status, answer.iterations) == ("failed", 1)
-    if name in ("daqp", "piqp", "proxqp"):
-        assert (answer.x, answer.duals) == (None, None)
+    assert answer.x.size == mixed(*ONE).q.size
+    assert answer.duals.size == mixed(*ONE).b.size
 
 
 @pytest.mark.parametrize("name", SOLVERS)

@@ -63,7 +63,8 @@ def test_what_daqp_is_told_and_says(monkeypatch) -> None:
         flags = iter((0, flag))  # nothing to complain of
         answer = call.Session(data).solve()
         assert (answer.status, answer.said, answer.iterations) == (status, words, 5)
-        assert (answer.x is not None) is (answer.duals is not None) is (status == "found")
+        assert answer.x.tolist() == [1.0] * 3
+        assert (answer.duals is None) is (status == "infeasible")
     assert heard[0] == ("setup", [0, 5, 0, 0], [-1e30, 2, -1e30, -1e30])
     for refused, then in ((-5, "setup"), (0, "update"), (1, "update")):
         flags = iter((refused, -1, 1))

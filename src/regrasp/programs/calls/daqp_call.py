@@ -65,7 +65,6 @@ class Session:
             took = perf_counter() - started
             duals, iterations = info["lam"], info["iterations"]
         status = _CLAIMS.get(flag, "failed")
-        found = status == "found"
         said = _SAID.get(flag, f"exit flag {flag}")
-        given = (x, duals) if found else (None, None)
-        return Answer(status, *given, iterations, said, None, self._setup, took)
+        proven = None if status == "infeasible" else duals  # what it leaves there is no certificate
+        return Answer(status, x, proven, iterations, said, None, self._setup, took)

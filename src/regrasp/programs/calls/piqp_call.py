@@ -49,6 +49,5 @@ class Session:
         took = perf_counter() - started
         status, result = _CLAIMS.get(said, "failed"), self._solver.result
         # Of a program without solution its last iterate grows towards a certificate, and is near one.
-        duals = self._data.joined(result.z_u, result.y) if status in ("found", "infeasible") else None
-        x = result.x if status in ("found", "unbounded") else None
-        return Answer(status, x, duals, result.info.iter, said, None, self._setup, took)
+        duals = self._data.joined(result.z_u, result.y)
+        return Answer(status, result.x, duals, result.info.iter, said, None, self._setup, took)

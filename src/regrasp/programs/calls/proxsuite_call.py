@@ -53,6 +53,5 @@ class Session:
         said = result.info.status.name
         status = _CLAIMS.get(said, "failed")
         # Of a program without solution its last iterate grows towards a certificate, and is near one.
-        duals = self._data.joined(result.z, result.y) if status in ("found", "infeasible") else None
-        x = result.x if status in ("found", "unbounded") else None
-        return Answer(status, x, duals, int(result.info.iter), said, None, self._setup, took)
+        duals = self._data.joined(result.z, result.y)
+        return Answer(status, result.x, duals, int(result.info.iter), said, None, self._setup, took)

@@ -45,13 +45,34 @@ def proven_anyway(solution: Solution, ask: Callable[[Program], Solution], enough
 
     enough: the largest residual of a certificate.
     """
-    program = solution.program
-    answer = ask(elastic(program))
-    if not (answer.value[-1] > 0 and np.isfinite(answer.duals).all()):
-        return None
-    z = cleaned_duals(program, answer.duals[: program.b.size], enough)
-    if not infeasibility_residual(program, z) <= enough:
-        return None
-    said = f"{solution.said}, but infeasible with room for all"
-    nothing = np.full(program.q.size, nan)
-    return replace(solution, status=Status.INFEASIBLE, value=nothing, duals=z, said=said)
+    program, m, equal = solution.program, solution.program.b.size, solution.program.cones.zero
+    for given in (program, _loosened(program)) if equal.any() else (program,):
+        answer = ask(elastic(given))
+        if not (answer.value[-1] > 0 and np.isfinite(answer.duals).all()):
+            continue
+        z = answer.duals[:m].copy()
+        z[equal] -= answer.duals[m:-1] if given is not program else 0.0
+        z = cleaned_duals(program, z, enough)
+        if infeasibility_residual(program, z) <= enough:
+            said = f"{solution.said}, but infeasible with room for all"
+            nothing = np.full(program.q.size, nan)
+            return replace(solution, status=Status.INFEASIBLE, value=nothing, duals=z, said=said)
+    return None
+
+
+def _loosened(program: Program) -> Program:
+    """The program with two inequalities for each equality, one in its place and one at the end."""
+    equal = program.cones.zero
+    A, inside = (
+        sparse.csr_matrix(program.A),
+        (Cone.NONNEGATIVE if b.cone is Cone.ZERO else b.cone for b in program.blocks),
+    )
+    blocks = [replace(block, cone=cone) for block, cone in zip(program.blocks, inside, strict=True)]
+    return Program(
+        program.P,
+        program.q,
+        sparse.vstack([A, -A[equal]], format="csc"),
+        np.r_[program.b, -program.b[equal]],
+        (*blocks, Block(Cone.NONNEGATIVE, 1, int(equal.sum()))),
+        size=program.size,
+    )
