@@ -1,12 +1,14 @@
 """From a scenario to a chosen grasp on disk, judged again from there."""
 
 import json
+from inspect import signature
 from pathlib import Path
 
 import pytest
 
 import regrasp as rg
 from regrasp.files import parse_scenario, plan_scenario, read_plan, write_plan
+from regrasp.files.scenarios.grasp import GraspTask
 from regrasp.files.scenarios.templates import template
 from scenarios import regrasp
 
@@ -18,13 +20,40 @@ def test_a_grasp_is_chosen_written_and_verified(tmp_path: Path, capsys: pytest.C
     status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
     assert (status, err) == (0, "")
     assert "no placement is below" in out
-    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png"}
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png", "regions.png"}
     status, out, err = regrasp(capsys, "verify", str(tmp_path / "out"), "--json")
     assert (status, err) == (0, "")
     facts = json.loads(out)
     assert facts["plan"]["kind"] == "grasp"
     assert facts["verification"]["excluded"] > 0
     assert facts["plan"]["bound"] <= facts["plan"]["value"]
+
+
+def test_two_fingers_have_a_map_too_and_what_has_no_regions_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def none(*_: object, **__: object) -> None:
+        raise rg.Infeasible("there are none")
+
+    text = template("grasp").replace("fingers = 3", "fingers = 2").replace("friction = 0.4", "friction = 0.8")
+    (tmp_path / "grasp.toml").write_text(text, encoding="utf-8")
+    for folder, drawn, said in (
+        ("all", {"grasp.png", "regions.png", "map.png"}, ""),
+        ("some", {"grasp.png", "map.png"}, "no regions.png: there are none"),
+    ):
+        status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / folder))
+        assert (status, err) == (0, "")
+        assert {file.name for file in (tmp_path / folder).iterdir()} == {"plan.json", *drawn}
+        assert said in out
+        monkeypatch.setattr("regrasp.planning.placement.regions.contact_regions", none)
+
+
+def test_every_option_of_the_verb_is_a_key_and_in_the_example() -> None:
+    asked = set(signature(rg.choose_grasp).parameters)
+    asked -= {"shape", "load", "friction", "disturbance", "keep", "progress"}  # elsewhere, or no data
+    assert asked == set(GraspTask.model_fields) - {"kind"}
+    for key in (*asked, "disturbance", "tilt_degrees"):
+        assert f"{key} = " in template("grasp")
 
 
 def test_a_grasp_on_a_mesh_of_a_file_is_chosen_drawn_and_verified(
@@ -36,7 +65,7 @@ def test_a_grasp_on_a_mesh_of_a_file_is_chosen_drawn_and_verified(
     status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
     assert (status, err) == (0, "")
     assert "no placement is below" in out
-    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png"}
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png", "regions.png"}
     status, out, err = regrasp(capsys, "verify", str(tmp_path / "out"), "--json")
     assert (status, err) == (0, "")
     assert json.loads(out)["plan"]["bound"] <= json.loads(out)["plan"]["value"]

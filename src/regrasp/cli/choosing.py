@@ -1,5 +1,6 @@
 """Choosing the grasp of a scenario: chosen, verified, and only then written and drawn."""
 
+from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,7 @@ from regrasp.cli.verdicts import progress_bar, verdict_facts, verified
 
 if TYPE_CHECKING:
     from regrasp.files import GraspScenario, SpaceGraspScenario
+    from regrasp.planning.placement.chosen import ChosenGrasp
 
 
 def choose(
@@ -32,15 +34,53 @@ def choose(
     say(verdict)
     with whole_folder(output) as folder:
         write_plan(chosen, folder / "plan.json")
-        if draw:
-            from regrasp.plots.placement.chosen import chosen_grasp_png
-
-            (folder / "grasp.png").write_bytes(chosen_grasp_png(chosen))
+        for figure, image in _pictures(chosen, scenario) if draw else ():
+            (folder / figure).write_bytes(image)
         written = sorted(file.name for file in folder.iterdir())
     say("")
     for file in written:
         say(f"wrote {output / file}")
     return verdict_facts(chosen, verdict, 0) | {"wrote": [output / file for file in written]}
+
+
+def _pictures(
+    chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenario"
+) -> Iterator[tuple[str, bytes]]:
+    """The grasp, the regions around its fingers, and of two on an outline the map of all places.
+
+    What cannot be had is said.
+    """
+    from regrasp import plots
+    from regrasp.errors import RegraspError
+    from regrasp.outline.outline import Outline
+    from regrasp.planning.placement.laws import LEVELS
+    from regrasp.planning.placement.maps import placement_map
+    from regrasp.planning.placement.regions import contact_regions
+    from regrasp.plots.look.png import png
+
+    def image(ax: Any) -> bytes:
+        return png(ax.figure)
+
+    shape, load, word = chosen.shape, scenario.load.value, chosen.objective
+    yield "grasp.png", image(plots.plot_chosen_grasp(chosen))
+    regions: Any = None
+    if word != "wrench_ball":  # its load is zero, which every region holds
+        try:
+            regions = contact_regions(shape, chosen.grasp, load, max_force=chosen.max_force)
+            yield "regions.png", image(plots.plot_contact_regions(regions))
+        except RegraspError as error:
+            say(f"\nno regions.png: {error}")
+    if not isinstance(shape, Outline) or len(chosen.grasp) != 2:
+        return
+    level: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length} if word in LEVELS else {}
+    if (disturbance := getattr(scenario.load, "disturbance", None)) is not None:
+        level["disturbance"] = disturbance.around(scenario.load.wrench)
+    objective = "answered" if word == "wrench" else word  # what is withstood has no map
+    try:
+        found = placement_map(shape, load, friction=scenario.friction, objective=objective, **level)
+        yield "map.png", image(plots.plot_placement_map(found, regions=regions))
+    except RegraspError as error:
+        say(f"\nno map.png: {error}")
 
 
 def _known(bound: float, best: float) -> str:
