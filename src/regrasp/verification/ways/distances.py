@@ -1,6 +1,7 @@
 """Distances from outlines and surfaces, for what checks ways through the air."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regrasp.mechanics.checks import Array
 
@@ -26,6 +27,19 @@ def to_faces(points: Array, corners: Array) -> Array:
         near = np.linalg.norm(points - centre, axis=1) - size < best
         best[near] = np.minimum(best[near], _to_face(points[near], face))
     return best
+
+
+def within(points: Array, corners: Array) -> NDArray[np.bool_]:
+    """(m,) whether points (m, 3) are inside of closed triangles (k, 3, 3), by the angles these fill.
+
+    Of a face at a, b, c from a point, sides x, y, z long, it is twice atan2(a . b x c, x y z + a . b z +
+    b . c x + c . a y) (Van Oosterom and Strackee 1983); together 4 pi inside, 0 outside.
+    """
+    a, b, c = np.moveaxis(corners - points[:, None, None], 2, 0)
+    x, y, z = (np.linalg.norm(v, axis=2) for v in (a, b, c))
+    beside = x * y * z + (a * b).sum(axis=2) * z + (b * c).sum(axis=2) * x + (c * a).sum(axis=2) * y
+    filled = np.arctan2((a * np.cross(b, c)).sum(axis=2), beside).sum(axis=1)
+    return np.asarray(abs(filled) > np.pi)
 
 
 def _to_face(points: Array, face: Array) -> Array:

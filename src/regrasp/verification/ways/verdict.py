@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, items, number, point
 from regrasp.mechanics.value import ArrayValue
-from regrasp.verification.ways.distances import points_of_axis, to_axis, to_boundary, to_faces
+from regrasp.verification.ways.distances import points_of_axis, to_axis, to_boundary, to_faces, within
 from regrasp.verification.ways.held import contacts_of, jumps, lost, touched
 
 _PART = 10  # of the clearance: how far fingers move between samples
@@ -95,23 +95,23 @@ def verify_motions(motions: Moving, shape: Any) -> MotionsVerification:
     if not hasattr(shape, "polygon") and not hasattr(shape, "surface"):
         raise InvalidInput(f"verify_motions needs an Outline or a Mesh, got {shown(shape)}")
     _check_numbers(motions)
-    t, at = _sampled(motions)
+    ends = _ends(motions)
+    t, at = _sampled(motions, ends)
     if len(motions.capsules) != at.shape[1]:
         raise InvalidInput(
             f"motions of {at.shape[1]} fingers need as many capsules, got {len(motions.capsules)}"
         )
     touching, keep = motions.touching(t), motions.clearance
     reach, slack, near = motions.tip_radius, _NEAR * keep, _SAME * keep
-    on, ends = touched(motions.steps, at, touching, reach, near), _ends(motions)
+    on = touched(motions.steps, at, touching, reach, near)
     during = [(t >= begin) & (t <= end) for begin, end in ends]
     violations = [
         *jumps(t, at, motions.velocities(t), near),
         *_late(ends, float(t[-1])),
         *lost(t, motions.steps, during, touching, on, at.shape[2]),
     ]
-    still = np.linalg.norm(np.diff(at, axis=0), axis=2) == 0
-    moving = np.ones(at.shape[:2], dtype=bool)
-    moving[1:-1] = ~(still[1:] & still[:-1])
+    moving = np.ones(at.shape[:2], dtype=bool)  # from then on, or it is the end: where fingers rest, too
+    moving[:-1] = (at[1:] != at[:-1]).any(axis=2)
     fingers = [points_of_axis(at[:, i], v, keep / 2) for i, v in enumerate(motions.capsules)]
     to_object = to_fingers = np.inf
     for i, axis in enumerate(fingers):
@@ -145,11 +145,15 @@ def _check_numbers(motions: Moving) -> None:
         point(axis, f"capsule {i + 1} of motions")
 
 
-def _sampled(motions: Moving) -> tuple[Array, Array]:
-    """Times between which no finger moves by more than a tenth of the clearance, and positions then."""
+def _sampled(motions: Moving, ends: list[tuple[float, float]]) -> tuple[Array, Array]:
+    """Times between which no finger moves by more than a tenth of the clearance, and positions then.
+
+    The middle of each step is one of them, however short it is.
+    """
+    middles = [m for begin, end in ends if 0 < (m := (begin + end) / 2) < motions.duration]
     count = 1025
     while count < _MOST:
-        t = np.linspace(0.0, motions.duration, count)
+        t = np.union1d(np.linspace(0.0, motions.duration, count), middles)
         at = motions.positions(t)
         if np.linalg.norm(np.diff(at, axis=0), axis=2).max() <= motions.clearance / _PART:
             return t, at
@@ -159,6 +163,10 @@ def _sampled(motions: Moving) -> tuple[Array, Array]:
 
 def _ends(motions: Moving) -> list[tuple[float, float]]:
     """When each step begins and ends."""
+    if len(motions.starts) < len(motions.steps):
+        raise InvalidInput(
+            f"motions of {len(motions.steps)} steps need as many starts, got {len(motions.starts)}"
+        )
     return [(motions.starts[k], motions.starts[k] + step.duration) for k, step in enumerate(motions.steps)]
 
 
@@ -178,6 +186,8 @@ def _away(shape: Any, axis: Array, slack: float) -> Array:
     if hasattr(shape, "surface"):
         vertices, faces = shape.surface()
         away = to_faces(points, vertices[faces])
+        first = axis.shape[1]  # who begins outside comes through no face unseen
+        away[:first][within(points[:first], vertices[faces])] *= -1
     else:
         away = to_boundary(points, shape.polygon(slack))
     return np.asarray(away.reshape(axis.shape[:2]).min(axis=1))
