@@ -8,7 +8,7 @@ import pytest
 import regrasp as rg
 from regrasp.plans.record import Record
 from regrasp.verification import verify_motion_rows, verify_motions
-from regrasp.verification.ways.distances import within
+from regrasp.verification.ways.distances import to_boundary, within
 from regrasp.verification.ways.rows import _radius
 
 pytestmark = pytest.mark.oracle
@@ -57,16 +57,40 @@ def test_a_finger_that_begins_in_a_mesh_is_in_it() -> None:
                 assert verdict.violations[0].startswith(f"finger 4 is in the object by {depth:.3g} at")
 
 
+def test_an_instant_alone_is_looked_at() -> None:
+    """A finger is nearer at one sample, and where it was before and after."""
+    rest = ways((0, 0, 1.5)).positions
+
+    def positions(t):
+        at = rest(t)
+        at[abs(t - 0.25) < 1e-6, 3, 2] -= 0.015
+        return at
+
+    assert verify_motions(ways((0, 0, 1.5)), BOX).to_object == pytest.approx(0.4)
+    assert verify_motions(ways((0, 0, 1.5), positions=positions), BOX).to_object == pytest.approx(0.385)
+
+
 def test_what_is_within_closed_triangles() -> None:
     vertices, faces = BOX.surface()
     corners = vertices[faces]
     points = [(x, y, z) for x in (-3, -0.999, 0.2, 0.999, 1.001, 9) for y in (0.1, -1.01) for z in (0.3, 0.9)]
     inside = [abs(x) < 1 and abs(y) < 1 for x, y, _ in points]
-    for unit in 1e-6, 1.0, 1e6:
+    for unit, off in (1e-6, (0, 0, 0)), (1.0, (5, -3, 9)), (1e6, (0, 0.75, 0)):
         for turned in corners, corners[:, ::-1]:
-            assert within(unit * np.array(points), unit * turned).tolist() == inside
+            assert within(unit * (np.array(points) + off), unit * (turned + off)).tolist() == inside
     hollow = np.concatenate([corners, 0.5 * corners[:, ::-1]])  # a void in it is air
     assert within(np.array([[0, 0, 0.0], [0, 0, 0.75], [0, 0, 1.5]]), hollow).tolist() == [False, True, False]
+
+
+def test_points_beside_a_corner_of_a_polygon() -> None:
+    """On its level, where sides meet: one of both counts where they go on, both or none where they turn."""
+    diamond = np.array([[-1.0, 0], [0, -1], [1, 0], [0, 1]])
+    points = np.array(
+        [[-2.0, 0], [-0.5, 0], [0.0, 0], [0.5, 0], [2.0, 0], [-2, 1.0], [2, 1.0], [-2, -1], [2, -1.0]]
+    )
+    for ring in diamond, diamond[::-1], np.roll(diamond, 1, axis=0):
+        inside = to_boundary(points, ring) < 0
+        assert inside.tolist() == [False, True, True, True, False, False, False, False, False]
 
 
 def test_steps_between_two_samples_are_looked_at() -> None:
