@@ -10,7 +10,7 @@ import pytest
 
 _GIVEN = {"monkeypatch", "tmp_path"}  # fixtures that are made here
 _NEEDED = {"request", "tmp_path_factory"}  # by these, in pytest
-_MARKS = ("skip", "skipif", "xfail", "filterwarnings", "usefixtures")
+_MARKS = ("skip", "xfail", "filterwarnings", "usefixtures")
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,8 @@ def is_plain(item: pytest.Item) -> bool:
     if not isinstance(item, pytest.Function) or item.cls is not None:
         return False
     if getattr(item.obj, "is_hypothesis_test", False) or any(map(item.get_closest_marker, _MARKS)):
+        return False
+    if any(mark.args[:1] != (False,) for mark in item.iter_markers("skipif")):
         return False
     typed: set[str] = set()
     for mark in item.iter_markers("parametrize"):
