@@ -4,7 +4,10 @@ import tempfile
 import warnings
 from contextlib import ExitStack
 from dataclasses import dataclass
+from inspect import isgeneratorfunction, signature
 from pathlib import Path
+from types import FunctionType
+from typing import Any
 
 import pytest
 
@@ -30,7 +33,7 @@ class Test:
 
 
 def is_plain(item: pytest.Item) -> bool:
-    """Whether a test is a function whose arguments are typed in, or are fixtures that keep nothing."""
+    """Whether a test is a function whose arguments are typed in, made here or by plain functions of tests."""
     if not isinstance(item, pytest.Function) or item.cls is not None:
         return False
     if getattr(item.obj, "is_hypothesis_test", False) or any(map(item.get_closest_marker, _MARKS)):
@@ -43,11 +46,30 @@ def is_plain(item: pytest.Item) -> bool:
             return False
         names = mark.args[0]
         typed |= {name.strip() for name in (names.split(",") if isinstance(names, str) else names)}
-    return set(item.fixturenames) <= _GIVEN | _NEEDED | typed and not typed & _GIVEN
+    others = set(item.fixturenames) - _GIVEN - _NEEDED - typed
+    return not typed & _GIVEN and all(_is_plain_fixture(_fixture(item, name)) for name in others)
+
+
+def _fixture(item: pytest.Function, name: str) -> Any:
+    return item._fixtureinfo.name2fixturedefs.get(name, (None,))[-1]
+
+
+def _is_plain_fixture(fixture: Any) -> bool:
+    """Neither pytest's own, nor with parameters or an end."""
+    if fixture is None or fixture.params or fixture.func.__module__.startswith("_pytest"):
+        return False
+    return isinstance(fixture.func, FunctionType) and not isgeneratorfunction(fixture.func)
 
 
 def _call(item: pytest.Function) -> bool:
     given = dict(item.callspec.params) if hasattr(item, "callspec") else {}
+
+    def made(name: str) -> Any:
+        if name not in given:
+            fixture = _fixture(item, name)
+            given[name] = fixture.func(**{needed: made(needed) for needed in fixture.argnames})
+        return given[name]
+
     with ExitStack() as stack:
         stack.enter_context(warnings.catch_warnings())
         warnings.simplefilter("error")
@@ -56,7 +78,7 @@ def _call(item: pytest.Function) -> bool:
         if "tmp_path" in item.fixturenames:
             given["tmp_path"] = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         try:
-            item.obj(**given)
+            item.obj(**{name: made(name) for name in signature(item.obj).parameters})
         except pytest.skip.Exception:
             return True
         except BaseException:

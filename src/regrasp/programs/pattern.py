@@ -33,6 +33,7 @@ class Pattern:
         for shared in (self._template.indices, self._template.indptr):
             shared.setflags(write=False)
         _ = self._template.has_canonical_format  # looked at once, and known of every copy
+        self._template.places = self._template.indices
 
     def filled(self, values: Array) -> sparse.csc_matrix:
         """The matrix with ``values`` (k,) at the places, in the order the pattern was given.
@@ -48,3 +49,8 @@ class Pattern:
                 f"values must be an array of {self._order.size} numbers, got {shown(values)}"
             ) from None
         return matrix
+
+
+def is_placed(matrix: sparse.csc_matrix) -> bool:
+    """Whether the places of a matrix are those of a ``Pattern``, which has looked at them."""
+    return getattr(matrix, "places", None) is matrix.indices

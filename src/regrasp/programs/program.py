@@ -22,6 +22,7 @@ from regrasp.programs.archive import file_path, read_arrays, write_arrays
 from regrasp.programs.blocks import Array, Block, Cone, numbers
 from regrasp.programs.cones import Cones
 from regrasp.programs.judging.terms import Terms, floors_of, is_small
+from regrasp.programs.pattern import is_placed
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,8 +204,8 @@ def _matrix(name: str, given: Any) -> sparse.csc_matrix:
     """The matrix of doubles, each place named once and in order: solvers read others wrongly, or crash."""
     if not sparse.issparse(given) or given.format != "csc":
         raise InvalidInput(f"{name} must be a scipy.sparse matrix in CSC format, got {type(given).__name__}")
-    if not given.indices.flags.writeable and given.has_canonical_format and given.dtype == np.float64:
-        return given  # of a ``Pattern``
+    if is_placed(given) and given.dtype == np.float64:
+        return given
     if given.dtype.kind not in "fiub":
         raise InvalidInput(f"{name} must hold real numbers, got {given.dtype}")
     rows, ends = given.indices, given.indptr
@@ -218,6 +219,5 @@ def _matrix(name: str, given: Any) -> sparse.csc_matrix:
     if is_kept and given.has_canonical_format:
         return given
     matrix = sparse.csc_matrix(given, dtype=np.float64, copy=True)
-    matrix.prune()
     matrix.sum_duplicates()
     return matrix

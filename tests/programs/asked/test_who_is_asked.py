@@ -296,3 +296,20 @@ def test_a_direction_that_keeps_far_rows_wants_a_point_that_does(monkeypatch) ->
     program, answer = falling(with_point=1)
     Asked(monkeypatch, answer)
     assert solve(program, throw=False).status is Status.FAILED
+
+
+def test_a_program_that_nobody_answers_is_asked_in_its_own_units(monkeypatch) -> None:
+    """1024 x <= 1024 for the least of -x: by each in turn until one is sound, which the limit may end."""
+    rows = Rows(1)
+    rows.at_least_zero([[-1024.0]], 1024.0)
+    p = rows.program([-1.0])
+    asked = Asked(monkeypatch, lambda p: honest(p) if abs(p.A.data[0]) == 1 else failed(p, "told", "no"))
+    found = solve(p)
+    assert (found.status, found.value) == (Status.SOLVED, pytest.approx([1.0]))
+    assert found.said.endswith("in own units")
+    assert found.program is p
+    names = [name for name in table._AUTO if is_available(name)]
+    assert asked.names == [*names, names[0]]
+    monkeypatch.setattr(deadline.Deadline, "is_over", True)
+    assert solve(p, throw=False).status is Status.FAILED
+    assert asked.names[len(names) + 1 :] == [names[0]]
