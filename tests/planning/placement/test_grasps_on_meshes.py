@@ -75,6 +75,16 @@ def test_what_was_passed_over_is_worth_what_it_says() -> None:
         assert worst >= found.bound
 
 
+def test_on_many_faces_a_search_ends_after_so_many_corners(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("regrasp.planning.placement.space.choosing.MOST_ROWS", 100_000)
+    asked: dict[str, Any] = {"friction": 0.6, "objective": "peak", "tolerance": 1e-3}
+    short = rg.choose_grasp(parts.bracket(), 3, rg.Wrench([0, 0, -1]), **asked)
+    longer = rg.choose_grasp(parts.bracket(), 3, rg.Wrench([0, 0, -1]), **asked, most_boxes=200)
+    assert len(short.certificate.number) < len(longer.certificate.number)
+    assert short.bound < short.value
+    assert rg.verify(short).ok
+
+
 def test_units_and_frames_change_names_only() -> None:
     found = rg.choose_grasp(TURNED, 3, HEAVY, friction=0.6, objective="peak", tolerance=0.02)
     c, s = np.cos(0.7), np.sin(0.7)

@@ -17,7 +17,7 @@ from regrasp.closed_form.compiled.compiling import VIEWS
 
 NEVER = 1e5
 """Norm, as a multiple of the wrench's, from which nothing is held: what columns cost that no finger makes."""
-_MOST = 150  # columns made
+_MOST, _FEW, _WORK = 150, 24, 500_000  # columns made; but fewer of patches of many rows, for so many in all
 _TILT = 1e-10  # of the wrench, which keeps it off faces of the bodies that columns span
 _MISSED = 1e-8  # of the wrench, by which forces may be off it
 
@@ -137,8 +137,10 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
             made[r, i] = first[i]
             for c in range(3):
                 pushes[r, i, c] = 0.0
-    proven = 0.0
-    for _ in range(_MOST):
+    proven, total_rows = 0.0, 0
+    for i in range(k):
+        total_rows += count[i]
+    for _ in range(min(_MOST, max(_FEW, _WORK // total_rows))):
         value = 0.0
         for c in range(6):
             y[c] = 0.0

@@ -29,6 +29,8 @@ from regrasp.closed_form.compiled.places.placement_search import (
 )
 from regrasp.compilation import kept
 
+MANY = 1000
+"""Rows of a box that are counted: those of smaller ones take no time to speak of."""
 _CORNERS = 3  # rows of a triangle
 _AGREE = 1e-6  # of a norm, by which what forces reach and a bound agree
 
@@ -205,8 +207,8 @@ def _loop(digest: str) -> Any:
         placements tried.
         boxes: patches (N, k), bounds (N,), twists (N, 6), loads' numbers (N,), kinds (N,), first children and
         their number (N, 2), placements to try (N, k, 6), fingers to split (N,). state: numbers of boxes, of
-        those in the heap, of placements tried, of patches, of rows. found: (1 + 6 k) the least value and its
-        spots.
+        those in the heap, of placements tried, of patches, of rows, and of rows looked at (``MANY``). found:
+        (1 + 6 k) the least value and its spots.
         """
         _ = digest
         patches, bounds, twists, critical, kinds, children, places, fingers = boxes
@@ -272,6 +274,11 @@ def _loop(digest: str) -> Any:
                 if least > 0.0 and _too_near(rows, first, count, least):
                     kinds[child] = NEAR
                     continue
+                total = 0
+                for f in range(k):
+                    total += count[f]
+                if total > MANY:
+                    state[5] += total
                 w = loads[critical[box]]
                 known = bound_by(rows, first, count, w, twists[box], mu, size, norm, work[:13])
                 bounds[child] = max(known, bounds[box])

@@ -20,7 +20,7 @@ from regrasp.planning.placement.laws import LEVELS, Law
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.patches import patches_of
-from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, SurfaceSearch
+from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, MOST_ROWS, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
@@ -76,7 +76,8 @@ def choose_on_mesh(
     search = SurfaceSearch(patches_of(corners, normals), fingers, friction, loads, law, apart, half)
     for spots in _on_samples(corners, normals, search):
         search.accept(spots)
-    search.run(half, MOST_BOXES if most is None else most, _NARROW, progress)
+    boxes, rows = (MOST_BOXES, MOST_ROWS) if most is None else (most, inf)
+    search.run(half, boxes, _NARROW, progress, rows)
     power = law.power
     for norm, spots in search.placements()[:_ATTEMPTS]:
         try:

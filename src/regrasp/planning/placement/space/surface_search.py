@@ -12,8 +12,10 @@ from regrasp.planning.placement.space.patches import Patches
 
 MOST_BOXES = 1_000_000
 """Boxes of a search in space unless told otherwise: about 300 bytes each for three fingers."""
+MOST_ROWS = 40_000_000
+"""Corners of faces that boxes of more than a thousand have, for all loads, unless told how many boxes."""
 _FIRST_BOXES = 4096
-_AT_A_TIME = 512
+_AT_A_TIME, _ROWS = 512, 3000  # boxes, on so many rows
 _TRIED = 4096
 _PRECISE, _TRY_PRECISE = 1e-3, 1e-6
 _SAFE = 1e-9  # of a bound, given up to rounding
@@ -59,26 +61,31 @@ class SurfaceSearch:
         self._radius = _room(patches.radius / self.size, room)
         self._boxes = _memory(_FIRST_BOXES, fingers)
         self._heap = np.zeros(_FIRST_BOXES, np.int64)
-        self._state = np.array([1, 1, 0, len(patches.spans), len(rows)])
+        self._state = np.array([1, 1, 0, len(patches.spans), len(rows), 0])
         self._found = np.full(1 + 6 * fingers, inf)
         self._tried = np.zeros((_TRIED, 1 + 6 * fingers))
         self.closed = False
 
-    def run(self, tolerance: float, most: int, narrow: float, progress: Progress | None) -> None:
+    def run(
+        self, tolerance: float, most: int, narrow: float, progress: Progress | None, rows: float = inf
+    ) -> None:
         """Search until no placement can be better by the fraction ``tolerance``, or ``most`` boxes are used.
+
+        rows: corners of faces that large boxes may have, after which it ends, too.
 
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
         from regrasp.closed_form.compiled.patches.patch_search import search, spare
         from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL
 
+        each = max(_AT_A_TIME * _ROWS // max(_ROWS, len(self.patches.rows)), 1)  # lest an interrupt waits
         memory, slid, due = spare(self.fingers), inf, _FIRST_BOXES
         try:
             while True:
                 ended = search(
                     self._rows, self._spans, self._tree, self._radius, self._wanted, self._trials,
                     self._law, self._usable, tolerance, self.apart / self.size, narrow, self._boxes,
-                    self._heap, self._state, self._found, self._tried, _AT_A_TIME, memory,
+                    self._heap, self._state, self._found, self._tried, each, memory,
                 )  # fmt: skip
                 if self._found[0] < slid * (1 - _GAINED) or self.count >= due:
                     fine = ended == CLOSED or self.count >= due
@@ -87,7 +94,8 @@ class SurfaceSearch:
                 if progress is not None:
                     progress(self.bound, self.best)
                 self.closed = ended == CLOSED
-                if self.closed or (ended == FULL and not self._grow(most)):
+                looked = int(self._state[5]) * len(self._wanted)
+                if self.closed or looked > rows or (ended == FULL and not self._grow(most)):
                     break
             self._slide(0.1 * _STEP, _SHORTEST)
         except KeyboardInterrupt:
