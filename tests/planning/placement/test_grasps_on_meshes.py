@@ -77,9 +77,12 @@ def test_what_was_passed_over_is_worth_what_it_says() -> None:
 
 def test_on_many_faces_a_search_ends_after_so_many_corners(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("regrasp.planning.placement.space.choosing.MOST_ROWS", 1000)
-    load = rg.Wrench([0.5, -0.2, -1.8], [0.005, 0, 0.01])
-    short = rg.choose_grasp(parts.bracket(), 3, load, friction=0.6, tolerance=1e-6)
-    longer = rg.choose_grasp(parts.bracket(), 3, load, friction=0.6, tolerance=1e-6, most_boxes=2000)
+    loads = rg.LoadSet.hull(
+        rg.Wrench([x, y, -1.8], [0.005, 0, 0]) for x, y in ((0.5, 0), (-0.5, 0), (0, 0.5), (0, -0.5))
+    )
+    asked: dict[str, Any] = {"friction": 0.6, "objective": "peak_normal"}
+    short = rg.choose_grasp(parts.bracket(), 3, loads, **asked)
+    longer = rg.choose_grasp(parts.bracket(), 3, loads, **asked, most_boxes=4000)
     assert len(short.certificate.number) < len(longer.certificate.number)
     assert short.bound < short.value
     assert rg.verify(short).ok
