@@ -195,3 +195,18 @@ def test_placements_that_nearly_hold_slide_to_those_that_do() -> None:
     chosen = rg.choose_grasp(shape, 3, two, friction=0.2, objective="angle", max_force=2.37, most_boxes=15000)
     assert chosen.gap <= 1e-3
     assert chosen.value == pytest.approx(np.arctan(0.2), rel=1e-3)
+
+
+def test_fingers_slide_to_better_levels_not_to_lesser_forces() -> None:
+    """On this shape forces are least beside places where cones end: what is found there is better by a step."""
+    vertices = [
+        [0.91, 0.49], [0.52, 0.57], [0.08, 1.45], [-0.77, 0.5], [-0.73, 0.2], [-0.92, -0.53], [-0.62, -1.3],
+        [0.63, -1.24], [0.93, -0.17],
+    ]  # fmt: skip
+    loads = [rg.Wrench([-0.16, -0.98], 0.23), rg.Wrench([-0.57, -1.1], 0.44), rg.Wrench([-0.22, -1.41], 0.08)]
+    chosen = rg.choose_grasp(
+        rg.Outline(vertices), 2, rg.LoadSet.hull(loads), friction=0.4, objective="friction_use",
+        max_force=1.62, tolerance=1e-2, most_boxes=2000,
+    )  # fmt: skip
+    assert chosen.gap <= 1e-2
+    assert chosen.value < 0.084  # 0.58 after ten times as many boxes

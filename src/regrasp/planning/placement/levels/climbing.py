@@ -5,13 +5,14 @@ from math import inf, nan
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.placement.levels.level import Level
+from regrasp.planning.placement.levels.level import SURE, Level
 from regrasp.planning.placement.search import Progress, Search
 
 _STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
 _SETTLING, _NEARER = 24, 2
 _LATE, _STARTS = 1024, 3  # boxes without a placement that holds, after which so many near to it slide
-_SLIDES, _SLOW, _SHORTEST = 8, 1e-4, 1e-4  # rounds, least gain of one, shortest step as a part of an edge
+_FIRST, _LARGEST, _SHORTEST, _NEAR = 0.125, 0.5, 1e-5, 1e-4  # steps of slides, as parts of an edge
+_SLOW = 1e-5  # of a level, the least gain of one
 
 
 def run_level(
@@ -88,18 +89,28 @@ def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
 def _improved(
     search: Search, level: Level, known: float, places: np.ndarray, u: Array
 ) -> tuple[float, np.ndarray, Array]:
-    """The best level of a placement and of those that fingers find by sliding along the boundary."""
-    reached = level.reached(search, known, places, u)
-    for _ in range(_SLIDES):
-        level.put(search, reached)
-        there, at = _slid(search, places, u)
-        further = level.reached(search, reached, there, at)
-        if further <= reached:
-            break
-        gained, reached, places, u = further - reached, further, there, at
-        if gained <= _SLOW * abs(reached):
-            break
-    return reached, places, u
+    """The best level of a placement and of those that fingers find by sliding along the boundary.
+
+    Not where forces are least: that may be beside a place where cones end, and the level with them. Ways to
+    slide turn to where the last ones have led (Rosenbrock), since a ridge is along no finger alone.
+    """
+    best, step, ways = level.reached(search, known, places, u), _FIRST, np.eye(len(u))
+    while step > _SHORTEST:
+        before = u
+        for way in (sign * step * way for way in ways for sign in (-1, 1)):
+            moved = [search.sides.moved(int(j), v, w) for j, v, w in zip(places, u.tolist(), way, strict=True)]
+            on, there = np.array([j for j, _ in moved]), np.array([v for _, v in moved])
+            level.put(search, level.beyond(best, _SLOW))
+            if not search.are_apart(on, there) or search.norm_at(on, there) > level.max_force * (1 - SURE):
+                continue
+            reached = level.reached(search, best, on, there)
+            if reached > best:
+                best, places, u = reached, on, there
+        gone = u - before
+        if np.count_nonzero(gone) > 1:
+            ways = np.linalg.qr(np.column_stack([gone, np.eye(len(u))]))[0].T
+        step = min(2 * step, _LARGEST) if gone.any() else 0.5 * step
+    return best, places, u
 
 
 def _slid_below(
@@ -112,8 +123,8 @@ def _slid_below(
 
 def _slid(search: Search, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
     """Places of less norm, one finger at a time, by steps that are halved where none helps."""
-    norm, step = search.norm_at(places, u), 0.125
-    while step > _SHORTEST:
+    norm, step = search.norm_at(places, u), _FIRST
+    while step > _NEAR:
         helped = False
         for i in range(len(u)):
             for way in (-step, step):

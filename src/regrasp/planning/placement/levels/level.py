@@ -21,11 +21,12 @@ from regrasp.planning.placement.search import Search
 from regrasp.planning.states.choosing import choose_state
 
 _STEP = 1e-6  # of a level that is zero
-_SURE = 1e-6  # of the limit, more than norms are uncertain by
 _HALVINGS = 50
 _NEARER = 0.998  # of the tolerance: what forces for solvers give back is within it, too
 _SPARED = 0.9  # and what boxes too narrow to be split are off by
 _EXACT = 1e-10  # relative, of the level of a placement
+SURE = 1e-6
+"""Of the limit, more than norms are uncertain by."""
 AT_THE_EDGE = (1e-8, 1e-6, 1e-4)
 """Parts of a load given back so that forces for it exist for solvers, too."""
 
@@ -72,7 +73,7 @@ class Level(ABC):
         for _ in range(_HALVINGS):
             middle = 0.5 * (lo + hi)
             self.put(search, middle)
-            if search.norm_at(places, u) <= self.max_force * (1 - _SURE):
+            if search.norm_at(places, u) <= self.max_force * (1 - SURE):
                 lo = middle
             else:
                 hi = middle
@@ -84,7 +85,7 @@ class Level(ABC):
 class FrictionLevel(Level):
     """Cones narrowed from friction mu to nu: the level is -nu / mu for the use, or the angle margin [rad]."""
 
-    narrow = 0.01
+    narrow = 0.001
 
     def __init__(self, max_force: float, friction: float, *, angle: bool) -> None:
         super().__init__(max_force)
