@@ -98,7 +98,9 @@ def _improved(
     while step > _SHORTEST:
         before = u
         for way in (sign * step * way for way in ways for sign in (-1, 1)):
-            moved = [search.sides.moved(int(j), v, w) for j, v, w in zip(places, u.tolist(), way, strict=True)]
+            moved = [
+                search.sides.moved(int(j), v, w) for j, v, w in zip(places, u.tolist(), way, strict=True)
+            ]
             on, there = np.array([j for j, _ in moved]), np.array([v for _, v in moved])
             level.put(search, level.beyond(best, _SLOW))
             if not search.are_apart(on, there) or search.norm_at(on, there) > level.max_force * (1 - SURE):
