@@ -198,7 +198,7 @@ def test_placements_that_nearly_hold_slide_to_those_that_do() -> None:
 
 
 def test_fingers_slide_to_better_levels_not_to_lesser_forces() -> None:
-    """On this shape forces are least beside places where cones end: what is found there is better by a step."""
+    """On this shape forces are least beside places where cones end, and better than the last by one step."""
     vertices = [
         [0.91, 0.49], [0.52, 0.57], [0.08, 1.45], [-0.77, 0.5], [-0.73, 0.2], [-0.92, -0.53], [-0.62, -1.3],
         [0.63, -1.24], [0.93, -0.17],
