@@ -16,7 +16,7 @@ and more, which round to a part of it, must hold it to a thousandth all the same
 all only s counts. Friction below 2^-40 counts as 2^-40: a double cannot express a direction more finely.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import inf, isnan, ldexp, sqrt
 
@@ -45,13 +45,13 @@ def check_state(state: GraspState, label: str) -> tuple[float, float, list[str]]
 
 
 def check_forces(
-    grasp: Grasp, forces: Array, load: Vector, asked: float, label: str
+    contacts: Iterable[Contact], forces: Array, load: Vector, asked: float, label: str
 ) -> tuple[float, float, list[str]]:
     """The same of finite forces (n, d), or (n, 4) where a finger is soft, under a load (3,) or (6,).
 
     ``asked`` is w above [N]; 0 for a plan without load.
     """
-    rows = [_Force(contact, force) for contact, force in zip(grasp.contacts, forces.tolist(), strict=True)]
+    rows = [_Force(contact, force) for contact, force in zip(contacts, forces.tolist(), strict=True)]
     residual, violations = _check_equilibrium(rows, load, asked, label)
     slacks = [inf]
     for row in rows:

@@ -36,8 +36,6 @@ class Verification(ArrayValue):
             nothing.
         withstood: what every instant withstands besides the load, asked for or on the plan's record, in
             words; empty for nothing.
-        in_doubles: checked in double precision with margins for rounding, as regions on faces are, and not
-            in exact arithmetic.
     """
 
     violations: tuple[str, ...]
@@ -52,7 +50,6 @@ class Verification(ArrayValue):
     components: str = ""
     asked: str = ""
     withstood: str = ""
-    in_doubles: bool = False
 
     @property
     def ok(self) -> bool:
@@ -81,9 +78,8 @@ class Verification(ArrayValue):
                 f"{_NOT_COVERED.format('contacts elsewhere')}"
             )
         by = f", by {self.least_angle:.6g} rad or more" if isfinite(self.least_angle) else ""
-        how = "double precision, with margins for rounding" if self.in_doubles else "exact arithmetic"
         lines = [
-            f"verified in {how}: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
+            f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
             f"every force inside its cone{by}"
         ]
         if self.withstood:

@@ -56,7 +56,7 @@ def test_what_is_right_and_its_margins() -> None:
     idle = verify_face_regions(made(push=lambda corner, sign: 0 * UP, friction=3.0))
     assert idle.ok
     assert idle.least_angle > 0  # of the fingers that push
-    for size, counts in (0.9e-8, False), (1.1e-8, True):  # 1e-12 of max_force is none
+    for size, counts in (0.9995e-8, False), (1.0005e-8, True):  # 1e-12 of max_force is none
         regions = made(max_force=1e4, push=lambda c, s, size=size: size / 5**0.5 * np.array([2 - 1e-9, 0, 1]))
         assert (verify_face_regions(regions).least_angle < 1e-8) == counts
 
@@ -113,18 +113,22 @@ def test_a_finger_that_does_not_push_has_no_slope() -> None:
 
 
 def test_cones_and_limits_at_corners() -> None:
-    for less, good in (2e-12, True), (0.5e-12, False), (-1e-9, False):
+    for less, good in (1e-15, True), (0.0, True), (-(2.0**-52), False), (-1e-9, False):
         regions = made(
-            push=lambda c, s, less=less: [2 * (1 - less), 0, 1], tilts=np.full((1, 4, 3), [2.0, 0, 0])
+            push=lambda c, s, less=less: [2 * (1 - less), 0, 1],
+            tilts=np.full((1, 4, 3), [2.0, 0, 0]),
+            moment=1e-6,
         )
         found = said(regions)
-        assert ("outside its cone" not in found) == good, (less, found)
-    good = made()
-    most = float(np.linalg.norm(good.forces, axis=-1).max())
-    good.max_force = most
-    assert said(good) == ""
-    good.max_force = np.nextafter(most, 0)
-    assert said(good).startswith("a force of")
+        assert ("friction cone" not in found) == good, (less, found)
+    good = made(push=lambda c, s: 4 * UP)
+    for limit, words in (
+        (4.0, ""), (4 - 2.0**-51, "load 1, corner 1: a force of 4 is above 4"), (inf, ""),
+        (-4.0, "above"), (nan, "above"), (1e300, ""),
+    ):  # fmt: skip
+        good.max_force = limit
+        assert words in said(good)
+        assert (said(good) == "") == (words == ""), limit
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
@@ -133,16 +137,16 @@ def test_equilibrium_at_its_limit(scale) -> None:
     for finger, axis, sign in product(range(4), range(3), (0, 1)):
         for part, good in (0.9, True), (1.1, False):
             regions = made()
-            size = max(np.linalg.norm(regions.forces, axis=-1).max(), 8.0)
+            size = max(np.linalg.norm(regions.forces[0, 2, sign], axis=-1).max(), 8.0)
             regions.forces[0, 2, sign, finger, axis] += part * float(RESOLUTION) * size * 0.999
             regions.forces, regions.loads = regions.forces * scale, LOAD * scale
             regions.max_force, regions.moments = regions.max_force * scale, regions.moments * scale
             found = said(regions)
-            assert ("out of equilibrium" not in found) == good, (finger, axis, found)
+            assert ("not in equilibrium" not in found) == good, (finger, axis, found)
     for part, signs, good in (0.6, [0], True), (0.8, [0], False), (0.6, [0, 1], True), (0.8, [1], False):
         regions = made()  # of both components together, and of each direction of the torque by itself
         regions.forces[0, 2, signs, 0, :2] += part * float(RESOLUTION) * 8.0 * (0.999 if good else 1.001)
-        assert ("out of equilibrium" not in said(regions)) == good
+        assert ("not in equilibrium" not in said(regions)) == good
     lever = np.linalg.norm([*REST, SQUARE[0]], axis=1).max()
     arm = np.linalg.norm(np.cross(REST[0] - REST[1], UP))
     for part, good in (0.95, True), (1.05, False):  # of two fingers, as much the other way: a torque alone
@@ -151,11 +155,13 @@ def test_equilibrium_at_its_limit(scale) -> None:
         regions.forces[0, 1, 0, 1] += size * UP
         regions.forces[0, 1, 0, 2] -= size * UP
         assert (said(regions) == "") == good
-    none = made(loads=0 * LOAD)
+    none = made(loads=0 * LOAD, moment=0.0)
     none.forces[:] = 0
     assert said(none) == ""
+    none.moments[0, 0] = 1e-9  # which no force holds
+    assert said(none).startswith("load 1, corner 1: not in equilibrium")
     large = 1e3 * LOAD
-    assert "out of equilibrium by 1" in said(made(loads=large, forces=0 * made().forces))
+    assert "w_ext is 1 of the largest force" in said(made(loads=large, forces=0 * made().forces))
 
 
 def test_radii_are_no_wider_than_polygons() -> None:
@@ -169,51 +175,6 @@ def test_radii_are_no_wider_than_polygons() -> None:
         assert "radius of all" in said(regions)
     assert "radius of all" in said(made(radius=-1e-300))
     assert "radius of all" in said(made(radius=nan))
-
-
-def test_polygons_end_where_faces_do() -> None:
-    """The cube's face ends at x = 1: a polygon about (0.7, 0) may be narrower there, and nowhere else."""
-
-    def told(radius, right=1.0, low=-0.5, left=0.2):
-        patch = [[left, low, -1], [right, low, -1], [right, 0.5, -1], [left, 0.5, -1]]
-        return said(made(patch=patch, place=[0.7, 0, -1], radii=np.array([radius, 0, 0, 0]), friction=9.0))
-
-    narrow = "polygon of A is narrower than its radius"
-    assert told(0.5) == ""
-    assert told(0.3) == told(0.3, right=1 - 1e-12) == ""
-    assert told(0.5, right=1 - 0.9e-9 * REACH) == ""
-    for wrong in ({"right": 1 - 1.1e-9 * REACH}, {"right": 0.95}, {"low": -0.45}, {"left": 0.25}):
-        assert narrow in told(0.5, **wrong)
-    assert "is not on faces with its normal" in told(0.5, right=1.001)
-    for way in 1, -1:  # the two triangles of the face share one of its diagonals, which is no end of it
-        patch = np.array([[0, 0], [0.4, 0.4 * way], [0.4, -0.2 * way], [0.2, -0.4 * way]])
-        patch = np.c_[patch[::way], -np.ones(4)]
-        found = said(
-            made(patch=patch, place=[0.25, -0.05 * way, -1], radii=np.array([0.3, 0, 0, 0]), friction=9.0)
-        )
-        assert narrow in found
-
-
-@pytest.mark.parametrize(
-    ("patch", "words"),
-    [
-        (SQUARE[::-1], ""),
-        (SQUARE[[0, 2, 1, 3]], "is not convex"),
-        (np.vstack([SQUARE, SQUARE[3]]), "is not convex"),
-        (np.vstack([SQUARE, [-0.1, 0, -1]]), "is not convex"),
-        (np.vstack([SQUARE, [-0.05, 0, -1]]), "is not convex"),
-        (SQUARE + np.array([0.1, 0, 0]), "is not around its place"),
-        (SQUARE + np.array([0.0999, 0, 0]), ""),
-        (SQUARE - [0, 0.1001, 0], "is not around its place"),
-        (SQUARE + 0.5e-9 * REACH * UP, ""),
-        (SQUARE * [1, 1, -1], "is not around its place"),
-        (SQUARE[:2], "A has no polygon"),
-    ],
-)
-def test_polygons_are_convex_about_their_places_and_on_faces(patch, words) -> None:
-    found = said(made(patch=patch, friction=9.0))
-    assert (found == "") == (words == "")
-    assert words in found
 
 
 def test_fingers_of_no_polygon_are_at_their_places() -> None:
@@ -235,6 +196,11 @@ def test_fingers_of_no_polygon_are_at_their_places() -> None:
         ({"patches": (SQUARE[0], *made().patches[1:])}, "each contact needs a polygon"),
         ({"patches": (SQUARE[:0], *made().patches[1:])}, "each contact needs a polygon"),
         ({"loads": LOAD[:0]}, "there is no load"),
+        ({"loads": np.add(LOAD, nan)}, "loads and polygons must be finite"),
+        ({"patches": (SQUARE + inf, *made().patches[1:])}, "loads and polygons must be finite"),
+        ({"patches": (SQUARE, *(p + nan for p in made().patches[1:]))}, "loads and polygons must be finite"),
+        ({"patches": (SQUARE * [1, 1, 1.01], *made().patches[1:])}, "A is not around its place"),
+        ({"radius": 1e-300}, "the radius of all is above that of one of them"),
         ({"loads": LOAD[:, :5]}, "there is no load"),
         ({"loads": LOAD[0]}, "there is no load"),
         ({"forces": made().forces[:, :3]}, "are missing"),
@@ -256,12 +222,6 @@ def test_regions_of_no_form(changes, words) -> None:
     assert (verdict.worst_residual, verdict.least_angle, verdict.least_cone_slack) == (inf, -inf, -inf)
 
 
-def test_polygons_in_another_plane_than_their_place() -> None:
-    for off, good in (0.9e-9, True), (1.1e-9, False):
-        regions = made(place=[0, 0, -1 + off * REACH], friction=9.0)
-        assert ("is not around its place" not in said(regions)) == good
-
-
 def test_every_load_counts() -> None:
     good = made()
     double = {"loads": np.repeat(LOAD, 2, axis=0), "forces": np.repeat(good.forces, 2, axis=0)}
@@ -270,8 +230,15 @@ def test_every_load_counts() -> None:
     assert said(made(**double)) == ""
     for load in 0, 1:
         regions = made(**double | {"forces": np.array(double["forces"])})
+        regions.forces[load, 3, 1, 1, 0] += 8 * 0.25 * float(RESOLUTION)
+        verdict = verify_face_regions(regions)
+        assert verdict.ok
+        assert verdict.worst_residual > 0.2 * float(RESOLUTION)
+        regions = made(**double | {"forces": np.array(double["forces"])})
         regions.forces[load] *= 1 + 1e-9
-        assert said(regions).startswith("corners are out of equilibrium by 1")
+        assert said(regions).startswith(
+            f"load {load + 1}, corner 1: not in equilibrium, G f + w_ext is 1e-09 of"
+        )
 
 
 def test_places_alone_have_one_state_a_load() -> None:
@@ -296,7 +263,6 @@ def test_margins_of_forces_that_lean_and_of_triangles() -> None:
     )
     verdict = verify_face_regions(regions)
     assert verdict.violations == ()
-    assert verdict.in_doubles
     across = np.hypot(regions.forces[..., 0], regions.forces[..., 1])
     slope = (across / regions.forces[..., 2]).max()
     assert slope > 0.6
@@ -305,4 +271,11 @@ def test_margins_of_forces_that_lean_and_of_triangles() -> None:
     broken.forces[0, 1, 1, 2, 0] = nan
     verdict = verify_face_regions(broken)
     assert verdict.violations == ("forces at corners are missing, or what they prove",)
-    assert verdict.in_doubles
+
+
+def test_large_forces_hold_the_load_all_the_same() -> None:
+    """Two fingers squeeze by 1e13 and push up by 1 each, where 8 are asked: 6e-13 of the forces."""
+    regions = made(friction=1e14, moment=0.0, max_force=1e15)
+    along = 1e13 * (REST[0] - REST[1]) / np.linalg.norm(REST[0] - REST[1])
+    regions.forces[:] = [[0, 0, 0], UP - along, UP + along, [0, 0, 0]]
+    assert said(regions).startswith("load 1, corner 1: the load is not held, G f + w_ext is 0.75 of it")

@@ -77,17 +77,23 @@ class Regions(Protocol):
 def verify_regions(regions: Regions) -> Verification:
     """The verdict on regions: that wherever in them the fingers are, they hold the loads of the corners."""
     broken = _check_corners(regions)
-    residuals, slacks, angles, limit = [0.0], [inf], [inf], regions.max_force
+    residuals, slacks, angles = [0.0], [inf], [inf]
     for i, state in enumerate(regions.corners, 1):
         residual, slack, violations = check_state(state, f"corner state {i}")
         residuals.append(residual)
         slacks.append(slack)
         angles.append(least_angle(state.grasp, state.forces))
-        largest = max(dot(f, f) for f in map(exact, state.forces.tolist()))
-        if not (limit >= 0 and (limit == inf or largest <= Fraction(limit) ** 2)):
-            violations.append(f"corner state {i}: a force of {root(largest):.12g} is above {limit:.12g}")
+        violations += [f"corner state {i}: {words}" for words in above(state.forces, regions.max_force)]
         broken += violations
     return Verification(tuple(broken), max(residuals), min(angles), min(slacks))
+
+
+def above(forces: Array, limit: float) -> list[str]:
+    """That one of forces (k, d) is larger than a limit, in words and exactly; nothing where none is."""
+    largest = max(dot(f, f) for f in map(exact, forces.tolist()))
+    if limit >= 0 and (limit == inf or largest <= Fraction(limit) ** 2):
+        return []
+    return [f"a force of {root(largest):.12g} is above {limit:.12g}"]
 
 
 def _check_corners(regions: Regions) -> list[str]:

@@ -268,10 +268,10 @@ def touches(proof: SurfaceProof, contact: Contact) -> bool:
     corners, n = np.asarray(proof.corners), np.asarray(proof.normals)
     reach = float(np.linalg.norm(corners, axis=2).max())
     facing = np.linalg.norm(n - contact.normal, axis=1) <= 4 * float(RESOLUTION)
-    return bool((_away(corners[facing], contact.position) <= float(RESOLUTION) * reach).any())
+    return bool((away(corners[facing], contact.position) <= float(RESOLUTION) * reach).any())
 
 
-def _away(corners: Array, point: Array) -> Array:
+def away(corners: Array, point: Array) -> Array:
     """(m,) distances of a point from triangles (m, 3, 3)."""
     a, b, c = (corners[:, i] for i in range(3))
     normal = np.cross(b - a, c - a)

@@ -24,6 +24,7 @@ _MOST_CORNERS = 4096
 _HALVINGS, _OWN_HALVINGS = 9, 5
 _LESS = 1e-6  # of radii and of friction, given up so that rounding does not decide
 _KEPT = 1e-3  # of friction, given up so that what a search leaves of the balance can be made good
+_ROUNDING = 1e-12  # of forces, as if they were off by so much
 _PRECISE = 5e-2  # of efforts: any forces do
 _ROUNDS, _MORE = 8, 1.1  # of moments, and by how much more than needed is tried next
 
@@ -81,6 +82,8 @@ def regions_on_faces(
     limit = search.limit = limit_of(search.need(), given)
     k, far = len(grasp), float(np.linalg.norm(mesh.size))
     none = np.zeros(k)
+    if not search.holds(none):
+        raise Infeasible("the grasp holds the loads, but with too little of its friction left for regions")
     radius = (1 - _LESS) * _farthest(lambda r: search.holds(none + r), 0.0, far, _HALVINGS)
     radii, alone = none + radius, none.copy()
     for i in range(k):
@@ -218,7 +221,7 @@ def lacking(patch: Array, off: Array, forces: Array, normal: Array, tilt: Array,
     """
     along = forces @ normal
     aside = forces - along[:, None] * (normal + tilt + focus * off)
-    sizes = np.linalg.norm(aside, axis=1)
+    sizes = np.linalg.norm(aside, axis=1) + _ROUNDING * np.linalg.norm(forces, axis=1)
     used = along > 0
     slope = float((sizes[used] / along[used]).max(initial=0.0))
     wide = float(np.linalg.norm(patch[:, None] - patch, axis=2).max())
