@@ -45,7 +45,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
         ],
         [
             *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "c*", "what*")),
-            "verification/proofs/regions/*.py",
+            "verification/proofs/regions/test_[!f]*.py",
             "verification/test_placement_proofs.py",
             "verification/by_hand/test_tied_by_hand.py",
             "verification/by_hand/test_answers_by_hand.py",
@@ -70,7 +70,8 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "faces": (
         ["verification/placed/faces/*.py", "verification/placed/surfaces.py", "verification/placed/areas.py"],
         [
-            *(f"verification/proofs/test_{name}.py" for name in ("faces*", "solid*", "what_choices*")),
+            *(f"verification/proofs/test_{name}.py" for name in ("solid*", "what_choices*", "doubts*")),
+            "verification/proofs/regions/test_faces*.py",
             "planning/**/test_grasps_on_meshes.py",
             "planning/**/test_regions_on_faces.py",
         ],
