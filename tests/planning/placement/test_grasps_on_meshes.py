@@ -164,6 +164,16 @@ def test_where_none_holds_the_proof_says_so() -> None:
     with pytest.raises(rg.Infeasible, match="no 2 fingers anywhere on this mesh hold") as caught:
         rg.choose_grasp(BOX, 2, rg.Wrench([0, 0, -1], [0, 0, 1]), friction=0.0)
     assert rg.verify(caught.value.certificate).ok
+    assert len(caught.value.certificate.number) < 1000
+
+
+def test_without_friction_or_load_nothing_is_held_beside_a_load() -> None:
+    resting = rg.choose_grasp(BOX, 3, rg.Wrench([0, 0, -1]), friction=0.0, objective="peak", most_boxes=1000)
+    assert resting.value == pytest.approx(1 / 3, rel=1e-4)
+    assert resting.gap <= 1e-3
+    idle = rg.choose_grasp(BOX, 3, rg.Wrench([0, 0, 0]), friction=0.5, objective="peak", most_boxes=1000)
+    assert idle.value == idle.bound == 0
+    assert len(idle.certificate.number) == 1
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,7 @@ _STEP, _SHORTEST = 0.2, 1e-5  # of slides, of the size
 HELD = 1e-2
 """Of ``NEVER``: a load is held by less, so by forces of at most a thousand times its size."""
 _ASIDE = 1e-7  # of the largest load: a placement that holds nothing so far beside a load is on a knife's edge
+_SLIPPERY = 1e-3  # friction, below which that is said of every placement
 _GAINED = 0.01  # a placement better by so much is worth a slide
 
 
@@ -42,14 +43,17 @@ class SurfaceSearch:
         apart: float,
         tolerance: float,
     ) -> None:
+        from regrasp.closed_form.compiled.patches.patch_gauge import NEVER
+
         self.patches, self.fingers, self.friction = patches, fingers, friction
         self.loads, self.law, self.apart = loads, law, apart
         self.size = float(np.linalg.norm(patches.rows[:, :3], axis=1).max()) or 1.0
         self._unit = np.repeat([1.0, self.size], 3)
         self.unit = float(np.abs(loads / self._unit).max()) or 1.0
         self._wanted = np.ascontiguousarray(-loads / self._unit / self.unit)
-        # two fingers hold no torque about their line, so that every placement is on a knife's edge
-        aside = np.vstack([np.eye(6), np.full(6, -1.0)]) * (_ASIDE if fingers > 2 else 0.0)
+        # two fingers hold no torque about their line, and three hold nothing aside without friction
+        every = fingers > 2 and friction >= _SLIPPERY and loads.any()
+        aside = np.vstack([np.eye(6), np.full(6, -1.0)]) * (_ASIDE if every else 0.0)
         self._trials = np.vstack([self._wanted, (self._wanted[:, None] + aside).reshape(-1, 6)])
         size, norm = law.codes()
         self._law = (friction, size, norm, min(0.1 * tolerance, _PRECISE))
@@ -62,7 +66,8 @@ class SurfaceSearch:
         self._boxes = _memory(_FIRST_BOXES, fingers)
         self._heap = np.zeros(_FIRST_BOXES, np.int64)
         self._state = np.array([1, 1, 0, len(patches.spans), len(rows), 0])
-        self._found = np.full(1 + 6 * fingers, inf)
+        self._never = HELD * NEVER  # boxes are excluded from there, while nothing is found
+        self._found = np.full(1 + 6 * fingers, self._never / (1 - tolerance))
         self._tried = np.zeros((_TRIED, 1 + 6 * fingers))
         self.closed = False
 
@@ -141,7 +146,7 @@ class SurfaceSearch:
         from regrasp.closed_form.compiled.patches.patch_search import spare
         from regrasp.closed_form.compiled.patches.patch_slide import slide
 
-        if self._found[0] == inf or not self._radius[: len(self.patches.order)].any():
+        if self.best == inf or not self._radius[: len(self.patches.order)].any():
             return
         spots = self._found[1:].reshape(-1, 6).copy()
         law = (self._usable, *self._law[1:3], _TRY_PRECISE)
@@ -179,9 +184,7 @@ class SurfaceSearch:
         return self._held(self._found[0])
 
     def _held(self, norm: float) -> float:
-        from regrasp.closed_form.compiled.patches.patch_gauge import NEVER
-
-        return float(norm) * self.unit if norm < HELD * NEVER else inf
+        return float(norm) * self.unit if norm < self._never else inf
 
     @property
     def bound(self) -> float:
