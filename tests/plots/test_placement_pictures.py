@@ -100,7 +100,7 @@ def test_regions_on_faces_are_drawn_where_they_are() -> None:
     assert sum(str(name).startswith("region ") for name in ids) == 3
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     for name, word, radius in zip(on_faces().grasp.names, words, on_faces().radii, strict=False):
-        assert word.startswith(f"{name} {radius:.3g}".rstrip("0"))
+        assert word.startswith(f"{name} {radius:.2g}".rstrip("0"))
         assert ", alone " in word
     assert " m at once" in words[-1]
 

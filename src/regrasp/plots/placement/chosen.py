@@ -125,7 +125,7 @@ def plot_contact_regions(
 def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:
     """In the legend, how far each finger may be off, and while the others are not, and all at once."""
     radii, alone = (
-        [short(float(f"{r:.3g}")) for r in each] for each in ([*regions.radii, regions.radius], regions.alone)
+        [short(float(f"{r:.2g}")) for r in each] for each in ([*regions.radii, regions.radius], regions.alone)
     )
     words = [
         f"{name} {radius}, alone {one} {units.length}"
