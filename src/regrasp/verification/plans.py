@@ -17,12 +17,13 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import check_state, least_angle
 from regrasp.verification.float_filter import Checked, check_rows
+from regrasp.verification.kinds import check_claim, check_regrasp, check_transition, is_there, is_transition
 from regrasp.verification.load_gap import check_load
 from regrasp.verification.placed.chosen_grasps import verify_chosen, verify_proof
 from regrasp.verification.placed.faces.regions import FaceRegions, verify_face_regions
 from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.regions import Regions, verify_regions
-from regrasp.verification.protocols import Course, Plan, check_regrasp, check_transition, is_transition
+from regrasp.verification.protocols import Course, Plan
 from regrasp.verification.records import check_idle, check_record
 from regrasp.verification.refusals.cuts import Cut, verify_cut
 from regrasp.verification.refusals.outline_cuts import OutlineCut, verify_outline_cut
@@ -79,12 +80,13 @@ def verify(
     Raises:
         InvalidInput: For what is no plan, no load function or no curvature.
     """
-    if any(hasattr(plan, name) for name in ("certificate", "twists", "corners", "patches", "reached")):
+    if any(is_there(plan, name) for name in ("certificate", "twists", "corners", "patches", "reached")):
         more_asked = (load, curvature, disturbance, stiffness, friction, position, surface)
         if early_loss or any(value is not None for value in more_asked):
             raise InvalidInput(
                 "a chosen grasp or a cut says itself what it is about: verify takes nothing else beside it"
             )
+        check_claim(plan)
         if hasattr(plan, "reached") and hasattr(plan, "boxes"):
             return verify_outline_cut(cast(OutlineCut, plan))
         if hasattr(plan, "reached"):
@@ -96,7 +98,7 @@ def verify(
         if hasattr(plan, "certificate"):
             return verify_chosen(cast(Chosen, plan))
         return verify_proof(cast(Proof, plan))
-    if hasattr(plan, "steps") and hasattr(plan, "orientations"):
+    if is_there(plan, "steps", "orientations"):
         if load is not None:
             raise InvalidInput("a regrasp holds the load it was planned for; leave load out")
         if position is not None or surface is not None:

@@ -1,11 +1,7 @@
-"""What ``verify`` needs to know of a plan, whoever made it, and refuses to judge without."""
+"""What ``verify`` needs to know of a plan, whoever made it."""
 
-from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
-import numpy as np
-
-from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.robust.stiffness import Stiffness
@@ -152,73 +148,3 @@ class Plan(Protocol):
 
     def forces(self, t: Array) -> Array:
         """(m, n, d) forces at m times [N]; set-points are compared with them."""
-
-
-_Kind = tuple[Callable[[Any], bool], str]
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, float) or (type(value) is int and value.bit_length() < 1024)
-
-
-def _is_array(value: Any) -> bool:
-    return isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.dtype.itemsize <= 8
-
-
-def _is_row(value: Any) -> bool:
-    is_row = isinstance(value, (tuple, list)) or (_is_array(value) and value.ndim == 1)
-    return is_row and all(map(_is_number, value))
-
-
-_NUMBER: _Kind = _is_number, "a number"
-_ROW: _Kind = _is_row, "a row of numbers"
-_ARRAY: _Kind = _is_array, "an array of numbers"
-_NO_ARRAY: _Kind = (lambda value: value is None or _is_array(value)), "an array of numbers or None"
-_WORD: _Kind = (lambda value: isinstance(value, str)), "a word"
-_SEVERAL: _Kind = (lambda value: isinstance(value, (tuple, list))), "a tuple"
-_ANY: _Kind = (lambda value: True), "there"
-
-
-def is_transition(plan: object) -> bool:
-    """Whether it has what a transition has, its two states among that."""
-    return all(hasattr(plan, name) for name in NEEDED) and all(
-        isinstance(state, GraspState)
-        for state in (plan.start, plan.end)  # type: ignore[attr-defined]
-    )
-
-
-def check_transition(plan: Any) -> None:
-    """Refuse a transition whose values are not of the kinds that ``Plan`` says."""
-    _check(plan.scaling, "scaling", duration=_NUMBER, control=_ROW)
-    if plan.course is not None:
-        _check(plan.course, "course", times=_ARRAY, forces=_ARRAY, loads=_ARRAY)
-    if plan.turn is not None:
-        _check(plan.turn, "turn", angles=_ARRAY, forces=_ARRAY, axis=_NO_ARRAY, middles=_NO_ARRAY)
-    record = plan.record
-    _check(record, "record", reserve=_NUMBER, balancing=_NUMBER, choices=_SEVERAL)
-    _check(record, "record", rate_limits=_ROW, least_normals=_ROW)
-    for k, choice in enumerate(record.choices):
-        _check(choice, f"record.choices[{k}]", end=_WORD, force_limits=_ROW)
-    if getattr(record, "withstands", None) is not None:
-        _check(record.withstands, "record.withstands", disturbance=_ANY, stiffness=_ANY, early_loss=_ANY)
-
-
-def check_regrasp(plan: Any) -> None:
-    """The same of a regrasp, whose steps are transitions."""
-    _check(plan, "", steps=_SEVERAL, orientations=_ROW, margin=_NUMBER)
-    if getattr(plan, "rotations", None) is not None:
-        _check(plan, "", rotations=_ARRAY)
-    for k, step in enumerate(plan.steps):
-        if not is_transition(step):
-            raise InvalidInput(f"steps[{k}] of a plan must be a transition, got {shown(step)}")
-
-
-def _check(owner: object, where: str, **kinds: _Kind) -> None:
-    missing = object()
-    for name, (is_so, words) in kinds.items():
-        value = getattr(owner, name, missing)
-        at = f"{where}.{name}".lstrip(".")
-        if value is missing:
-            raise InvalidInput(f"{at} of a plan must be {words}, there is none")
-        if not is_so(value):
-            raise InvalidInput(f"{at} of a plan must be {words}, got {shown(value)}")

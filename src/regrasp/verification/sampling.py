@@ -17,7 +17,8 @@ from regrasp.mechanics.value import one_line
 from regrasp.mechanics.wrench import Wrench
 from regrasp.verification.exact import RESOLUTION, load_size
 from regrasp.verification.float_filter import folded, judge_rows
-from regrasp.verification.protocols import Plan, check_transition, is_transition
+from regrasp.verification.kinds import check_transition, is_transition
+from regrasp.verification.protocols import Plan
 from regrasp.verification.records import check_record_form, deciding_forces
 from regrasp.verification.retraced import retraced, turned_by
 from regrasp.verification.shapes import check_shapes

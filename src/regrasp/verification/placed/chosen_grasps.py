@@ -48,8 +48,6 @@ def verify_chosen(chosen: Chosen) -> Verification:
     size, norm = _MEANINGS[chosen.objective]
     if (proof.size, proof.norm) != (size, norm) and not _is_without_margin(chosen, proof):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
-    if chosen.objective != "wrench" and getattr(proof, "tied", None) is not None:
-        broken.append(f"the proof is of forces tied by stiffness, not of {chosen.objective}")
     for i, state in enumerate(chosen.states, 1):
         if state.grasp != chosen.grasp:
             broken.append(f"state {i} is of other contacts")
@@ -62,22 +60,23 @@ def verify_chosen(chosen: Chosen) -> Verification:
         broken += _check_value(chosen, state, i)
     if not chosen.states:
         broken.append("no state shows the value")
-    broken += _check_bound(chosen, proof)
     broken += _check_others(chosen)
     in_space = hasattr(proof, "normals")
-    if in_space:
-        broken += check_surface_proof(cast(SurfaceProof, proof)) or _check_spots(
-            chosen, cast(SurfaceProof, proof)
-        )
+    if not in_space and chosen.objective != "wrench" and proof.tied is not None:
+        broken.append(f"the proof is of forces tied by stiffness, not of {chosen.objective}")
+    if in_space and chosen.objective in _LEVELS:
+        broken.append(f"objective {chosen.objective!r} has no bound on meshes")
+    elif wrong := _check_proof(proof):
+        broken += wrong
     else:
-        broken += check_proof(proof) or _check_places(chosen, proof)
-    boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
+        broken += _check_bound(chosen, proof)
+        broken += (_check_spots if in_space else _check_places)(chosen, cast(Any, proof))
     return Verification(
         tuple(broken),
         max(residuals),
         min(angles),
         min(slacks),
-        excluded=boxes,
+        excluded=_leaves(proof),
         bound=chosen.bound,
         asked="" if broken else _area(chosen, proof) if in_space else _part(proof),
     )
@@ -85,11 +84,21 @@ def verify_chosen(chosen: Chosen) -> Verification:
 
 def verify_proof(proof: Proof) -> Verification:
     """The verdict on a proof alone."""
-    boxes = int((np.asarray(proof.children)[:, 1] == 0).sum())
-    in_space = hasattr(proof, "normals")
-    broken = check_surface_proof(cast(SurfaceProof, proof)) if in_space else check_proof(proof)
-    part = "" if broken or in_space else _part(proof)
-    return Verification(tuple(broken), 0.0, inf, inf, excluded=boxes, bound=proof.bound, asked=part)
+    broken = _check_proof(proof)
+    part = "" if broken or hasattr(proof, "normals") else _part(proof)
+    return Verification(tuple(broken), 0.0, inf, inf, excluded=_leaves(proof), bound=proof.bound, asked=part)
+
+
+def _check_proof(proof: Any) -> list[str]:
+    try:
+        return check_surface_proof(proof) if hasattr(proof, "normals") else check_proof(proof)
+    except OverflowError as error:
+        return [f"proof: its numbers are none to compute with: {error}"]
+
+
+def _leaves(proof: Any) -> int:
+    """How many boxes are not split."""
+    return int((np.asarray(proof.children)[:, 1] == 0).sum())
 
 
 def _is_without_margin(chosen: Chosen, proof: Any) -> bool:
@@ -115,8 +124,6 @@ def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
     shape: Any = chosen.shape
     if not hasattr(shape, "surface") or share_of(proof.corners, proof.normals, *shape.surface()) < 0:
         return ["the proof is about another mesh"]
-    if chosen.objective in _LEVELS:
-        return [f"objective {chosen.objective!r} has no bound on meshes"]
     if len(chosen.grasp) != proof.fingers:
         return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]
     broken = []
@@ -140,7 +147,7 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     found, value = _norm(state, size, norm), chosen.value
     limit = inf if chosen.max_force is None else chosen.max_force
     largest = found if chosen.objective == "wrench_ball" else _norm(state, "force", "largest")
-    if largest > limit * (1 + _CLOSE):
+    if not largest <= limit * (1 + _CLOSE):
         return [f"state {i}: a force of {largest:.12g} is above the limit {limit:.12g}"]
     if not ((state.forces * state.grasp.normals).sum(axis=1) >= chosen.min_normal * (1 - _CLOSE)).all():
         return [f"state {i}: a finger pushes with less than {chosen.min_normal:.12g}"]
@@ -292,6 +299,8 @@ def _norm(state: GraspState, size: str, norm: str) -> float:
 
 def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
     """That the contacts are fingers that the proof is about, on the shape given."""
+    if not hasattr(chosen.shape, "cubics"):
+        return ["the proof is about an outline"]
     control = chosen.shape.cubics()
     if (control is None) != (proof.control is None):
         return ["the proof is about another kind of outline"]
