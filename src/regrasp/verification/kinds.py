@@ -25,8 +25,8 @@ def _is_array(value: Any) -> bool:
 
 
 def _is_row(value: Any) -> bool:
-    is_row = isinstance(value, (tuple, list)) or (_is_array(value) and value.ndim == 1)
-    return is_row and all(map(_is_number, value))
+    is_list = isinstance(value, (tuple, list)) and all(map(_is_number, value))
+    return is_list or (_is_array(value) and value.ndim == 1)
 
 
 def _is_table(value: Any) -> bool:
@@ -45,11 +45,8 @@ def _columns(count: int, is_so: Callable[[Any], bool] = _is_table) -> _Kind:
     return (lambda value: is_so(value) and value.shape[1:] == (count,)), f"rows of {count} numbers"
 
 
-def _several(of: type) -> _Kind:
-    def is_so(value: Any) -> bool:
-        return isinstance(value, (tuple, list)) and all(isinstance(each, of) for each in value)
-
-    return is_so, f"a tuple of {of.__name__}"
+def _several(is_one: Callable[[Any], bool], words: str) -> _Kind:
+    return (lambda value: isinstance(value, (tuple, list)) and all(map(is_one, value))), f"a tuple of {words}"
 
 
 def _answers(kind: _Kind, *given: float) -> _Kind:
@@ -68,21 +65,28 @@ _NUMBER: _Kind = _is_number, "a number"
 _DOUBLE: _Kind = (lambda v: isinstance(v, float) or (type(v) is int and v.bit_length() < 64)), "a number"
 _LEAST_0: _Kind = (lambda value: _is_number(value) and 0 <= value < inf), "a number of 0 or more"
 _COUNT: _Kind = (lambda value: type(value) is int and 0 <= value < 2**31), "a whole number"
-_PLACES: _Kind = (lambda v: isinstance(v, (tuple, list)) and all(type(k) is int for k in v)), "whole numbers"
+_PLACES = _several(lambda value: type(value) is int, "whole numbers")
 _ROW: _Kind = _is_row, "a row of numbers"
 _ARRAY: _Kind = _is_array, "an array of numbers"
 _TABLE: _Kind = _is_table, "an array of numbers"
 _WHOLE: _Kind = _is_whole, "an array of whole numbers"
 _WORD: _Kind = (lambda value: isinstance(value, str)), "a word"
 _SEVERAL: _Kind = (lambda value: isinstance(value, (tuple, list))), "a tuple"
-_STATES = _several(GraspState)
+_STATES = _several(lambda value: isinstance(value, GraspState), "states")
+_CONTACTS = _several(
+    lambda value: isinstance(value, Contact) and value.dimension == 2, "contacts in the plane"
+)
 _ANY: _Kind = (lambda value: True), "there"
 _PLANAR: _Kind = (lambda value: isinstance(value, Grasp) and value.dimension == 2), "a Grasp in the plane"
 _SPATIAL: _Kind = (lambda value: isinstance(value, Grasp) and value.dimension == 3), "a Grasp in space"
 _POINT: _Kind = (lambda value: _is_table(value) and value.shape == (2,)), "a point"
 _PLACE: _Kind = (lambda value: _is_table(value) and value.shape == (3,)), "a point"
 _POINTS = _columns(2)
-_RINGS: _Kind = (lambda v: isinstance(v, (tuple, list)) and all(map(_POINTS[0], v))), "a tuple of rings"
+_RINGS = _several(_POINTS[0], "rings")
+_OUTLINE: _Kind = (
+    (lambda v: _POINTS[0](v) and len(v) > 2 and bool(np.isfinite(v).all())),
+    "three points or more",
+)
 _CUBICS: _Kind = (lambda v: _is_table(v) and v.shape[1:] == (4, 2)), "rows of 4 control points"
 
 
@@ -163,7 +167,7 @@ def _check_shape(claim: Any, **more: _Kind) -> None:
     if is_there(shape, "surface"):
         _check(shape, "shape", centre_of_mass=_PLACE, surface=_answers((_is_surface, "vertices and faces")))
     else:
-        _check(shape, "shape", polygon=_answers(_POINTS), cubics=_answers(_or_none(_CUBICS)), **more)
+        _check(shape, "shape", polygon=_answers(_OUTLINE), cubics=_answers(_or_none(_CUBICS)), **more)
 
 
 def _is_surface(value: Any) -> bool:
@@ -213,7 +217,7 @@ def _check_cut(cut: Any) -> None:
         _check(cut, "", forbidden=_ROW, max_force=_or_none(_DOUBLE), start=_POINTS, goal=_POINTS)
         _check(cut, "", reached=_columns(3), boxes=_columns(6), twists=_columns(3))
         return
-    _check(cut, "", contacts=_several(Contact), start=_PLACES, goal=_PLACES, reached=_PLACES)
+    _check(cut, "", contacts=_CONTACTS, start=_PLACES, goal=_PLACES, reached=_PLACES)
     _check(cut, "", least_margin=_LEAST_0, min_distance=_LEAST_0)
 
 

@@ -1,0 +1,144 @@
+"""Claims, proofs, regions and cuts of others with values that these do not have: refused in one line."""
+
+from math import inf, nan
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from foreign.beams import withstood
+from proofs import Patches, solid
+from regrasp.errors import InvalidInput
+from values import VALUES
+
+pytestmark = pytest.mark.contract
+
+
+class Shy:
+    """Says nothing about itself."""
+
+    def __getattr__(self, name: str) -> object:
+        raise RuntimeError(name)
+
+
+NO_KIND = (
+    "text", 1j, 10**400, {}, object(), Shy(), b"x", ([],), [None], ["1"], (None,), [[1, [2]]],
+    np.array(["a"]), np.array([None]), np.array(nan), (n for n in ()), lambda *a: 1,
+)  # fmt: skip
+OTHERS = (
+    None, nan, inf, -inf, -1, 1e300, 10**30, True, np.zeros(0), np.zeros((0, 2)), np.zeros((2, 3, 4)),
+    np.ones((3, 3)), np.full((1, 3), nan),
+)  # fmt: skip
+WORDS = ("objective", "size", "norm")  # of which none is a word that has a meaning
+CLAIMS = {
+    "withstood": withstood,
+    **{n: VALUES[n] for n in ("ContactRegions", "FaceRegions", "OutlineCut", "RegraspCut")},
+    "proof on a face": lambda: solid(
+        [np.eye(3)],
+        [np.ones(3) / 3**0.5],
+        [[0, 0, -1.0, 0, 0, 0]],
+        Patches([(0, 1)], [[-1, -1, -1]]),
+        [([0], (0, 0), 0, np.zeros(6))],
+    ),
+}
+
+
+def parts(value) -> dict[str, object]:
+    given = (
+        vars(value)
+        if isinstance(value, SimpleNamespace)
+        else {n: getattr(value, n) for n in value.__match_args__}
+    )
+    return {name: part for name, part in given.items() if name != "alone"}  # which no claim rests on
+
+
+def said(claim) -> str:
+    """What is wrong, in lines of its own; "" of what is verified."""
+    try:
+        verdict = rg.verify(claim)
+    except InvalidInput as error:
+        return f"InvalidInput: {error}"
+    return "" if verdict.ok else "\n".join(verdict.violations)
+
+
+def refuses(make, given: dict[str, object], at: str) -> None:
+    for name in given:
+        for junk in NO_KIND:
+            words = said(make(given | {name: junk}))
+            assert "\n" not in words or name in WORDS
+            kind = words.startswith(f"InvalidInput: {at}{name}")
+            assert kind or (name in WORDS and junk == "text"), (name, junk)
+        for junk in OTHERS:
+            said(make(given | {name: junk}))
+        without = said(make({n: v for n, v in given.items() if n != name}))
+        assert without.startswith("InvalidInput: "), name
+
+
+@pytest.mark.parametrize("kind", CLAIMS)
+def test_values_of_no_kind_are_refused_in_a_line(kind) -> None:
+    given = parts(CLAIMS[kind]())
+    refuses(lambda values: SimpleNamespace(**values), given, "")
+    if kind == "withstood":
+        proof = parts(given["certificate"])
+        refuses(
+            lambda v: SimpleNamespace(**given | {"certificate": SimpleNamespace(**v)}), proof, "certificate."
+        )
+        refuses(lambda v: SimpleNamespace(**v), proof, "")
+
+
+@pytest.mark.parametrize("kind", ["withstood", "ContactRegions", "FaceRegions"])
+def test_shapes_answer_as_shapes_do(kind) -> None:
+    given = parts(CLAIMS[kind]())
+    names = ("surface", "centre_of_mass") if kind == "FaceRegions" else ("polygon", "cubics", "points")
+    shape = {name: getattr(given["shape"], name) for name in names}
+
+    def asked(shape) -> str:
+        return said(SimpleNamespace(**given | {"shape": SimpleNamespace(**shape)}))
+
+    assert asked(shape) == ""
+    for name in names:
+        if (kind, name) == ("withstood", "points"):
+            continue  # of curved regions
+        for junk in NO_KIND + OTHERS:
+            for answer in [junk] if name == "centre_of_mass" else [junk, lambda *a, junk=junk: junk]:
+                words = asked(shape | {name: answer})
+                assert words or (name, junk) == ("cubics", None), (name, junk)
+    proof = SimpleNamespace(**vars(withstood().certificate) | {"rings": np.array([0, 4, 8])})
+    for junk in NO_KIND + OTHERS if kind == "withstood" else ():
+        ringed = SimpleNamespace(**shape, hole_polygons=lambda junk=junk: junk)
+        words = said(SimpleNamespace(**given | {"shape": ringed, "certificate": proof}))
+        assert "hole_polygons" in words
+
+
+def test_states_and_grasps_passed_over_are_some() -> None:
+    good = vars(withstood())
+    flat = good["states"]
+    solid = VALUES["FaceRegions"]().grasp
+    for name, value in (
+        ("states", (None,)), ("states", (*flat[:2], "state")), ("others", (None,)), ("others", (Shy(),)),
+        ("others", (SimpleNamespace(value="1"),)), ("grasp", solid), ("grasp", flat[0]), ("shape", Shy()),
+    ):  # fmt: skip
+        assert said(SimpleNamespace(**good | {name: value})).startswith(f"InvalidInput: {name}"), name
+    assert said(SimpleNamespace(**good | {"states": list(flat)})) == ""
+    mesh = VALUES["FaceRegions"]().shape
+    assert said(SimpleNamespace(**good | {"shape": mesh})) == "the proof is about an outline"
+    for anything in Shy(), None, 1, [], "plan":
+        assert said(anything).startswith("InvalidInput: verify needs a plan")
+
+
+def test_limits_that_are_no_numbers_are_kept_by_none() -> None:
+    state = rg.GraspState(rg.Grasp([rg.Contact([0, -1], [0, 1], 0.0)]), rg.Wrench([0, -1]), [[0, 1]])
+    good = vars(withstood()) | {"objective": "peak", "grasp": state.grasp, "states": (state,)}
+    assert "above the limit nan" in said(SimpleNamespace(**good | {"max_force": nan}))
+
+
+def test_a_cut_has_no_least_distance_below_zero() -> None:
+    """Of which the square excluded pairs that may hold."""
+    cut = parts(VALUES["RegraspCut"]())
+    for name in "min_distance", "least_margin":
+        for junk in (-5.0, -1e-300, nan, inf):
+            words = said(SimpleNamespace(**cut | {name: junk}))
+            assert words.startswith(f"InvalidInput: {name} of a plan must be a number of 0 or more")
+    box = VALUES["FaceRegions"]().grasp
+    assert "contacts in the plane" in said(SimpleNamespace(**cut | {"contacts": tuple(box)}))
