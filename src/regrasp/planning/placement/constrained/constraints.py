@@ -24,6 +24,7 @@ CONSTRAINED_BOXES = 20_000
 """Boxes of a search with constraints unless told otherwise."""
 _EVERYTHING = 1e200  # a level that leaves no box out
 _ENOUGH = 1e3  # times the loads, forces of those that stay without any limit
+_ABOUT = 1 + 1e-6  # rounding
 _JUDGED = 3  # placements of a batch of boxes whose forces are computed, the best first
 _LEAST, _ROUGH = 20, 0.01  # placements of the least largest forces to begin with, and their gap [-]
 _SEEDS = 200  # placements of points to begin with
@@ -46,7 +47,9 @@ class Constraints:
         return bool(self.max_force is not None or self.min_normal or self.keep or self.removable)
 
     def allows(self, search: Search, places: np.ndarray, u: Array) -> bool:
-        """Whether places may be taken, whatever their forces."""
+        """Whether places may be taken, if their forces keep ``min_normal``."""
+        if self.max_force is not None and search.norm_at(places, u, LARGEST) > _ABOUT * self.max_force:
+            return False  # as its forces would say, later
         return self._reached(search, places, u) and (
             not self.removable or self._one_can_leave(search, places, u)
         )
