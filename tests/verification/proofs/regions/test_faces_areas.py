@@ -1,0 +1,90 @@
+"""Which part of a grid of triangles others cover, by hand."""
+
+import numpy as np
+import pytest
+
+from regrasp.verification.placed.areas import share_of
+
+pytestmark = pytest.mark.oracle
+
+UP = np.array([0, 0, 1.0])
+MOVED = np.array([3.0, 10, -40])
+
+
+def grid() -> tuple[np.ndarray, np.ndarray]:
+    """Four squares of area 1 about (1, 1, 0), each two triangles with their inward normal up."""
+    points = np.array([[x, y, 0.0] for y in range(3) for x in range(3)])
+    faces = []
+    for y in range(2):
+        for x in range(2):
+            a = x + 3 * y
+            faces += [[a, a + 3, a + 1], [a + 1, a + 3, a + 4]]
+    return points, np.array(faces)
+
+
+def share(*triangles, normal=UP, scale=1.0, move=MOVED) -> float:
+    points, faces = grid()
+    corners = scale * (np.array(triangles, dtype=float) + move)
+    return share_of(
+        corners, np.repeat(np.array([normal]), len(triangles), axis=0), scale * (points + move), faces
+    )
+
+
+MIDDLE = [[0.25, 0.25, 0], [1.75, 0.25, 0], [1, 1.75, 0]]  # of area 1.125, over all squares
+REACH = 40.0
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e4])
+@pytest.mark.parametrize("move", [MOVED, -MOVED, np.array([-2.0, 0, 40]), np.array([40.0, 0, -2])])
+def test_a_triangle_over_all_squares(scale, move) -> None:
+    for order in [0, 1, 2], [2, 1, 0], [1, 0, 2]:
+        turned = np.array(MIDDLE)[order]
+        assert share(turned, scale=scale, move=move) == pytest.approx(1.125 / 4, rel=1e-9)
+    whole = grid()[0][grid()[1]]
+    assert share(*whole, scale=scale, move=move) == pytest.approx(1, rel=1e-9)
+    assert share(whole[0], whole[5], scale=scale, move=move) == pytest.approx(0.25, rel=1e-9)
+    assert share(MIDDLE, [[0, 0, 0], [0.2, 0, 0], [0, 0.2, 0]], scale=scale, move=move) == pytest.approx(
+        1.145 / 4, rel=1e-9
+    )
+    assert share(whole[0], whole[0], scale=scale, move=move) == -1
+    assert share(whole[0], whole[0] * [0.5, 0.5, 1], scale=scale, move=move) == -1
+    assert share(MIDDLE, MIDDLE, scale=scale, move=move) == -1
+    for k in range(3):  # a corner moved out, over the end of the grid
+        out = np.array([[0, 0, 0], [2, 0, 0], [0, 2.0, 0]])
+        assert share(out, scale=scale, move=move) == pytest.approx(0.5, rel=1e-9)
+        out[k] += 0.05 * (out[k] - [0.6, 0.6, 0])
+        assert share(out, scale=scale, move=move) == -1
+    larger = whole[0] + 0.01 * (whole[0] - whole[0].mean(axis=0))
+    assert share(larger, scale=scale, move=move) == -1  # nearly a triangle of the grid
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-4, 1e4])
+def test_triangles_are_in_the_plane_to_a_part_of_the_reach(scale) -> None:
+    for sign in 1, -1:
+        for off, good in (0.9e-9 * REACH, True), (1.1e-9 * REACH, False), (0.5, False), (5.0, False):
+            lifted = np.array(MIDDLE) + sign * off * UP
+            assert (share(lifted, scale=scale) > 0) == good, (sign, off)
+        for off, good in (1.4e-9 * REACH, True), (1.6e-9 * REACH, False):  # 2/3 of it from the middle
+            bent = np.array(MIDDLE)
+            bent[1, 2] += sign * off
+            assert (share(bent, scale=scale) > 0) == good, (sign, off)
+    for turn, good in (0.9e-9, True), (1.1e-9, False), (2.0, False):
+        normal = [turn, 0, 1] if turn < 1 else [0, 0, -1]
+        assert (share(MIDDLE, normal=normal, scale=scale) > 0) == good
+
+
+def test_oblique_planes() -> None:
+    """All of it turned, so that boxes around triangles of planes one above the other share places."""
+    turn = np.array([[0.6, -0.8, 0], [0.48, 0.36, -0.8], [0.64, 0.48, 0.6]])
+    points, faces = grid()
+    for lift, good in (0.0, True), (0.3, False), (-0.3, False):
+        corners = np.add([MIDDLE], (0, 0, lift)) @ turn.T
+        found = share_of(corners, (turn @ UP)[None], points @ turn.T, faces)
+        assert found == pytest.approx(1.125 / 4 if good else -1, rel=1e-9)
+
+
+def test_triangles_beside_one_another() -> None:
+    beside = [[0.3, 1.5, 0], [0.4, 1.5, 0], [0.3, 1.7, 0]]
+    assert share(MIDDLE, beside) == pytest.approx((1.125 + 0.01) / 4, rel=1e-9)
+    over = [[0.9, 1.5, 0], [1.0, 1.5, 0], [0.9, 1.7, 0]]
+    assert share(MIDDLE, over) == share(over, MIDDLE) == -1
