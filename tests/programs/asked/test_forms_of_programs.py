@@ -8,7 +8,7 @@ from scipy import sparse
 
 from programs_by_hand import nonnegative, program
 from regrasp.errors import InvalidInput
-from regrasp.programs import Program, Rows, Status, facts, solve
+from regrasp.programs import Pattern, Program, Rows, Status, facts, solve
 from regrasp.programs.facts import is_available
 
 pytestmark = pytest.mark.contract
@@ -45,6 +45,7 @@ def fixed(matrix):
         raw([0.5, 0.5, 2, 3], [0, 0, 1, 1], [0, 3, 4]),
         fixed(raw([0.5, 0.5, 2, 3], [0, 0, 1, 1], [0, 3, 4])),
         fixed(sparse.csc_matrix(A.astype(int))),
+        Pattern((2, 2), [0, 1, 1], [0, 0, 1]).filled(np.array([1, 2, 3])),
     ],
 )
 def test_a_matrix_in_another_form_becomes_one_of_doubles_in_order(given) -> None:

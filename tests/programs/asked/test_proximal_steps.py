@@ -175,3 +175,12 @@ def test_numbers_of_an_answer_are_plain_arrays(monkeypatch) -> None:
     answer = qp_backend.solve(line([1.0]), "highs")
     assert answer.value.dtype == answer.duals.dtype == float
     assert (answer.value.tolist(), answer.duals.tolist()) == ([2.0], [3.0])
+
+
+@pytest.mark.parametrize("x", [(np.inf,), (np.nan,), None])
+def test_a_step_without_an_end_is_the_last(monkeypatch, x) -> None:
+    answer = found(*x) if x else Answer("found", None, None, 1, "done")
+    solver = Scripted(monkeypatch, answer)
+    given = qp_backend.solve(line([-1.0]), "daqp")
+    assert len(solver.asked) == 1
+    assert not np.isfinite(given.value).any()

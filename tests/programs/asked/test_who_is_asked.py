@@ -312,3 +312,7 @@ def test_a_program_without_an_answer_is_asked_in_its_own_units(monkeypatch) -> N
     monkeypatch.setattr(deadline.Deadline, "is_over", True)
     assert solve(p, throw=False).status is Status.FAILED
     assert asked.names[2:] == ["clarabel"]
+    monkeypatch.undo()
+    once = Asked(monkeypatch, honest)
+    assert solve(p).status is Status.SOLVED
+    assert once.names == ["clarabel"]

@@ -5,7 +5,7 @@ import pytest
 from scipy import sparse
 
 from programs_by_hand import claim, nonnegative, program, zero
-from regrasp.programs import Program, Status
+from regrasp.programs import Block, Cone, Program, Status
 from regrasp.programs.judging.elastic import elastic, proven_anyway
 from regrasp.programs.judging.own_units import in_own_units
 from regrasp.programs.judging.proofs import infeasibility_residual
@@ -67,3 +67,29 @@ def test_a_proof_as_good_as_is_enough_is_one() -> None:
     answer = claim(elastic(p), Status.SOLVED, [0, 0.5], [1, 1, 0])
     enough = infeasibility_residual(p, np.ones(2))
     assert proven_anyway(claim(p, Status.STOPPED), lambda _: answer, enough) is not None
+
+
+def test_equations_get_room_on_both_sides_where_without_it_nothing_is_proven() -> None:
+    """x = 1 and |x| <= 0: by 1 and -1 with the equation as it is, or by its upper side, asked second."""
+    cone = Block(Cone.SECOND_ORDER, 2)
+    p = program([[0.0]], [0.0], [[1], [0], [1]], [1, 0, 0], zero(1), cone)
+    exact = [-1, 1, 1]
+    found = proven_anyway(
+        claim(p, Status.STOPPED), lambda given: claim(given, Status.SOLVED, [0, 0.5], [*exact, 0]), 1e-9
+    )
+    assert found.duals.tolist() == exact
+    seen = []
+
+    def ask(given):
+        seen.append(given)
+        return (
+            claim(given, Status.SOLVED, [0, 0.5], [0, 1, 1, 1, 0])
+            if len(seen) == 2
+            else claim(given, Status.STOPPED)
+        )
+
+    assert proven_anyway(claim(p, Status.STOPPED), ask, 1e-9).duals.tolist() == exact
+    wide = seen[1]
+    assert wide.blocks == (nonnegative(1), cone, nonnegative(1), nonnegative(1))
+    assert wide.A.toarray().tolist() == [[1, -1], [0, -1], [1, 0], [-1, -1], [0, -1]]
+    assert wide.b.tolist() == [1, 0, 0, -1, 1]
