@@ -170,7 +170,9 @@ def test_how_near_is_the_same_is_a_part_of_the_largest_coordinate(scale) -> None
             replace(
                 good,
                 shape=SimpleNamespace(
-                    cubics=lambda: scale * (SIDES + off), points=lambda s: scale * (points(s / scale) + off)
+                    cubics=lambda: scale * (SIDES + off),
+                    polygon=lambda: scale * (SIDES[:, 0] + off),
+                    points=lambda s: scale * (points(s / scale) + off),
                 ),
                 grasp=moved(good.grasp, place),
                 places=scale * good.places,
@@ -270,7 +272,7 @@ def test_corners_that_do_not_reach_around_an_arc_do_not_stand_for_it() -> None:
 
 def test_a_side_of_a_polygon_holds_its_arc_in_any_position() -> None:
     """The same on straight sides: the shorter of two sides of a place counts, but for the end of the side."""
-    shape = SimpleNamespace(cubics=lambda: None, polygon=lambda: SIDES[:, 0])
+    shape = SimpleNamespace(cubics=lambda: None, polygon=lambda: SIDES[:, 0], points=points)
     for k, end in product((0, 1), (0, 1)):
         arcs = np.array(regions().arcs)
         arcs[k, end] += (1, -1)[end] * 0.05
