@@ -52,7 +52,7 @@ def _bytes_of(path: Path, expected: str, most: int) -> bytes:
     number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:
         about = os.fstat(number)
-        if stat.S_ISREG(about.st_mode) and about.st_size > most:
+        if about.st_size > most:  # a pipe, a terminal and a device have no size
             raise _too_much(path, expected, most)
         parts: list[bytes] = []
         size, deadline = 0, monotonic() + _PATIENCE

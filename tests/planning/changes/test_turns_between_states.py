@@ -63,6 +63,30 @@ def test_the_crest_between_two_states_keeps_the_limit_of_its_finger(kind, over, 
                 within_limits(chooser(pair(**named)), *states)
 
 
+def test_what_is_exactly_at_its_limit_keeps_it() -> None:
+    """4 N at the start and 1 N at the end: to the last bit."""
+    ends = np.array([[4.0, 0.0], [-4.0, 0.0]]), np.array([[1.0, 0.0], [-1.0, 0.0]])
+    below = 1 - 2.0**-52
+    for limit, words in (
+        (lambda x: {"max_force": 4.0 * x}, "A would need 4 "),
+        (lambda x: {"limits": ([[1.0, 0.0]], [4.0 * x])}, "A would break its linear limits"),
+    ):
+        states = (0.0, ends[0]), (0.5, ends[1])
+        assert within_limits(chooser(pair(A=limit(1.0))), *states) is None
+        with pytest.raises(rg.Infeasible, match=words):
+            within_limits(chooser(pair(A=limit(below))), *states)
+        for x, kept in (1.0, True), (below, False):
+            grasp, path = pair(A=limit(x)), TurningPath([0.0, 0.5], [*ends])
+            loads = WEIGHT, turned_load(WEIGHT, 0.5)
+            sides = [rg.GraspState(grasp, load, f) for load, f in zip(loads, ends, strict=True)]
+            turn = Transition(*sides, rg.TimeScaling.spline(1.0), Record(0.0), path=path)
+            if kept:
+                rotation._refuse_high_forces(turn)
+            else:
+                with pytest.raises(rg.Infeasible, match=r"A would (need|break)"):
+                    rotation._refuse_high_forces(turn)
+
+
 @pytest.mark.parametrize(("limited", "way"), [("A", 1), ("B", -1), ("AB", 1)])
 def test_steps_are_halved_where_linear_limits_alone_are_broken_between(limited, way) -> None:
     limit = {"limits": ([[1.0, 0.0]], [MOST_PUSH * (1 + 1e-4)])}

@@ -228,3 +228,12 @@ def test_words_of_other_kinds_are_refused_in_a_line(odd) -> None:
             solve(**{"program": LINE, "backend": "clarabel", **given})
         assert "\n" not in str(raised.value)
     assert solve(LINE, "clarabel", throw=np.True_, time_limit=np.float64(9)).status is Status.SOLVED
+
+
+@pytest.mark.skipif("scs" not in available_backends(), reason="scs is not installed")
+@pytest.mark.parametrize("seed", [1821, 2057])
+def test_where_scs_stopped_is_no_point_of_a_program_that_hardly_lacks_one(seed) -> None:
+    """Rows contradict each other by 1e-7 and 1e-5 of their sides: one was solved, the other unbounded."""
+    case = known(seed)
+    answer = solve(case.program, "scs", throw=False)
+    assert not is_a_lie(case, answer)
