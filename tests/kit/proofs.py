@@ -40,6 +40,8 @@ def planar(vertices, loads, nodes, **changes) -> SimpleNamespace:
             "pairs": None,
             "seconds": None,
             "tied": None,
+            "movers": None,
+            "motions": None,
         }
         | changes
     )

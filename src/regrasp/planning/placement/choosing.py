@@ -15,10 +15,12 @@ from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
+from regrasp.planning.placement.curves.curved_sides import CurvedSides
 from regrasp.planning.placement.laws import LEVELS, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
-from regrasp.planning.placement.levels.level import Level
+from regrasp.planning.placement.levels.level import FrictionLevel, Level
+from regrasp.planning.placement.levels.moving_search import closed_by_moving
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
@@ -178,6 +180,10 @@ def choose_grasp(
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
         best, beyond = run_level(search, level, around * tolerance, most, progress)
+        straight = isinstance(level, FrictionLevel) and not isinstance(sides, CurvedSides)
+        straight = straight and not search.interrupted
+        if best is not None and straight and beyond > level.beyond(best, 1.1 * around * tolerance):
+            search, beyond = closed_by_moving(search, level, best, beyond, around * tolerance, most, progress)
         if isinstance(level, WithstoodLevel) and best is not None:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)
         return chosen_at_level(search, asked, level, best, beyond)

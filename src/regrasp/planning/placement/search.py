@@ -47,12 +47,13 @@ class Search:
         self._state = np.array([1, 1, 0])
         self._found = np.full(1 + 2 * fingers, inf)
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
-        self.closed = False
+        self.closed = self.interrupted = False
         self.narrow = narrow
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
         self._only = False
         self._kept: list[tuple[float, np.ndarray, Array]] = []
         self.tied: dict[int, Array] = {}  # boxes excluded by duals of all loads together
+        self.moving: dict[int, tuple[np.ndarray, Array]] = {}  # or by loads' twists that move with fingers
 
     def under(self, loads: Array) -> None:
         """From now on, of these loads (L, 3) [N, N m]."""
@@ -169,6 +170,11 @@ class Search:
         if duals is not None:  # first, lest an interrupt leaves a box excluded by nothing
             self.tied[node] = duals
         self._boxes[5][node] = 3 if duals is None else 1
+
+    def leave_to(self, node: int, loads: np.ndarray, twists: Array) -> None:
+        """Take a box for excluded by twists of some loads that move with the fingers."""
+        self.moving[node] = loads, twists
+        self._boxes[5][node] = 1
 
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""
@@ -305,6 +311,12 @@ class Search:
             second = seconds[joined] / [1, 1, self.sides.size]
             given["pairs"] = np.column_stack([joined, (-second @ self.loads.T).argmax(axis=1)])
             given["seconds"] = second
+        given["number"][list(self.moving)] = 0
+        given["twists"][list(self.moving)] = 0.0
+        if self.moving:
+            rows = [(box, load) for box, (loads, _) in self.moving.items() for load in loads.tolist()]
+            given["movers"] = np.array(rows)
+            given["motions"] = np.concatenate([twists for _, twists in self.moving.values()])
         smooth = edges.ndim == 3
         return PlacementProof(
             _frozen(edges[:, 0]) if smooth else edges, centre, fingers=self.fingers, friction=self.friction,

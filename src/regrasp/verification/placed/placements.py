@@ -15,7 +15,7 @@ Two twists, each with a load, bound a box together by the largest of each arc of
 N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
 box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``). What is withstood is bounded by all loads
-together (``whole_sets``).
+together, and a box also by twists of some loads that move with the fingers (``whole_sets``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
 
@@ -30,7 +30,7 @@ from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
-from regrasp.verification.placed.whole_sets import ties_of, works
+from regrasp.verification.placed.whole_sets import Most, is_excluded, ties_of, works
 
 Arc = tuple[int, int, float, float]
 
@@ -60,6 +60,15 @@ def _shapes(proof: Proof) -> list[str]:
         wanted += [("pairs", proof.pairs, (q, 2)), ("seconds", proof.seconds, (q, 3))]
         if (proof.seconds is None) or proof.norm != "largest" or proof.control is not None:
             return ["proof: second twists go with their boxes, a largest force and straight sides"]
+    if proof.movers is not None:
+        q = len(proof.movers)
+        wanted += [("movers", proof.movers, (q, 2)), ("motions", proof.motions, (q, 3 + 2 * k))]
+        if (
+            proof.motions is None
+            or (proof.norm, proof.control) != ("largest", None)
+            or proof.size == "margin"
+        ):
+            return ["proof: twists that move go with boxes, a largest force and straight sides"]
     if proof.rings is not None:
         first = np.asarray(proof.rings)
         apart = np.diff(np.append(first, len(proof.vertices))) >= 3
@@ -96,6 +105,10 @@ class _Checked:
         self.clear: np.ndarray  # boxes that doubles decide
         pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
         self.second = {box: (load, twist) for (box, load), twist in pairs}
+        self.moving: dict[int, list[tuple[int, list[float]]]] = {}
+        if proof.movers is not None:
+            for (box, load), motion in zip(proof.movers.tolist(), proof.motions.tolist(), strict=True):  # type: ignore[union-attr]
+                self.moving.setdefault(box, []).append((load, motion))
         self.sides = [(int(e), Fraction(lo), Fraction(hi)) for e, lo, hi in proof.sides.tolist()]
 
     def violations(self) -> list[str]:
@@ -178,6 +191,8 @@ class _Checked:
             return [] if self._near(arcs) else [f"proof: fingers of box {box} may be far enough apart"]
         if number < 0 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
             return self._tied(box, self.proof.tied[-2 - number].tolist(), arcs)
+        if box in self.moving:
+            return self._moved(box, arcs)
         told = [(number, self.proof.twists[box].tolist())]
         told += [self.second[box]] if box in self.second else []
         if not all(0 <= load < len(self.proof.loads) for load, _ in told):
@@ -210,16 +225,33 @@ class _Checked:
         if any(a != b for a, b, *_ in arcs):
             return [f"proof: a finger of box {box} has more than one side"]
 
+        hulls = [self._hull(*arc) for arc in arcs]
+        work, done = works(row, self.proof.loads.tolist(), hulls, self._along(arcs))
+        bound = Fraction(self.proof.bound)
+        if bound > 0 and (work < bound * done or work <= 0):
+            return [f"proof: the duals of box {box} do not exclude it"]
+        return []
+
+    def _moved(self, box: int, arcs: list[Arc]) -> list[str]:
+        """The same by twists of some loads that move with the fingers."""
+        loads = self.proof.loads.tolist()
+        if any(a != b for a, b, *_ in arcs) or not all(0 <= n < len(loads) for n, _ in self.moving[box]):
+            return [f"proof: a finger of box {box} has more than one side, or there is no load"]
+        motions = [(loads[n], motion) for n, motion in self.moving[box]]
+        bound, hulls = Fraction(self.proof.bound), [self._hull(*arc) for arc in arcs]
+        if bound <= 0 or is_excluded(motions, bound, hulls, self._along(arcs)):
+            return []
+        return [f"proof: the twists of box {box} do not exclude it"]
+
+    def _along(self, arcs: list[Arc]) -> Most:
+        """The most along a velocity of a finger anywhere on its arc, of one side."""
+
         def most(finger: int, v: Point) -> Fraction:
             side, _, lo, hi = arcs[finger]
             edge = self.sides[side][0]
             return self.boundary.most_along(edge, Fraction(lo) - edge, Fraction(hi) - edge, [v])
 
-        work, done = works(row, self.proof.loads.tolist(), [self._hull(*arc) for arc in arcs], most)
-        bound = Fraction(self.proof.bound)
-        if bound > 0 and (work < bound * done or work <= 0):
-            return [f"proof: the duals of box {box} do not exclude it"]
-        return []
+        return most
 
     def _most(self, arc: Arc, twists: list[list[Fraction]]) -> Fraction:
         """An upper bound of sigma over an arc, or of the sum of that of two twists."""

@@ -99,6 +99,14 @@ class Proof(Protocol):
     def tied(self) -> Array | None:
         """(r, 3 L + (L - 1) T) duals of boxes that all loads exclude together."""
 
+    @property
+    def movers(self) -> Any:
+        """(q, 2) boxes excluded by twists that move with the fingers, and their loads; None for none."""
+
+    @property
+    def motions(self) -> Array | None:
+        """(q, 3 + 2 fingers) of each load, the twist at the beginning of all arcs, then what fingers add."""
+
 
 def velocity(y: list[Fraction], point: Point) -> Point:
     """Of a point, along a twist."""

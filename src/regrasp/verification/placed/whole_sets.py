@@ -121,6 +121,33 @@ def _done(
     return sum((most(i, u) for i, each in enumerate(along) for u in each), start=Fraction(0))
 
 
+def is_excluded(
+    motions: list[tuple[list[float], list[float]]], bound: Fraction, hulls: list[list[Point]], most: Most
+) -> bool:
+    """Whether twists of some loads that move with the fingers exclude a box of straight arcs.
+
+    motions: of each load, the load; and its velocity and angular velocity with fingers at the first ends of
+    their arcs, then what fingers add to the velocities on their way to the last. The work of loads less
+    ``bound`` times the most work of forces of size 1 is concave in all places, so corners tell.
+    """
+    k = len(hulls)
+    for corner in product(range(2), repeat=k):
+        work = done = Fraction(0)
+        for load, motion in motions:
+            x, y, turn, *more = map(Fraction, motion)
+            twist = [
+                x + sum(c for c, at in zip(more[:k], corner, strict=True) if at),
+                y + sum(c for c, at in zip(more[k:], corner, strict=True) if at),
+                turn,
+            ]
+            work -= sum(Fraction(w) * c for w, c in zip(load, twist, strict=True))
+            for i, at in enumerate(corner):
+                done += most(i, velocity(twist, hulls[i][at]))
+        if not work > bound * done:
+            return False
+    return True
+
+
 def _forces(factors: list[Fraction], places: tuple[Point, ...]) -> Iterator[tuple[int, Point]]:
     """The forces z of ties, one finger after the other."""
     left = iter(factors)

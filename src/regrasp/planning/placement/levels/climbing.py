@@ -36,7 +36,7 @@ def run_level(
                 due, before = search.count + max(_LATE, search.count // 4), search.tries
             if at is not None:
                 due, before = search.count + _LATE, search.tries
-                reached, places, u = _improved(search, level, aim, *at)
+                reached, places, u = improved(search, level, aim, *at)
                 best = reached if best is None else max(best, reached)
                 aim = level.beyond(best, tolerance)
                 level.put(search, aim)
@@ -48,20 +48,23 @@ def run_level(
     except KeyboardInterrupt:
         if best is None:
             raise
-        search.closed = False
+        search.closed, search.interrupted = False, True
     if best is None:
         search.closed = search.closed and search.excludes(search.left, fixed)
         return best, aim
     try:
-        beyond = _settled(search, level, aim, fixed)
+        beyond = settled(search, level, aim, fixed)
     except KeyboardInterrupt:
-        search.closed, beyond = False, top
+        search.closed, search.interrupted, beyond = False, True, top
     if progress is not None:
-        progress(level.value(beyond), level.value(best))
+        try:
+            progress(level.value(beyond), level.value(best))
+        except KeyboardInterrupt:
+            search.interrupted = True
     return best, beyond
 
 
-def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
+def settled(search: Search, level: Level, aim: float, fixed: float) -> float:
     """A level at which boxes that are left, too small to be split or not looked at, are excluded, too."""
     left, lo, hi = search.left, aim, level.top(search)
     if aim >= hi:
@@ -86,7 +89,7 @@ def _settled(search: Search, level: Level, aim: float, fixed: float) -> float:
     return hi
 
 
-def _improved(
+def improved(
     search: Search, level: Level, known: float, places: np.ndarray, u: Array
 ) -> tuple[float, np.ndarray, Array]:
     """The best level of a placement and of those that fingers find by sliding along the boundary.

@@ -45,6 +45,10 @@ class PlacementProof(BoxProof):
         tied: (r, 3 L + (L - 1) T) a twist for each load, then factors of the T ties of each load after the
             first; None without. Forces are then those of fingers of equal stiffness that stay where they were
             put for the first load: a bound of what is withstood, and of nothing else.
+        movers: (q, 2) boxes that twists exclude which move with the fingers, and a load of one of these; each
+            box has all of them in turn. None for none.
+        motions: (q, 3 + 2 fingers) of each load, its twist with all fingers at the beginning of their arcs,
+            then by how much each finger adds to the one and to the other velocity on its way to the end.
     """
 
     vertices: Array
@@ -68,6 +72,8 @@ class PlacementProof(BoxProof):
     pairs: np.ndarray | None = None
     seconds: Array | None = None
     tied: Array | None = None
+    movers: np.ndarray | None = None
+    motions: Array | None = None
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
@@ -97,4 +103,6 @@ class PlacementProof(BoxProof):
             None if given.get("pairs") is None else integers(given["pairs"], "pairs", (None, 2)),
             None if given.get("seconds") is None else array(given["seconds"], "seconds", (None, 3)),
             None if given.get("tied") is None else array(given["tied"], "tied", (None, None)),
+            None if given.get("movers") is None else integers(given["movers"], "movers", (None, 2)),
+            None if given.get("motions") is None else array(given["motions"], "motions", (None, 3 + 2 * k)),
         )

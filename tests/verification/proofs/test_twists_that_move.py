@@ -1,0 +1,118 @@
+"""Boxes that twists exclude which move with the fingers, by hand; and such a proof of a search."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import regrasp as rg
+from proofs import everything, planar
+from regrasp.planning.placement.levels.moving import MovingTwists
+
+pytestmark = pytest.mark.oracle
+
+TRIANGLE = [[1.0, 0.6], [-0.9, 0.0], [-0.4, -0.9]]
+SQUARE = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])
+LOADS = np.array([[0, -1, -1.9375], [0, -1, -2.0625]])
+# about the finger on the floor, wherever it is, one way and the other: it does no work, the loads do 1/8
+ABOUT = [[0, 0, -1, 0, 4], [0, 0, 1, 0, -4]]
+
+
+def said(proof) -> str:
+    return "; ".join(rg.verify(proof).violations)
+
+
+def moving(motions=ABOUT, movers=((0, 0), (0, 1)), *, sides=((0, 0, 1.0),), **changes):
+    """One finger on the floor, under two loads that ask for it in two places."""
+    nodes = [(everything(sides, 1), (0, 0), 0, (0.0, 0.0, 0.0))]
+    given = {"size": "force", "norm": "largest", "friction": 0.75, "sides": np.array(sides), "bound": 1e6}
+    more = {"movers": np.array(movers), "motions": np.array(motions, dtype=float)}
+    return planar(SQUARE, LOADS, nodes, **given | more | changes)
+
+
+def test_what_no_fixed_twists_exclude_they_do() -> None:
+    assert said(moving()) == ""
+    for wrong in ([[0, 0, -1, 0, 3.75], ABOUT[1]], [ABOUT[0], [0, 0, 1, 0, -3.75]], [ABOUT[1], ABOUT[0]]):
+        assert said(moving(wrong)) == "proof: the twists of box 0 do not exclude it"
+    for fixed in np.linspace(0, 4, 9):
+        found = moving([[0, fixed, -1, 0, 0], [0, -fixed, 1, 0, 0]])
+        assert said(found) == "proof: the twists of box 0 do not exclude it"
+
+
+def test_the_limit_is_that_of_work_over_most_work() -> None:
+    """Upward velocity of 1/40 at both ends, and the finger does 1/40 N along it: 1/8 + 1/40 of work, 6 N."""
+    for aside in 0.0, 1 / 80, 1 / 10:
+        shifted = [[aside, 1 / 40, -1, 0, 4], ABOUT[1]]
+        most = np.hypot(aside, 1 / 40) if aside <= 0.75 / 40 else (1 / 40 + 0.75 * aside) / 1.25
+        limit = (1 / 8 + 1 / 40) / most
+        for factor, good in (1 - 1e-12, True), (1 + 1e-12, False):
+            assert (said(moving(shifted, bound=limit * factor)) == "") == good
+    # equal is not more
+    assert said(moving([[0, 0.0625, -1, 0, 4], ABOUT[1]], bound=3.0)) != ""
+
+
+def test_what_finger_adds_to_what() -> None:
+    """Each finger's way adds to its own number alone, that of x first, at the end of its arc alone."""
+    twists = MovingTwists(2)
+    at = twists.at_corners @ np.arange(7.0)
+    for corner, y in zip(twists.corners, at, strict=True):
+        assert y == pytest.approx([0 + corner @ [3, 4], 1 + corner @ [5, 6], 2])
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"movers": ((0, 0), (0, 2))}, "there is no load"),
+        ({"movers": ((0, 0), (0, -1))}, "there is no load"),
+        ({"movers": ((0, 0),)}, "motions must have shape"),
+        ({"norm": "sum"}, "a largest force and straight sides"),
+        ({"sides": ((0, 0, 1.0), (1, 1, 2.0))}, "more than one side"),
+        ({"size": "margin", "margin": 0.1}, "a largest force and straight sides"),
+    ],
+)
+def test_what_they_cannot_be(changes, words) -> None:
+    assert words in said(moving(**changes))
+
+
+def test_twists_are_needed() -> None:
+    proof = moving()
+    proof.motions = None
+    assert "motions must have shape" in said(proof) or "a largest force" in said(proof)
+
+
+def test_a_search_is_closed_by_them() -> None:
+    shape = rg.Outline(TRIANGLE)
+    loads = rg.LoadSet.hull([
+        rg.Wrench([x, y], t) for x, y in ((1, 0), (-0.5, 0.9), (-0.5, -0.9)) for t in (0.05, -0.05)
+    ])  # fmt: skip
+    chosen = rg.choose_grasp(
+        shape, 3, loads, friction=0.4, objective="friction_use", max_force=4, most_boxes=2000
+    )
+    proof = chosen.certificate
+    assert proof.movers is not None
+    assert proof.motions is not None
+    assert len(proof.movers) > 100
+    read = type(proof).from_dict(proof.to_dict())
+    assert rg.verify(read).ok
+    assert rg.verify(chosen).ok
+    motions = proof.motions.copy()
+    motions[:, 2] *= 1.5
+    assert not rg.verify(replace(proof, motions=motions)).ok
+    assert not rg.verify(replace(proof, movers=None, motions=None)).ok
+
+
+def test_an_interrupt_of_the_last_progress_ends_no_search_with_nothing() -> None:
+    calls: list[float] = []
+
+    def progress(*told: float) -> None:
+        calls.append(told[0])
+        if len(calls) == 2 * whole:
+            raise KeyboardInterrupt
+
+    whole = 0
+    given = {"friction": 0.4, "objective": "force", "max_force": 4, "tolerance": 1e-2, "progress": progress}
+    found = rg.choose_grasp(rg.Outline(TRIANGLE), 2, rg.Wrench([0, -1]), **given)
+    whole = len(calls)
+    again = rg.choose_grasp(rg.Outline(TRIANGLE), 2, rg.Wrench([0, -1]), **given)
+    assert len(calls) == 2 * whole
+    assert (again.value, again.bound) == (found.value, found.bound)
