@@ -300,7 +300,7 @@ def test_forces_stand_while_the_clock_does() -> None:
     kept = rows()
     local = np.r_[0, 0, 0, np.linspace(0, 1, 8)]
     local[3:] = np.linspace(0.1, 1, 8)
-    kept.local = local
+    kept.local, kept.times, kept.velocities = local, 2 * kept.times, kept.velocities / 2
     assert verify_motion_rows(held(), kept).ok
     kept.forces[1, :2, 0] *= 1 + 1e-12
     words = "before or after step 1 forces change while the plan's clock stands"

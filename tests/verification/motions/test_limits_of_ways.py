@@ -182,3 +182,65 @@ def test_the_radius_is_of_the_first_tip_that_touches() -> None:
         tips = [[[-1 - off[0], 0], [1 + off[1], 0]], [[-1.02, 0], [1.02, 0]]]
         rows = SimpleNamespace(positions=np.array(tips), touching=np.ones((2, 2), dtype=bool))
         assert _radius(steps, rows, 1e-9) == pytest.approx(wanted)
+
+
+def said_of(name, at, value) -> str:
+    plan, rows = pair()
+    found = np.array(getattr(rows, name), dtype=int if name == "steps" else float)
+    found[at] = value
+    setattr(rows, name, found)
+    return "; ".join(verify_motion_rows(plan, rows).violations)
+
+
+def test_clocks_of_rows_go_through_the_plan() -> None:
+    """Rows a tenth of a second apart: 0 to 10 of step 1, 11 to 21 of step 2, both a second long."""
+    clock = "rows must go through every step from its start to its end, no faster than the plan"
+    room = 2e-9
+    for name, at, value, words in (
+        ("times", 0, 1e-12, "times of rows must rise"), ("times", 0, -1.0, "times of rows must rise"),
+        ("times", 5, 0.3999, "times of rows must rise"), ("times", 5, np.nan, "times of rows must rise"),
+        ("times", 21, np.inf, "times of rows must rise"), ("times", 5, 0.4, clock), ("times", 21, 9.0, ""),
+        ("steps", slice(11, 22), 0, "steps of rows must rise from 1 to 2"),
+        ("steps", slice(0, 11), 1, "steps of rows must rise from 1 to 2"),
+        ("steps", 21, 2, "steps of rows must rise from 1 to 2"), ("steps", 0, -1, "steps of rows must rise"),
+        ("steps", 3, 1, "steps of rows must rise from 1 to 2"),
+        ("local", 0, 0.9 * room, ""), ("local", 0, 1.1 * room, clock), ("local", 0, -1.1 * room, clock),
+        ("local", 10, 1 - 0.9 * room, ""), ("local", 10, 1 - 1.1 * room, clock), ("local", 10, 1.1, clock),
+        ("local", 21, 1 - 0.9 * room, ""), ("local", 21, 1 - 1.1 * room, clock), ("local", 11, -0.1, clock),
+        ("local", 5, 0.5 + 1.1 * room, clock), ("local", 5, 0.5 - 1.1 * room, clock),
+        ("local", 5, np.nan, clock),
+        ("local", 5, 0.4, clock), ("local", 6, 0.5, clock), ("local", 11, 0.1, clock),
+    ):  # fmt: skip
+        found = said_of(name, at, value)
+        assert found.startswith(words), (name, at, value, found)
+        assert bool(found) == bool(words) or "must" not in found, (name, at, value, found)
+
+
+def test_clocks_may_stand_and_go_slower() -> None:
+    plan, rows = pair()
+    rows.times = 3 * rows.times
+    assert verify_motion_rows(plan, rows).ok
+    rows.times[11:] += 5.0  # a pause between the steps
+    assert verify_motion_rows(plan, rows).ok
+    rows.local[14] = rows.local[13] - 1.9e-9
+    assert "go through every step" not in str(verify_motion_rows(plan, rows))
+    rows.local[14] = rows.local[13] - 2.1e-9
+    assert "go through every step" in str(verify_motion_rows(plan, rows))
+
+
+def test_rows_of_shapes_that_do_not_go_together() -> None:
+    for name, value in (
+        ("times", np.zeros(21)), ("steps", np.zeros(21, dtype=int)), ("local", np.zeros(21)),
+        ("velocities", np.zeros((22, 3, 2))), ("touching", np.zeros((22, 3), dtype=bool)),
+        ("forces", np.zeros((22, 3, 2))), ("forces", np.zeros((22, 2))), ("forces", np.zeros((21, 2, 2))),
+        ("forces", 0.0),
+    ):  # fmt: skip
+        plan, rows = pair()
+        setattr(rows, name, value)
+        verdict = verify_motion_rows(plan, rows)
+        assert verdict.violations == (f"{name} of rows do not go with positions of shape (22, 2, 2)",)
+        assert (verdict.touching, verdict.rows) == (0, len(rows.times))
+    for shape in (0, 2, 2), (22, 2), (22, 0, 2):
+        plan, rows = pair()
+        rows.positions = np.zeros(shape)
+        assert "do not go with positions of shape" in str(verify_motion_rows(plan, rows))

@@ -15,6 +15,7 @@ from regrasp.verification.ways.held import Bools, contacts_of, jumps, lost, touc
 from regrasp.verification.ways.verdict import Moving
 
 _ROUNDING = 1e-12  # of the duration
+_CLOCK = 1e-9  # of the duration: how far a clock that is a sum may be off
 _SAME = 1e-9  # of the size of the grasps: places that are one
 
 
@@ -72,6 +73,7 @@ class MotionRowsVerification(ArrayValue):
 def verify_motion_rows(plan: Any, rows: MovedRows, ways: Moving | None = None) -> MotionRowsVerification:
     """Check rows of set-points against their plan.
 
+    Times rise from 0, and every step is gone through from its start to its end, no faster than the plan.
     Forces at contacts hold the object and are the plan's, and there are none in the air; positions move as
     velocities say; a finger that is said to touch is at a contact of the plan, one radius off it, every
     contact of a step has a finger all through it, and two fingers, in space three, touch at every row. Tips
@@ -85,6 +87,9 @@ def verify_motion_rows(plan: Any, rows: MovedRows, ways: Moving | None = None) -
             not given.
     """
     steps = getattr(plan, "steps", (plan,))
+    broken = list(_unfit(steps, rows))
+    if broken:
+        return MotionRowsVerification(tuple(broken), np.nan, np.nan, 0, len(rows.times))
     near = _SAME * max(step.grasp.size for step in steps)
     radius = _radius(steps, rows, near)
     on = touched(steps, rows.positions, rows.touching, radius, near)
@@ -105,6 +110,32 @@ def verify_motion_rows(plan: Any, rows: MovedRows, ways: Moving | None = None) -
         violations.append(f"two tips are in one another by {-to_fingers:.3g}")
     least = int(rows.touching.sum(axis=1).min())
     return MotionRowsVerification(tuple(violations), radius, to_fingers, least, rows.times.size)
+
+
+def _unfit(steps: Any, rows: MovedRows) -> Iterator[str]:
+    """Shapes and clocks that nothing can be compared with."""
+    shape = np.shape(rows.positions)
+    for name, wanted in (
+        ("times", shape[:1]), ("steps", shape[:1]), ("local", shape[:1]), ("velocities", shape),
+        ("touching", shape[:2]), ("forces", (*shape[:2], *np.shape(rows.forces)[-1:])),
+    ):  # fmt: skip
+        if len(shape) != 3 or np.shape(getattr(rows, name)) != wanted or not all(shape):
+            yield f"{name} of rows do not go with positions of shape {shape}"
+            return
+    times, which = rows.times, rows.steps
+    lengths = np.array([step.duration for step in steps])
+    begin, slack = np.cumsum(lengths) - lengths, _CLOCK * lengths.sum()
+    if not (np.isfinite(times).all() and times[0] == 0 and (np.diff(times) >= 0).all()):
+        yield "times of rows must rise from 0"
+    elif set(which.tolist()) != set(range(len(steps))) or (np.diff(which) < 0).any():
+        yield f"steps of rows must rise from 1 to {len(steps)}, and each have rows"
+    else:
+        local = rows.local
+        ran = np.diff(begin[which] + local)
+        last = local[np.flatnonzero(np.diff(which, append=len(steps)))]
+        whole = abs(local[0]) <= slack and (abs(last - lengths) <= slack).all()
+        if not (whole and (ran >= -slack).all() and (ran <= np.diff(times) + slack).all()):
+            yield "rows must go through every step from its start to its end, no faster than the plan"
 
 
 def _off_ways(rows: MovedRows, ways: Moving, near: float) -> Iterator[str]:
