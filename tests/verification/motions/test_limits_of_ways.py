@@ -204,7 +204,7 @@ def test_clocks_of_rows_go_through_the_plan() -> None:
         ("steps", slice(0, 11), 1, "steps of rows must rise from 1 to 2"),
         ("steps", 21, 2, "steps of rows must rise from 1 to 2"), ("steps", 0, -1, "steps of rows must rise"),
         ("steps", 3, 1, "steps of rows must rise from 1 to 2"),
-        ("local", 0, 0.9 * room, ""), ("local", 0, 1.1 * room, clock), ("local", 0, -1.1 * room, clock),
+        ("local", 0, 0.9 * room, ""), ("local", 0, 1.1 * room, clock), ("local", 0, -1e-15, clock), ("local", 21, 1 + 1e-15, clock),
         ("local", 10, 1 - 0.9 * room, ""), ("local", 10, 1 - 1.1 * room, clock), ("local", 10, 1.1, clock),
         ("local", 21, 1 - 0.9 * room, ""), ("local", 21, 1 - 1.1 * room, clock), ("local", 11, -0.1, clock),
         ("local", 5, 0.5 + 1.1 * room, clock), ("local", 5, 0.5 - 1.1 * room, clock),
@@ -222,6 +222,16 @@ def test_clocks_may_stand_and_go_slower() -> None:
     assert verify_motion_rows(plan, rows).ok
     rows.times[11:] += 5.0  # a pause between the steps
     assert verify_motion_rows(plan, rows).ok
+    long = rg.TimeScaling.spline(2.0)
+    for slow in (1, 0), (0, 1):  # one of the steps is twice as long
+        steps = [
+            rg.Transition(p.start, p.end, long, p.record) if s else p
+            for p, s in zip(plan.steps, slow, strict=True)
+        ]
+        other, more = SimpleNamespace(steps=tuple(steps)), pair()[1]
+        more.local[rows.steps == slow.index(1)] *= 2
+        more.times = np.append(0, np.cumsum(np.where(np.diff(more.times) > 0, 0.2, 0)))
+        assert verify_motion_rows(other, more).ok
     rows.local[14] = rows.local[13] - 1.9e-9
     assert "go through every step" not in str(verify_motion_rows(plan, rows))
     rows.local[14] = rows.local[13] - 2.1e-9
@@ -240,7 +250,11 @@ def test_rows_of_shapes_that_do_not_go_together() -> None:
         verdict = verify_motion_rows(plan, rows)
         assert verdict.violations == (f"{name} of rows do not go with positions of shape (22, 2, 2)",)
         assert (verdict.touching, verdict.rows) == (0, len(rows.times))
-    for shape in (0, 2, 2), (22, 2), (22, 0, 2):
+    for shape in (0, 2, 2), (22, 2), (22, 0, 2), (22, 2, 0):
         plan, rows = pair()
-        rows.positions = np.zeros(shape)
+        rows.positions = rows.velocities = np.zeros(shape)
+        rows.touching = np.zeros(shape[:2], dtype=bool)
+        rows.forces = np.zeros((*shape[:2], 2))
+        for name in "times", "steps", "local":
+            setattr(rows, name, getattr(rows, name)[: shape[0]])
         assert "do not go with positions of shape" in str(verify_motion_rows(plan, rows))

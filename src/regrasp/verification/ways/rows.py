@@ -133,7 +133,8 @@ def _unfit(steps: Any, rows: MovedRows) -> Iterator[str]:
         local = rows.local
         ran = np.diff(begin[which] + local)
         last = local[np.flatnonzero(np.diff(which, append=len(steps)))]
-        whole = abs(local[0]) <= slack and (abs(last - lengths) <= slack).all()
+        within = (local >= 0) & (local <= lengths[which])
+        whole = within.all() and local[0] <= slack and (last >= lengths - slack).all()
         if not (whole and (ran >= -slack).all() and (ran <= np.diff(times) + slack).all()):
             yield "rows must go through every step from its start to its end, no faster than the plan"
 
