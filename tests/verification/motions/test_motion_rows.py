@@ -151,3 +151,19 @@ def test_rows_come_evenly_to_a_millionth(share: float, fine: bool, tmp_path: Pat
     else:
         with pytest.raises(rg.InvalidInput, match=r"one is missing after|angles must be the plan's"):
             read_motions(path, plan)
+
+
+def test_clocks_that_are_sums_end_where_the_plan_does(tmp_path: Path) -> None:
+    """Ten steps of a tenth of a second end at 0.9999999999999999 s."""
+    for share, fine in (1e-15, True), (1e-8, False):
+        path, plan = written("plane", tmp_path, rate=20.0)
+
+        def early(c: dict[str, np.ndarray], by: float = share) -> None:
+            c["plan_t"][-1] *= 1 - by
+
+        changed(path, early)
+        if fine:
+            assert verify_motion_rows(plan, read_motions(path, plan)).ok
+        else:
+            with pytest.raises(rg.InvalidInput, match="must go from 0 to"):
+                read_motions(path, plan)
