@@ -1,6 +1,6 @@
 """What is answered and withstood, claimed by others: each part of the claim and of its proof counts."""
 
-from math import inf, nan, nextafter
+from math import atan, inf, nan, nextafter
 from types import SimpleNamespace
 
 import numpy as np
@@ -99,3 +99,78 @@ def test_what_is_answered_holds_the_load_itself() -> None:
     given = {"grasp": grasp, "places": np.array([2.0]), "certificate": proof, "deviations": lift}
     claim = withstood(objective="answered", states=(state,), value=1.0, bound=1.0, **given)
     assert "do not hold the load, and the deviations" in said(claim)  # though a factor of 1.5 is held, too
+
+
+def peak(**changes):
+    """One finger that lifts 1 N by 1 N, at (0, -1), on a square board."""
+    board = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+    node = [([(0, 3, 0, 4)], (0, 0), 0, (0, 1, 0))]
+    proof = planar(board, [[0, -1, 0]], node, size="force", norm="largest", friction=0.5, bound=1 - 2.0**-50)
+    grasp = rg.Grasp([rg.Contact([0, -1], [0, 1], 0.5, name="F")])
+    given = {
+        "objective": "peak", "grasp": grasp, "states": (rg.GraspState(grasp, rg.Wrench([0, -1]), [[0, 1]]),),
+        "places": np.array([1.0]), "value": 1.0, "bound": proof.bound, "certificate": proof,
+        "max_force": None, "shape": rg.Outline(board), "deviations": None,
+    }  # fmt: skip
+    return withstood(**given | changes)
+
+
+def of(claim, **changes):
+    """With other parts of its proof."""
+    claim.certificate = SimpleNamespace(**vars(claim.certificate) | changes)
+    return claim
+
+
+def test_what_a_verdict_tells() -> None:
+    good = peak()
+    (state,) = good.states
+    verdict = rg.verify(good)
+    assert (verdict.ok, verdict.excluded, verdict.asked, verdict.worst_residual) == (True, 1, "", 0.0)
+    assert (verdict.least_angle, verdict.least_cone_slack) == (pytest.approx(atan(0.5)), 0.25)
+    aside = rg.GraspState(good.grasp, rg.Wrench([0, -1]), [[0.25, 1]])  # out of balance by a quarter
+    verdict = rg.verify(peak(states=(state, aside, state), value=2.0))
+    assert verdict.worst_residual > 0.2
+    assert verdict.least_angle == pytest.approx(atan(0.5) - atan(0.25))
+    assert verdict.least_cone_slack == 1.25 - 1.0625
+    assert [v.partition(":")[0] for v in verdict.violations] == ["state 2"]
+    other = rg.Grasp([rg.Contact([0, -1], [0, 1], 0.4, name="F")])
+    foreign = rg.GraspState(other, rg.Wrench([0, -1]), [[0, 5]])
+    found = rg.verify(peak(states=(state, foreign, aside), value=2.0)).violations
+    assert found[0] == "state 2 is of other contacts"
+    assert [v.partition(":")[0] for v in found[1:]] == ["state 3"]
+    nothing = rg.verify(peak(objective="plenty"))
+    assert nothing.violations == ("objective 'plenty' has no bound",)
+    assert (nothing.worst_residual, nothing.least_angle, nothing.least_cone_slack) == (inf, 0.0, -inf)
+
+
+def test_a_proof_is_of_the_objective() -> None:
+    assert said(peak()) == ""
+    for size, norm in ("normal", "largest"), ("force", "sum"), ("force", "squares"):
+        assert said(of(peak(), size=size, norm=norm)) == f"the proof is of a {norm} of {size}, not of peak"
+    for objective, ok in ("force", True), ("sum_normal", False), ("angle", True):
+        found = said(peak(objective=objective, max_force=1.0))
+        assert (f"not of {objective}" in found) != ok
+
+
+def test_contacts_are_fingers_of_the_proof() -> None:
+    def placed(position, normal, friction=0.5):
+        grasp = rg.Grasp([rg.Contact(position, normal, friction, name="F")])
+        state = rg.GraspState(grasp, rg.Wrench([0, -1]), [[0, 1]])
+        return said(peak(grasp=grasp, states=(state,), places=np.array([1.0 + position[0]])))
+
+    assert placed([0, -1], [0, 1]) == placed([0, -1], [0, 1], 0.4) == ""
+    assert placed([0, -1], [0, 1], nextafter(0.5, 1)) == "contact F has more friction than the proof is about"
+    words = "contact F is on none of the sides that the proof is about"
+    assert placed([0, -1 + 2e-12], [0, 1]) == placed([0, -1], [1e-9, 1]) == words
+    half = of(
+        peak(), sides=np.array([[0, 0.5, 1.0]]), ends=np.array([[[0.5, 1.0]]]), arcs=np.zeros((1, 1, 2), int)
+    )
+    assert said(half) == ""
+    assert rg.verify(half).asked == " on the 12.5% of the outline that was asked about"
+    half.certificate.sides[0, 1] = half.certificate.ends[0, 0, 0] = 0.5 + 1e-9
+    assert said(half) == words
+    load = of(peak(), loads=np.array([[0, -1, 0], [0, -1 - 2e-9, 0]]))
+    assert said(load) == "a load of the proof has no state"
+    ring = peak()
+    ring.shape = rg.Outline.ellipse(2, 1)
+    assert said(ring) == "the proof is about another kind of outline"

@@ -1,10 +1,12 @@
 """Which boxes doubles decide, and sets that grasps stand as a whole, by hand."""
 
 from fractions import Fraction
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 import regrasp as rg
 from proofs import limit, planar_points, random_planar
@@ -140,6 +142,7 @@ def test_balls_whose_radius_is_a_root_of_a_fraction(limit, length) -> None:
             rg.Contact([s * y * c * length, -y * length], [0, y], 0.0) for y in (1, -1) for s in (1, -1)
         ]
         _judge(rg.Grasp(eight), limit, length, square)
+    assert makes_ball(rg.Grasp(eight), limit, length, Fraction(2 * limit))
     two = rg.Grasp([rg.Contact([-length, 0], [1, 0], 1.0), rg.Contact([length, 0], [-1, 0], 1.0)])
     _judge(two, limit, length, Fraction(2, 3))
     assert not makes_ball(two.subset([0]), limit, length, Fraction(1, 10**9))
@@ -177,3 +180,40 @@ def test_answers_are_those_of_springs_at_the_limit(length, force) -> None:
     places[:] = 0  # all at one point
     assert alike(first, first + force)
     assert not alike(first, first + force * squeeze)
+
+
+@pytest.mark.parametrize("mirrored", [1.0, -1.0])
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.0, 4.0])
+def test_balls_within_the_hull_of_all_sums(turn, mirrored) -> None:
+    """As near as the nearest facet of the hull of sums of corners, turned or mirrored."""
+    places = ([-1, 0.2], [1.0, 0], 0.7), ([1, 0], [-1, 0.1], 0.5), ([0.1, 1], [0.1, -1.0], 0.6)
+    turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]) @ np.diag([1, mirrored])
+    grasp = rg.Grasp(rg.Contact(turned @ p, turned @ n, mu) for p, n, mu in places)
+    corners = []
+    for c in grasp:
+        forces = [c.normal + way * c.friction * np.array([-c.normal[1], c.normal[0]]) for way in (1, -1)]
+        torques = [c.position[0] * f[1] - c.position[1] * f[0] for f in forces]
+        corners.append(
+            [np.zeros(3), *(2 * np.array([*f, m / 1.5]) for f, m in zip(forces, torques, strict=True))]
+        )
+    radius = -ConvexHull([sum(few) for few in product(*corners)]).equations[:, -1].max()
+    assert radius > 0.1
+    for off, good in (-1e-9, True), (1e-9, False):
+        assert makes_ball(grasp, 2.0, 1.5, Fraction(radius * (1 + off))) == good
+
+
+def test_springs_of_fingers_far_from_the_centre_and_at_it() -> None:
+    """No force by itself is what one motion makes of three fingers."""
+    for places in ([[0, 0], [1e8, 0.0], [0, 1e8]], [[0, 0], [1e-8, 0], [0, 1e-8]]):
+        here = np.array(places)
+        first = np.ones((3, 2))
+        twist = first + 0.5 + np.stack([-here[:, 1], here[:, 0]], axis=1) / np.abs(here).max()
+        states = [SimpleNamespace(grasp=SimpleNamespace(positions=here), forces=f) for f in (first, twist)]
+        assert answer_alike(tuple(states))
+        for at in np.ndindex(3, 2):  # no one force by itself is moved by springs
+            states[1].forces = twist.copy()
+            states[1].forces[at] += 1e-6
+            assert not answer_alike(tuple(states))
+            assert not answer_alike(tuple(states[::-1]))
+            states[1].forces[at] -= 2e-6
+            assert not answer_alike(tuple(states))
