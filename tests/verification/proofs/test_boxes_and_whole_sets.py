@@ -217,3 +217,17 @@ def test_springs_of_fingers_far_from_the_centre_and_at_it() -> None:
             assert not answer_alike(tuple(states[::-1]))
             states[1].forces[at] -= 2e-6
             assert not answer_alike(tuple(states))
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_answers_are_judged_by_the_largest_number_of_either_sign(way) -> None:
+    """Of three fingers in line what no motion makes is (1, -2, 1) across it."""
+    places = np.array([[-1.0, 0], [0, 0], [1, 0]])
+    first = way * np.array([[0, 1.0], [0, -5], [0, 1]])
+    for part, good in (0.9e-9, True), (1.1e-9, False):
+        for side in (1, -1):
+            off = first + side * part * 5 / 2 * np.array([[0, 1], [0, -2], [0, 1]])
+            states = [
+                SimpleNamespace(grasp=SimpleNamespace(positions=places), forces=f) for f in (first, off)
+            ]
+            assert answer_alike(tuple(states)) == good, (part, side)

@@ -79,8 +79,8 @@ def answer_alike(states: tuple[GraspState, ...]) -> bool:
     size = float(np.linalg.norm(first.grasp.positions, axis=1).max()) or 1.0
     x, y = (first.grasp.positions / size).T
     moved = np.zeros((2 * len(x), 3))
-    moved[0::2, 0] = moved[1::2, 1] = 1.0
-    moved[0::2, 2], moved[1::2, 2] = -y, x
+    moved[::2, 0] = moved[1::2, 1] = 1.0
+    moved[::2, 2], moved[1::2, 2] = -y, x
     for state in others:
         change = (state.forces - first.forces).ravel()
         left = change - moved @ np.linalg.lstsq(moved, change, rcond=None)[0]
@@ -102,7 +102,7 @@ def works(
     twists = [numbers[3 * d : 3 * d + 3] for d in range(len(loads))]
     count = ties_of(len(hulls))
     rest = numbers[3 * len(loads) :]
-    ties = [rest[count * d : count * (d + 1)] for d in range(len(loads) - 1)]
+    ties = [rest[count * d :] for d in range(len(loads) - 1)]  # of which as many are taken as there are
     work = Fraction(0)
     for load, y in zip(loads, twists, strict=True):
         work -= sum(Fraction(w) * c for w, c in zip(load, y, strict=True))
