@@ -19,7 +19,7 @@ PICTURES = {
     "move_time": "not negative", "chosen": "value", "load_size": "positive", "force": "planar vector",
     "contact": "contact of", "mesh": "value", "outline": "value", "plan": "value", "shape": "value",
     "components": "two components", "rate_limit": "limits of three", "values": "row",
-    "graph": "value", "level": "not negative",
+    "graph": "value", "level": "not negative", "regions": "value",
 }  # fmt: skip
 """Of parameters of pictures."""
 
