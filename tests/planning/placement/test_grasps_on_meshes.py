@@ -14,6 +14,7 @@ import regrasp as rg
 from refusals import refusal
 from regrasp.mesh import parts
 from regrasp.mesh.clear import clear_faces
+from regrasp.planning.placement.space.surface_search import SurfaceSearch
 
 pytestmark = pytest.mark.oracle
 
@@ -214,3 +215,17 @@ def test_a_map_is_the_best_of_all_triples_through_each_point() -> None:
         best[list(three)] = np.minimum(best[list(three)], value)
     assert found.best == pytest.approx(np.where(best < np.inf, best, np.nan), rel=0.011, nan_ok=True)
     assert found.share > 0
+
+
+def test_an_interrupt_of_the_search_on_points_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    run, asked = SurfaceSearch.run, dict[str, Any](friction=0.6, objective="peak_normal", tolerance=1e-6)
+
+    def interrupted(search: SurfaceSearch, *given: Any) -> None:
+        run(search, *given)
+        search.cut = True
+
+    monkeypatch.setattr(SurfaceSearch, "run", interrupted)
+    found = rg.choose_grasp(parts.bracket(), 3, LOADS, **asked, most_boxes=100_000)
+    assert len(found.certificate.number) < 2500
+    assert 0 < found.bound < found.value
+    assert rg.verify(found).ok

@@ -74,9 +74,11 @@ def choose_on_mesh(
         raise InvalidInput("from_corners leaves no place for a finger: no face reaches so far from its edges")
     half = 0.5 * tolerance / law.power
     search = SurfaceSearch(patches_of(corners, normals), fingers, friction, loads, law, apart, half)
-    for spots in _on_samples(corners, normals, search):
+    few = _on_samples(corners, normals, search)
+    for _, spots in few.placements()[:_OTHERS]:
         search.accept(spots)
     boxes, rows = (MOST_BOXES, MOST_ROWS) if most is None else (most, inf)
+    rows = -1 if few.cut else rows  # some boxes, for a bound, and no more after an interrupt
     search.run(half, boxes, _NARROW, progress, rows)
     power = law.power
     for norm, spots in search.placements()[:_ATTEMPTS]:
@@ -97,8 +99,8 @@ def choose_on_mesh(
     raise _none_holds(search)
 
 
-def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> list[Array]:
-    """The best placements on some points spread over the faces, found as on faces: exact on these points."""
+def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> SurfaceSearch:
+    """A search on some points spread over the faces, as on faces: exact on these points."""
     sides = corners[:, 1:] - corners[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     steps = (np.arange(_SAMPLED) + 0.5) / _SAMPLED * areas.sum()
@@ -112,7 +114,7 @@ def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> list[A
         search.loads, search.law, search.apart, 0.01,
     )  # fmt: skip
     few.run(0.01, _SAMPLED_BOXES, _NARROW, None)
-    return [spots for _, spots in few.placements()[:_OTHERS]]
+    return few
 
 
 def _grasp(spots: Array, friction: float) -> Grasp:
