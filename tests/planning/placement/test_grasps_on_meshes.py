@@ -222,7 +222,7 @@ def test_an_interrupt_of_the_search_on_points_ends_the_search(monkeypatch: pytes
 
     def interrupted(search: SurfaceSearch, *given: Any) -> None:
         run(search, *given)
-        search.cut = True
+        search.interrupted = True
 
     monkeypatch.setattr(SurfaceSearch, "run", interrupted)
     found = rg.choose_grasp(parts.bracket(), 3, LOADS, **asked, most_boxes=100_000)

@@ -184,7 +184,7 @@ def choose_grasp(
         straight = straight and not search.interrupted
         if best is not None and straight and beyond > level.beyond(best, 1.1 * around * tolerance):
             search, beyond = closed_by_moving(search, level, best, beyond, around * tolerance, most, progress)
-        if isinstance(level, WithstoodLevel) and best is not None and not search.cut:
+        if isinstance(level, WithstoodLevel) and best is not None and not search.interrupted:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)
         return chosen_at_level(search, asked, level, best, beyond)
     # half of the tolerance is for loads around a round set and for friction kept back

@@ -78,7 +78,7 @@ def choose_on_mesh(
     for _, spots in few.placements()[:_OTHERS]:
         search.accept(spots)
     boxes, rows = (MOST_BOXES, MOST_ROWS) if most is None else (most, inf)
-    rows = -1 if few.cut else rows  # some boxes, for a bound, and no more after an interrupt
+    rows = -1 if few.interrupted else rows  # some boxes, for a bound, and no more after an interrupt
     search.run(half, boxes, _NARROW, progress, rows)
     power = law.power
     for norm, spots in search.placements()[:_ATTEMPTS]:

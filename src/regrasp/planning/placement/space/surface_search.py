@@ -69,7 +69,7 @@ class SurfaceSearch:
         self._never = HELD * NEVER  # boxes are excluded from there, while nothing is found
         self._found = np.full(1 + 6 * fingers, self._never / (1 - tolerance))
         self._tried = np.zeros((_TRIED, 1 + 6 * fingers))
-        self.closed = self.cut = False
+        self.closed = self.interrupted = False
 
     def run(
         self, tolerance: float, most: int, narrow: float, progress: Progress | None, rows: float = inf
@@ -104,7 +104,7 @@ class SurfaceSearch:
                     break
             self._slide(0.1 * _STEP, _SHORTEST)
         except KeyboardInterrupt:
-            self.cut = True
+            self.interrupted = True
             if self.best == inf:
                 raise
 
