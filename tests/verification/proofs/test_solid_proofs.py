@@ -179,9 +179,9 @@ def test_halves_of_triangles_are_where_they_are_said_to_be() -> None:
     ("changes", "words"),
     [
         ({"corners": np.zeros((1, 3, 2))}, "shapes"), ({"normals": np.zeros((1, 2))}, "shapes"),
-        ({"loads": np.zeros((1, 3))}, "shapes"), ({"spans": np.zeros((1, 3))}, "shapes"),
-        ({"halves": np.zeros((1, 2))}, "shapes"), ({"boxes": np.zeros((1, 2))}, "shapes"),
-        ({"number": np.zeros(2)}, "shapes"), ({"twists": np.zeros((1, 3))}, "shapes"),
+        ({"loads": np.zeros((1, 3))}, "shapes"), ({"spans": np.zeros((1, 3), int)}, "shapes"),
+        ({"halves": np.zeros((1, 2), int)}, "shapes"), ({"boxes": np.zeros((1, 2), int)}, "shapes"),
+        ({"number": np.zeros(2, int)}, "shapes"), ({"twists": np.zeros((1, 3))}, "shapes"),
         ({"loads": np.zeros((0, 6))}, "shapes"), ({"fingers": 2}, "shapes"),
         ({"loads": np.full((1, 6), nan)}, "must be finite"),
         ({"twists": np.full((1, 6), inf)}, "must be finite"),
