@@ -16,6 +16,7 @@ from proofs import (
     planar_points,
     random_planar,
 )  # fmt: skip
+from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.straight import StraightEdges
 
 pytestmark = pytest.mark.oracle
@@ -175,10 +176,6 @@ def test_fingers_that_are_too_near_need_no_twist() -> None:
         ({"sides": np.array([[0, 0.75, 0.5]])}, "side 0 is no stretch"),
         ({"sides": np.array([[0.5, 0.0, 1.0]])}, "side 0 is no stretch"),
         ({"sides": np.array([[-0.5, 0.0, 1.0]])}, "side 0 is no stretch"),
-        ({"arcs": np.zeros((1, 1, 2))}, "none to compute with"),
-        ({"number": np.zeros(1)}, "none to compute with"),
-        ({"fingers": 1.0}, "none to compute with"),
-        ({"vertices": np.array([["a", "b"]] * 3)}, "none to compute with"),
         ({"sides": np.array([[0, 0.25, 1.0]])}, "box 0 must give every finger the whole"),
         ({"sides": np.array([[0, 0.0, 0.75]])}, "box 0 must give every finger the whole"),
     ],
@@ -248,3 +245,17 @@ def test_straight_edges_in_doubles_are_those_in_rationals() -> None:
 def _place(proof, edge: int, t: float):
     p, q = (proof.vertices[i % len(proof.vertices)] for i in (edge, edge + 1))
     return p + t * (q - p) - proof.centre_of_mass, [p[1] - q[1], q[0] - p[0]]
+
+
+def test_numbers_of_other_types_are_none_to_compute_with() -> None:
+    """Refused before, or in words by the check alone."""
+    node = (everything([[0, 0, 1.0]], 1), (0, 0), 0, (0.0, 1.0, 0.0))
+    for name, value in (
+        ("arcs", np.zeros((1, 1, 2))), ("number", np.zeros(1)), ("fingers", 1.0),
+        ("vertices", np.array([["a", "b"]] * 3)),
+    ):  # fmt: skip
+        proof = planar(SHAPES[1], [[0, -1, 0]], [node], sides=np.array([[0, 0, 1.0]]), bound=0.5)
+        setattr(proof, name, value)
+        assert "none to compute with" in check_proof(proof)[0]
+        with pytest.raises(rg.InvalidInput, match=f"{name} of a plan must be"):
+            rg.verify(proof)
