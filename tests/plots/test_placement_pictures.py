@@ -46,6 +46,18 @@ def test_regions_are_drawn_where_they_are() -> None:
     assert words[3] == "one finger alone"
 
 
+def test_of_regions_on_one_side_the_narrower_lies_above() -> None:
+    bracket = rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])
+    below = rg.Grasp(bracket.contact_at(s, friction=0.4) for s in (0.02, 0.5, 3.98))
+    regions = rg.contact_regions(bracket, below, rg.Wrench([0, -1]))
+    ax = plots.plot_contact_regions(regions)
+    above = {
+        line.get_zorder(): np.ptp(line.get_xydata()[:, 0]) for line in ax.lines if line.get_gid() == "region"
+    }
+    assert len(above) == 3
+    assert [above[order] for order in sorted(above)] == pytest.approx(sorted(regions.widths, reverse=True))
+
+
 def test_maps_show_values_where_fingers_hold_and_a_ring_at_the_best() -> None:
     found = rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, count=16)
     ax = plots.plot_placement_map(found, units=plots.Units("mm", "N", "s"))

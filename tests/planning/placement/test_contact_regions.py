@@ -47,6 +47,15 @@ def test_every_choice_within_regions_holds_and_corners_are_the_limit() -> None:
     )
 
 
+def test_a_load_in_the_middle_of_fingers_is_held_by_the_least_forces() -> None:
+    """The largest wrenches of all fingers to either side are in one plane with such a load."""
+    for (first, second), friction in product(((0.02, 0.5), (0.1, 0.5), (0.55, 1.2)), (0.2, 0.3, 0.4, 0.7)):
+        places = (first, second, 3 * 1.5 - first - second)
+        grasp = rg.Grasp(BRACKET.contact_at(s, friction=friction) for s in places)
+        regions = rg.contact_regions(BRACKET, grasp, rg.Wrench([0, -1]))
+        assert regions.max_force == pytest.approx(3 * 1 / 3, rel=2e-5)
+
+
 def test_one_finger_alone_goes_farther_than_all_at_once() -> None:
     regions = rg.contact_regions(BRACKET, GRASP, RING)
     room = np.abs(np.array([[0, 4], [5, 8], [8, 10]]) - regions.places[:, None])  # to the ends of the sides
@@ -128,3 +137,52 @@ def test_what_has_no_regions_is_refused() -> None:
     ):
         asked = {"shape": BRACKET, "grasp": GRASP, "load": RING} | more
         assert words in str(refusal(lambda asked=asked: rg.contact_regions(**asked)))
+
+
+ELLIPSE = rg.Outline.ellipse(2, 1)
+BOX = rg.Mesh.box(0.04, 0.03, 0.05)
+SHAPES = [
+    (BRACKET, [BRACKET.contact_at(s, friction=0.4) for s in (0.3, 0.5, 3.98)], rg.Wrench([0, -1])),
+    (ELLIPSE, [ELLIPSE.contact_at(s, friction=0.6) for s in (0.5, 3.8, 6.7)], rg.Wrench([0, -1])),
+    (BOX, [BOX.contact_at(p, friction=0.8) for p in ((0.02, 0, 0), (-0.02, 0.01, 0), (-0.02, -0.01, 0))],
+     rg.Wrench([0, 0, -2])),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("shape", "contacts", "load"), SHAPES)
+def test_contacts_given_in_few_digits_are_moved_to_the_boundary(
+    shape: rg.Outline | rg.Mesh, contacts: list[rg.Contact], load: rg.Wrench
+) -> None:
+    rng = np.random.default_rng(3)
+    size = 3e-7 * float(np.abs([c.position for c in contacts]).max())
+
+    def off(of: np.ndarray, by: float) -> np.ndarray:
+        result: np.ndarray = of + by * rng.uniform(-0.5, 0.5, of.shape)
+        return result
+
+    given = rg.Grasp(
+        rg.Contact(off(c.position, size), off(c.normal, 1e-7), c.friction, name=c.name) for c in contacts
+    )
+    regions = rg.contact_regions(shape, given, load)
+    assert rg.verify(regions).ok, rg.verify(regions)
+    assert np.abs(regions.grasp.positions - given.positions).max() <= size
+
+
+def test_limits_of_contacts_are_kept() -> None:
+    """The least of them counts for all fingers."""
+    shape, contacts, load = SHAPES[0]
+    free = rg.contact_regions(shape, rg.Grasp(contacts), load)
+    least = free.max_force / 3
+    limited = rg.Grasp([contacts[0], contacts[1].changed(max_force=2 * least), contacts[2]])
+    regions = rg.contact_regions(shape, limited, load, max_force=2.5 * least)
+    assert regions.max_force == pytest.approx(2 * least, rel=1e-5)
+    assert regions.max_force <= 2 * least
+    assert rg.verify(regions).ok
+    assert rg.contact_regions(shape, limited, load, max_force=1.5 * least).max_force <= 1.5 * least
+    claimed = replace(free, grasp=rg.Grasp(c.changed(max_force=2.9 * least) for c in free.grasp))
+    assert "above the max_force of P1" in str(rg.verify(claimed))
+    claimed = replace(free, grasp=rg.Grasp(c.changed(max_force=free.max_force) for c in free.grasp))
+    assert rg.verify(claimed).ok
+    tight = rg.Grasp([*contacts[:2], contacts[2].changed(max_force=0.99 * least)])
+    with pytest.raises(rg.Infeasible, match="above max_force"):
+        rg.contact_regions(shape, tight, load)

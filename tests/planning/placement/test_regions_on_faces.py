@@ -21,6 +21,17 @@ def holds(points: list[np.ndarray], limit: float) -> bool:
     return True
 
 
+def test_forces_within_limits_of_the_contacts() -> None:
+    regions = on_faces()
+    for factor, ok in ((1.0, True), (0.999, False)):
+        limit = factor * regions.max_force
+        verdict = rg.verify(
+            replace(regions, grasp=rg.Grasp(c.changed(max_force=limit) for c in regions.grasp))
+        )
+        assert verdict.ok is ok
+    assert "above the max_force of" in str(verdict)
+
+
 def test_every_choice_within_regions_holds_and_not_within_wider_ones() -> None:
     regions = on_faces()
     verdict = rg.verify(regions)

@@ -24,7 +24,7 @@ from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.loads import check_planar, inner_and_outer
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
-from regrasp.planning.placement.sides import Sides
+from regrasp.planning.placement.sides import Sides, moved
 from regrasp.planning.placement.space.choosing import check_space
 from regrasp.planning.placement.space.face_regions import FaceRegions, regions_on_faces
 from regrasp.planning.states.choosing import choose_state
@@ -121,10 +121,12 @@ def contact_regions(
 
     Args:
         shape: a polygon, a smooth outline, or a mesh of flat faces.
-        grasp: contacts on its outer boundary, all of one friction, relative to the centre of mass; up to six,
-            on a mesh three or four, away from edges.
+        grasp: contacts on its outer boundary to a millionth, all of one friction, relative to the centre of
+            mass; up to six, on a mesh three or four, away from edges. Regions are around the points of the
+            boundary that are nearest to them.
         load: external wrench on the object about its centre of mass, or a set of them [N, N m].
-        max_force: limit on every force [N]; three times the least that the grasp needs if not given.
+        max_force: limit on every force, beside those of the contacts, of which the least counts for all [N];
+            three times the least that the grasp needs if there is none.
         widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
             ``product`` of all arcs; the last two on polygons, by trading one end of an arc for others while
             that helps, which nothing proves the largest.
@@ -141,7 +143,10 @@ def contact_regions(
     refuse_limits(grasp, "a search for regions")
     if len(set(grasp.frictions.tolist())) > 1:
         raise InvalidInput("contacts of a grasp with regions must all have the same friction")
-    given = None if max_force is None else number(max_force, "max_force", above=0)
+    limits = [c.max_force for c in grasp if c.max_force is not None]
+    if max_force is not None:
+        limits.append(number(max_force, "max_force", above=0))
+    given = min(limits, default=None)
     if not isinstance(widest, str) or widest not in _POWERS:
         raise InvalidInput(f"widest must be one of {', '.join(_POWERS)}; got {shown(widest)}")
     straight = isinstance(shape, Outline) and isinstance(shape.boundary, PolygonBoundary)
@@ -158,6 +163,8 @@ def contact_regions(
     kept = float(grasp.frictions[0]) * (1 - _LESS)
     search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
     limit = _limit(search.norm_at(places, u), given)
+    at = (sides.contact(int(side), v, kept, "at") for side, v in zip(places, u, strict=True))
+    grasp = Grasp(map(moved, grasp, at))
     return _widest(shape, grasp, search, places, u, limit, _POWERS[widest])
 
 
@@ -165,11 +172,12 @@ def _limit(least: float, given: float | None) -> float:
     """Of forces, where a grasp needs ``least``."""
     if not least < np.inf:
         raise Infeasible(
-            "the grasp itself does not hold the loads with a millionth of its friction kept back"
+            "the grasp itself holds the loads not at all, or on a knife's edge, with a millionth of its "
+            "friction kept back"
         )
     if given is None and least == 0.0:
         raise InvalidInput("no force follows from a zero load: give max_force")
-    limit = PEAK_RATIO * least if given is None else given
+    limit = PEAK_RATIO * least if given is None else given * (1 - _LESS)
     if least > limit:
         raise Infeasible(f"the grasp itself needs a force of {least:.6g} N, above max_force {limit:.6g} N")
     return limit

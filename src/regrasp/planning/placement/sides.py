@@ -117,6 +117,14 @@ class Sides(ArrayValue):
         return Contact(point, [-tangent[1] + 0.0, tangent[0]], friction, name=name)
 
 
+def moved(contact: Contact, to: Contact) -> Contact:
+    """A contact at the place of another."""
+    return Contact(
+        to.position, to.normal, contact.friction, max_force=contact.max_force, torsion=contact.torsion,
+        name=contact.name,
+    )  # fmt: skip
+
+
 @dataclass(frozen=True, eq=False)
 class RingSides(Sides):
     """Stretches of the edges of a polygon and of its holes, the material on the left of each.

@@ -101,13 +101,14 @@ def plot_contact_regions(
     ):
         colour, name = colours[contact.name or ""], contact.name or ""
         _cone(ax, contact, 0.6 * _CONE * size, colour)
-        for start, end, points, alpha, gid in (
-            (place - back, place + ahead, 7, 0.3, "alone"),
-            (lo, hi, 4, 0.85, "region"),
+        narrow = 3 + 0.9 * max(1 - width / regions.shape.length, 0.0)  # arcs that share an edge are all seen
+        for start, end, points, alpha, above, gid in (
+            (place - back, place + ahead, 7, 0.3, 2.9, "alone"),
+            (lo, hi, 4, 0.85, narrow, "region"),
         ):
             arc = regions.shape.points(np.linspace(start, end, 2 if regions.spans is None else 60))
             look = Line2D(
-                *arc.T, color=colour, linewidth=points, solid_capstyle="butt", alpha=alpha, zorder=3
+                *arc.T, color=colour, linewidth=points, solid_capstyle="butt", alpha=alpha, zorder=above
             )
             look.set_gid(gid)
             ax.add_line(look)

@@ -76,7 +76,7 @@ class Regions(Protocol):
 
 def verify_regions(regions: Regions) -> Verification:
     """The verdict on regions: that wherever in them the fingers are, they hold the loads of the corners."""
-    broken = _check_corners(regions)
+    broken = _check_corners(regions) + above_own(regions.grasp, regions.max_force)
     residuals, slacks, angles = [0.0], [inf], [inf]
     for i, state in enumerate(regions.corners, 1):
         residual, slack, violations = check_state(state, f"corner state {i}")
@@ -94,6 +94,15 @@ def above(forces: Array, limit: float) -> list[str]:
     if limit >= 0 and (limit == inf or largest <= Fraction(limit) ** 2):
         return []
     return [f"a force of {root(largest):.12g} is above {limit:.12g}"]
+
+
+def above_own(grasp: Grasp, limit: float) -> list[str]:
+    """That a limit on every force is not within the limits of contacts."""
+    return [
+        f"forces may be {limit:.12g}, above the max_force of {contact.name}"
+        for contact in grasp
+        if contact.max_force is not None and not limit <= contact.max_force
+    ]
 
 
 def _check_corners(regions: Regions) -> list[str]:

@@ -37,7 +37,7 @@ _ARTIFICIAL = 1e9  # 1 / size of the rows to begin with, which no forces make
 _CLOSE = 1e-11
 _MOST = 80
 _ROUNDING = 1e-13  # of the terms of a sum
-_PIVOT = 1e-13
+_PIVOT = 1e-13  # of a row, by which another has to consist of it to take its place
 _MISSED = 1e-7  # of a load, by which forces may be off it
 
 
@@ -236,8 +236,10 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
         if not _solve(g, new, spare, d):  # new = sum d_j g_j; the row whose weight vanishes first leaves
             break
         leaving, ratio = -1, np.inf
+        least = _PIVOT * (abs(new[0]) + abs(new[1]) + abs(new[2]))
         for c in range(3):
-            if d[c] > _PIVOT and max(x[c], 0.0) < ratio * d[c]:
+            part = d[c] * (abs(g[c, 0]) + abs(g[c, 1]) + abs(g[c, 2]))
+            if part > least and max(x[c], 0.0) < ratio * d[c]:
                 leaving, ratio = c, max(x[c], 0.0) / d[c]
         if leaving < 0:
             break

@@ -23,7 +23,7 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.placement.curves.curved_sides import CurvedSides, curved_sides
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.search import Search
-from regrasp.planning.placement.sides import Sides
+from regrasp.planning.placement.sides import Sides, moved
 from regrasp.planning.states.choosing import choose_state
 
 ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
@@ -40,13 +40,15 @@ class CurvedPlaces:
     def __init__(self, shape: Outline, grasp: Grasp, loads: Array) -> None:
         control = shape.cubics()
         assert control is not None
-        self.shape, self.grasp, self.loads = shape, grasp, loads
+        self.shape, self.loads = shape, loads
         self.sides: CurvedSides = curved_sides(shape, control)
         self.places = np.array([shape.nearest(c.position + shape.centre_of_mass) for c in grasp])
         for contact, s in zip(grasp, self.places, strict=True):
             away = np.hypot(*(shape.points(s) - contact.position)) / self.sides.size
             if away + np.hypot(*(shape.normals(s) - contact.normal)) > ON_CURVE:
                 raise InvalidInput(f"contact {contact.name} is not on the outline, with its inward normal")
+        at = [shape.contact_at(float(s), friction=0.0) for s in self.places]
+        self.grasp = Grasp(map(moved, grasp, at))
 
     def spans(self, box: Array) -> Array:
         """(k, 2) the u of arc lengths (k, 2), which may run past the start."""

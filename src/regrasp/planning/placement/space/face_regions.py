@@ -16,6 +16,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.sides import moved
 from regrasp.planning.placement.space.face_pieces import FacePlace, place_on
 from regrasp.planning.states.choosing import choose_state
 
@@ -79,6 +80,7 @@ def regions_on_faces(
 ) -> FaceRegions:
     """What ``contact_regions`` finds on a mesh; limit_of: of forces, where a grasp needs so much."""
     search = _Regions(mesh, grasp, loads)
+    grasp = search.grasp
     limit = search.limit = limit_of(search.need(), given)
     k, far = len(grasp), float(np.linalg.norm(mesh.size))
     none = np.zeros(k)
@@ -110,8 +112,10 @@ class _Regions:
                 f"regions on faces are of three or four fingers, got {len(grasp)}: two points hold no torque "
                 "about the line through them"
             )
-        self.grasp, self.loads = grasp, loads
+        self.loads = loads
         self.places: list[FacePlace] = [place_on(mesh, contact) for contact in grasp]
+        at = [Contact(p.point, np.cross(*p.axes), 0.0) for p in self.places]
+        self.grasp = Grasp(map(moved, grasp, at))
         self.alpha = atan(float(grasp.frictions[0]) * (1 - _KEPT))
         self.size = float(np.linalg.norm(mesh.surface()[0], axis=1).max())
         self.unit = float(np.abs(loads / np.repeat([1.0, self.size], 3)).max()) or 1.0

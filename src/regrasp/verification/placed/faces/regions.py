@@ -29,6 +29,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.verification.placed.faces.corners import Corners
 from regrasp.verification.placed.faces.polygons import polygon_wrong
+from regrasp.verification.placed.regions import above_own
 from regrasp.verification.verdict import Verification
 
 _IDLE = 1e-12  # of max_force: a force has no angle
@@ -91,7 +92,7 @@ class FaceRegions(Protocol):
 
 def verify_face_regions(regions: FaceRegions) -> Verification:
     """The verdict: that wherever in their polygons the fingers are, they hold the loads."""
-    broken = _shapes_wrong(regions)
+    broken = _shapes_wrong(regions) or above_own(regions.grasp, regions.max_force)
     if broken:
         return Verification(tuple(broken), inf, -inf, -inf)
     vertices, faces = regions.shape.surface()
