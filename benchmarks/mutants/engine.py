@@ -135,6 +135,7 @@ class Engine:
         kept = {(row["test"], row["print"]): row for row in rows}
         took = {(row["test"], row["print"][:_PRINT]): row["seconds"] for row in rows}
         found = []
+        builtins.__entered__ = set().add  # type: ignore[attr-defined] # modules call functions of their own
         for path in self.modules:
             swap(path, _instrumented(path))
         remembering = [function for path in self.modules for function in _caches(path)]

@@ -106,9 +106,7 @@ def _solved(
 
     def answered(given: Program) -> Solution:
         claim = ask(given)
-        # Of a program that hardly lacks a point what is stopped at may look like one.
-        allowed = entry.tolerance if claim.status is Status.SOLVED else min(entry.tolerance, PROVEN)
-        solution = judged(claim, allowed, feasibility)
+        solution = judged(claim, entry.tolerance, feasibility)
         if solution.status in _DOUBTFUL and claim.status is not Status.SOLVED and not limit.is_over:
             from regrasp.programs.judging.elastic import proven_anyway
 

@@ -109,6 +109,35 @@ def test_who_fails_is_asked_in_own_units(monkeypatch, backend, solved) -> None:
         assert (found.status, found.said) == (Status.STOPPED, "so")
 
 
+@pytest.mark.parametrize(("scale", "far"), [(1.0, False), (2.0**-30, False), (1.0, True)])
+@pytest.mark.parametrize(("off", "is_one"), [(0.999e-8, True), (1.001e-8, False)])
+def test_where_a_solver_stopped_is_a_solution_as_certificates_are_proofs(
+    monkeypatch, scale, far, off, is_one
+) -> None:
+    """x <= 1 and x >= 1 + d, stopped between; also in own units, and without a far bound."""
+
+    def halfway(p, d):
+        return told(p, Status.STOPPED, [-p.b[0] * (1 - d / 2)], np.zeros(p.b.size))
+
+    def program(d):
+        rows = Rows(1)
+        rows.at_least_zero([[1.0], [-1.0]], [-scale * (1 + d), scale])
+        if far:
+            rows.at_least_zero([[-1.0]], 1e9)
+        return rows.program([0.0])
+
+    d = off * 1e-3 / halfway(program(1e-3), 1e-3).residual
+    p = program(d)
+    asked = Asked(
+        monkeypatch,
+        lambda p: failed(p, "told", "no") if p.q.size == 2 or p.b.size == 3 else halfway(p, d),
+    )
+    answer = solve(p, "auto" if far else "clarabel", throw=False)
+    assert (answer.status is Status.SOLVED) is is_one
+    assert answer.status in (Status.SOLVED, Status.STOPPED, Status.FAILED)
+    assert [q.b.size for q in asked if q.q.size == 1][-1] == 2
+
+
 def test_who_takes_second_order_cones_is_named() -> None:
     rows = Rows(1)
     rows.second_order([[1.0], [0.0]])

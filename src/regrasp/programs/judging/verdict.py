@@ -25,6 +25,8 @@ def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], 
 
     allowed: largest measure of a solution. feasibility: finds a point of a program, or proves that none is.
     """
+    if solution.status is Status.STOPPED:
+        allowed = min(allowed, PROVEN)  # near rows that contradict each other any point may look like one
     if solution.status is Status.SOLVED or solution.status is Status.STOPPED:
         if solution.residual <= allowed:
             # It may have stopped short of its own, tighter tolerances; value and duals prove each other.
