@@ -22,7 +22,7 @@ def points_at(arc_lengths: Array, vertices: Array, control: Array | None, rings:
         chords = vertices[after_each(len(vertices), rings)] - vertices
         lengths = np.hypot(*chords.T)
     else:
-        lengths = np.array([_length(edge, 1.0) for edge in control])
+        lengths = lengths_to(control, np.ones(len(control)))
     ends = np.cumsum(lengths)
     points = []
     for s in np.asarray(arc_lengths, dtype=float) % ends[-1]:
@@ -35,20 +35,24 @@ def points_at(arc_lengths: Array, vertices: Array, control: Array | None, rings:
     return np.array(points)
 
 
+def lengths_to(control: Array, ends: Array) -> Array:
+    """(m,) of cubics from their beginnings to parameters.
+
+    control: (m, 4, 2) [m]. ends: (m,) from 0 to 1.
+    """
+    panels = (np.arange(_PANELS)[:, None] + (1 + _NODES) / 2) / _PANELS
+    t = ends[:, None, None, None] * panels[..., None]
+    d = 3 * np.diff(control, axis=1)[:, :, None, None]
+    x, y = np.moveaxis((1 - t) ** 2 * d[:, 0] + 2 * t * (1 - t) * d[:, 1] + t**2 * d[:, 2], -1, 0)
+    result: Array = ends / (2 * _PANELS) * (np.hypot(x, y) * _WEIGHTS).sum(axis=(1, 2))
+    return result
+
+
 def _at_length(edge: Array, passed: float) -> Array:
     lo, hi = 0.0, 1.0
     for _ in range(_BISECTIONS):
         middle = (lo + hi) / 2
-        lo, hi = (middle, hi) if _length(edge, middle) < passed else (lo, middle)
+        lo, hi = (middle, hi) if lengths_to(edge[None], np.array([middle])) < passed else (lo, middle)
     t, s = lo, 1 - lo
     result: Array = s**3 * edge[0] + 3 * s * s * t * edge[1] + 3 * s * t * t * edge[2] + t**3 * edge[3]
     return result
-
-
-def _length(edge: Array, end: float) -> float:
-    """Of a cubic from its beginning to a parameter."""
-    panels = end * (np.arange(_PANELS)[:, None] + (1 + _NODES) / 2) / _PANELS
-    t = panels.ravel()[:, None]
-    d = 3 * np.diff(edge, axis=0)
-    speed = np.hypot(*((1 - t) ** 2 * d[0] + 2 * t * (1 - t) * d[1] + t**2 * d[2]).T)
-    return float(end / (2 * _PANELS) * (speed.reshape(_PANELS, -1) @ _WEIGHTS).sum())

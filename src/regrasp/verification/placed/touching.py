@@ -5,9 +5,10 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.arc_lengths import lengths_to
 from regrasp.verification.placed.protocol import Proof, after_each
 
-_POINTS = 33  # of a curved side, from which the method of Gauss and Newton starts
+_POINTS = 33  # of a side, from which the method of Gauss and Newton starts
 _STEPS = 8
 
 
@@ -26,7 +27,6 @@ class Touching:
             self._control = np.asarray(proof.control)
         self._control = self._control - proof.centre_of_mass
         self.reach = float(np.hypot(*self._control.reshape(-1, 2).T).max())
-        self._straight = proof.control is None
 
     def __contains__(self, contact: Contact) -> bool:
         """Whether a contact is on one of them, with its inward normal."""
@@ -42,12 +42,7 @@ class Touching:
     def _nearest(self, control: Array, point: Array) -> Array:
         """(m,) the parameters of the nearest points, to all digits of a point that is on a side."""
         lo, hi = self._lo, self._hi
-        if self._straight:
-            along = control[:, 3] - control[:, 0]
-            foot = ((point - control[:, 0]) * along).sum(axis=1) / (along**2).sum(axis=1)
-            result: Array = np.clip(foot, lo, hi)
-            return result
-        grid = lo + (hi - lo) * np.linspace(0, 1, _POINTS)[:, None]
+        grid = np.linspace(lo, hi, _POINTS)
         away = np.array([np.hypot(*(_at(control, t) - point).T) for t in grid])
         t: Array = grid[away.argmin(axis=0), np.arange(len(lo))]
         for _ in range(_STEPS):
@@ -58,15 +53,9 @@ class Touching:
     @property
     def share(self) -> float:
         """The part of the boundary that they are."""
-        every = np.arange(len(self._control))
-        whole = self._lengths(every, np.zeros(len(every)), np.ones(len(every)))
-        return float(self._lengths(self._edges, self._lo, self._hi).sum() / whole.sum())
-
-    def _lengths(self, edges: np.ndarray, lo: Array, hi: Array) -> Array:
-        grid = lo + (hi - lo) * np.linspace(0, 1, 2 if self._straight else _POINTS)[:, None]
-        chords = np.diff(np.array([_at(self._control[edges], t) for t in grid]), axis=0)
-        result: Array = np.hypot(chords[..., 0], chords[..., 1]).sum(axis=0)
-        return result
+        whole = lengths_to(self._control, np.ones(len(self._control))).sum()
+        control = self._control[self._edges]
+        return float((lengths_to(control, self._hi) - lengths_to(control, self._lo)).sum() / whole)
 
 
 def _at(control: Array, t: Array) -> Array:
