@@ -17,7 +17,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.threads import threads
 
 _PARTS = 4
-_EACH = 256  # boxes that a part looks at in a round
+_EACH = 256  # boxes that a part looks at in a round, at most
 _FROM = 4096  # boxes: smaller searches stay in one part, and as quick as they are
 _OPEN = 64  # boxes of a part at least, or the first of them are much better than what is split after them
 
@@ -55,21 +55,21 @@ class Queue:
         return len(self.boxes[2]) - int(self.state[0]) >= _PARTS * _stretch(self.fingers)
 
 
-def search_in_parts(whole: Queue, search: PartSearch) -> list[int]:
-    """One round; why each part ended. There is room for it (``has_room``)."""
+def search_in_parts(whole: Queue, search: PartSearch, each: int = _EACH) -> list[int]:
+    """One round of ``each`` boxes a part; why each part ended. There is room for it (``has_room``)."""
     # an interrupt reaches the main thread alone, and the round is whole before it ends the search
     with ThreadPoolExecutor(1 + threads()) as pool:
-        return pool.submit(_round, whole, search, pool).result()
+        return pool.submit(_round, whole, search, pool, min(each, _EACH)).result()
 
 
-def _round(whole: Queue, search: PartSearch, pool: ThreadPoolExecutor) -> list[int]:
+def _round(whole: Queue, search: PartSearch, pool: ThreadPoolExecutor, each: int) -> list[int]:
     made, stretch = int(whole.state[0]), _stretch(whole.fingers)
     waiting = _ordered(whole.heap[: whole.state[1]], whole.boxes)
     best, rest = np.split(waiting, [_PARTS * _EACH])
     dealt = [best[i::_PARTS] for i in range(_PARTS)]
     starts = [made + i * stretch for i in range(_PARTS)]
     parts = [_part(whole, nodes, start) for nodes, start in zip(dealt, starts, strict=True)]
-    ended = list(pool.map(lambda part: search(part, _EACH), parts))
+    ended = list(pool.map(lambda part: search(part, each), parts))
     left = [rest]
     for part, nodes, start in zip(parts, dealt, starts, strict=True):
         left.append(_put_back(whole, part, nodes, start))

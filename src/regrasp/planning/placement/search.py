@@ -16,7 +16,7 @@ from regrasp.planning.placement.sides import RingSides, Sides
 MOST_BOXES = 200_000
 """Boxes of a search unless told otherwise: about 500 bytes each for three fingers."""
 _FIRST_BOXES = 2048
-_AT_A_TIME = 256
+_AT_A_TIME, _LOADS = 256, 100  # boxes, under so many loads
 _TRIED = 4096
 _LATE = 4096  # boxes without any placement found, after which points are tried
 _POINTS = {2: 60, 3: 24, 4: 14}  # of so many fingers: about 2,000 placements
@@ -107,16 +107,17 @@ class Search:
                 spare(self.fingers, len(self._wanted)),
             ))  # fmt: skip
 
+        each = max(_AT_A_TIME * _LOADS // max(_LOADS, len(self._wanted)), 1)  # lest an interrupt waits
         found = np.zeros_like(self._found) if only else self._found
         queue = Queue(self._boxes, self._heap, self._state, found, self._tried)
         if not only and queue.is_for_parts:
             while not queue.has_room and self._grow(most):
                 queue.boxes, queue.heap = self._boxes, self._heap
             if queue.has_room:
-                ended = search_in_parts(queue, part)
+                ended = search_in_parts(queue, part, each)
                 if any(end != CLOSED for end in ended):
                     return True
-        ended_by = part(queue, _AT_A_TIME)
+        ended_by = part(queue, each)
         self.closed = ended_by == CLOSED
         return not self.closed and (ended_by != FULL or self._grow(most))
 

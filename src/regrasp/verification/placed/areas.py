@@ -9,6 +9,7 @@ from regrasp.mechanics.checks import Array
 
 _ON = 1e-9  # of the reach: a triangle is on a face
 _MISSED = 1e-6  # of an area: what triangles may be beside faces, or over one another
+_ASLANT = np.array([0.36, 0.48, 0.8])  # a direction that few faces are at right angles to
 
 
 def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> float:
@@ -18,7 +19,7 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
     """
     t = np.asarray(vertices)[np.asarray(faces)]
     cross = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
-    whole = np.linalg.norm(cross, axis=1) / 2
+    whole, sizes = _areas(t), _areas(np.asarray(corners))
     surface, reach = _Flat(t, -cross / (2 * whole)[:, None]), float(np.abs(vertices).max())
     given = _Flat(np.asarray(corners), np.asarray(normals))
     used, covered = set[int](), 0.0
@@ -28,7 +29,7 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
         if np.abs(flat).max() > _ON * reach or not len(on):
             return -1.0
         same = on[np.abs(t[on] - triangle).max(axis=(1, 2)) <= _ON * reach]
-        size = _area(given.corners[k])
+        size = sizes[k]
         if len(same):
             if int(same[0]) in used:
                 return -1.0
@@ -43,7 +44,7 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
             ):
                 return -1.0
         covered += size
-    return covered / float(whole.sum())
+    return float(covered / whole.sum())
 
 
 class _Flat:
@@ -53,19 +54,38 @@ class _Flat:
         self.corners, self.normals = corners, normals
         self._centres = corners.mean(axis=1)
         self._least, self._most = corners.min(axis=1), corners.max(axis=1)
+        # what lies together does along any direction: so of many few are looked at
+        along = normals @ _ASLANT
+        self._by_normal = np.argsort(along, kind="stable")
+        self._facing = along[self._by_normal]
+        heights = corners @ _ASLANT
+        self._by_height = np.argsort(heights.min(axis=1), kind="stable")
+        self._lowest = heights.min(axis=1)[self._by_height]
+        self._reached = np.maximum.accumulate(heights.max(axis=1)[self._by_height])
 
     def beside(self, triangle: Array, normal: Array, reach: float) -> np.ndarray:
         """Which are in the plane of a triangle, with the same normal, and near it."""
-        found = np.linalg.norm(self.normals - normal, axis=1) <= _ON
-        found &= np.abs((self._centres - triangle.mean(axis=0)) @ normal) <= _ON * reach
-        near = (self._least <= triangle.max(axis=0) + _ON * reach) & (
-            self._most >= triangle.min(axis=0) - _ON * reach
+        some = self._some(triangle, normal, reach)
+        found = np.linalg.norm(self.normals[some] - normal, axis=1) <= _ON
+        found &= np.abs((self._centres[some] - triangle.mean(axis=0)) @ normal) <= _ON * reach
+        near = (self._least[some] <= triangle.max(axis=0) + _ON * reach) & (
+            self._most[some] >= triangle.min(axis=0) - _ON * reach
         )
-        return np.flatnonzero(found & near.all(axis=1))
+        result: np.ndarray = some[found & near.all(axis=1)]
+        return result
+
+    def _some(self, triangle: Array, normal: Array, reach: float) -> np.ndarray:
+        """In order, all that may be beside a triangle, and few of the others."""
+        facing, heights, room = normal @ _ASLANT, triangle @ _ASLANT, 2 * _ON * reach
+        a, b = np.searchsorted(self._facing, [facing - 2 * _ON, facing + 2 * _ON])
+        c = np.searchsorted(self._reached, heights.min() - room)
+        d = np.searchsorted(self._lowest, heights.max() + room)
+        return np.sort(self._by_normal[a:b] if b - a < d - c else self._by_height[c:d])
 
 
-def _area(triangle: Array) -> float:
-    return float(np.linalg.norm(np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2)
+def _areas(t: Array) -> Array:
+    result: Array = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1) / 2
+    return result
 
 
 def _common(one: Array, other: Array, normal: Array) -> float:

@@ -88,3 +88,43 @@ def test_triangles_beside_one_another() -> None:
     assert share(MIDDLE, beside) == pytest.approx((1.125 + 0.01) / 4, rel=1e-9)
     over = [[0.9, 1.5, 0], [1.0, 1.5, 0], [0.9, 1.7, 0]]
     assert share(MIDDLE, over) == share(over, MIDDLE) == -1
+
+
+def test_of_many_triangles_on_many_planes_none_is_missed() -> None:
+    """A strip of 12 planes of 3 by 3 squares, and triangles over half of a plane."""
+    turn = np.array([[0.6, -0.8, 0], [0.48, 0.36, -0.8], [0.64, 0.48, 0.6]])
+    angles = np.repeat(0.3 * np.sin(2.0 * np.arange(12)), 3)
+    across = np.vstack([np.zeros(2), np.cumsum(np.stack([np.cos(angles), np.sin(angles)], axis=1), axis=0)])
+    points = np.array([[x, y, z] for x, z in across for y in range(4)]) @ turn.T
+    faces = np.array(
+        [
+            half
+            for a in (4 * x + y for x in range(36) for y in range(3))
+            for half in ([a, a + 1, a + 4], [a + 1, a + 5, a + 4])
+        ]
+    )
+    planes = np.stack([-np.sin(angles), 0 * angles, np.cos(angles)], axis=1) @ turn.T
+    normals, corners = np.repeat(planes, 6, axis=0), points[faces]
+
+    def on(which: list[int], more=corners[:0], facing=normals[:0]) -> float:
+        return share_of(
+            np.concatenate([corners[which], more]), np.concatenate([normals[which], facing]), points, faces
+        )
+
+    every = list(range(216))
+    shuffled = np.random.default_rng(0).permutation(216).tolist()
+    assert on(every) == pytest.approx(1, rel=1e-9)
+    assert on(shuffled) == pytest.approx(1, rel=1e-9)
+    assert on(shuffled[:54]) == pytest.approx(0.25, rel=1e-9)
+    for k in 0, 215:
+        assert on([*every, k]) == -1
+        lifted = corners[[k]] + 1e-3 * normals[k]
+        assert on([j for j in every if j != k], lifted, normals[[k]]) == -1
+        assert on([j for j in every if j != k], corners[[k]], normals[[(k + 18) % 216]]) == -1
+    for plane in 0, 7:
+        large = points[[12 * plane, 12 * plane + 3, 12 * plane + 12]][None]
+        rest = [j for j in shuffled if j // 18 != plane]
+        facing = normals[[18 * plane]]
+        assert on(rest, large, facing) == pytest.approx(1 - 0.5 / 12, rel=1e-9)
+        assert on([*rest, 18 * plane], large, facing) == -1
+        assert on([*rest, 18 * plane + 17], large, facing) == pytest.approx(1 - (9 - 1) / 18 / 12, rel=1e-9)
