@@ -1,6 +1,7 @@
 """Proofs that a program has no solution: cleaned where nearly right, and then judged whatever their scale."""
 
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from known_programs import known
 from programs_by_hand import nonnegative, program, zero
-from regrasp.programs import Block, Cone, Status, available_backends, solve
+from regrasp.programs import Block, Cone, Rows, Status, available_backends, solve
 from regrasp.programs.facts import BACKENDS
 from regrasp.programs.judging.cleaning import cleaned_direction, cleaned_duals
 from regrasp.programs.judging.proofs import infeasibility_residual, unboundedness_residual
@@ -210,3 +211,33 @@ def test_a_dual_that_a_step_leaves_at_rounding_proves_nothing() -> None:
     given = [0.40265678165853513, 1.525624609441914e-05, -597358.4722383111, 26591.84272842451,
              -1159.9161729793327, 0.0, 51160285.354274504]  # fmt: skip
     assert infeasibility_residual(p, cleaned_duals(p, np.array(given), PROVEN)) > 1e-3
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+def test_what_rounding_hides_proves_nothing_in_any_order(order) -> None:
+    """x - y = 1 and 1e-17 x >= 1e-13 have the point (1e4, 1e4 - 1); with z = 1 A'z is 1e-17 of 1 - 1."""
+    rows = Rows(2)
+    for k in order:
+        row, offset = (([-1.0, 1.0], 1.0), ([1e-17, 0.0], -1e-13), ([1.0, -1.0], -1.0))[k]
+        rows.at_least_zero([row], offset)
+    program = rows.program([0.0, 0.0])
+    assert infeasibility_residual(program, np.ones(3)) == pytest.approx(1e-4, rel=1e-2)
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+def test_no_direction_falls_by_what_rounding_hides(order) -> None:
+    """Along (1, 1, 1) the objective falls by 1e-13 of 2, and the row x - y + 1e-17 w = 0 is left by 1e-17."""
+    rows = Rows(3)
+    rows.equal(np.array([[1.0, 1e-17, -1.0]])[:, list(order)])
+    program = rows.program(np.array([1.0, -1e-13, -1.0])[list(order)])
+    assert unboundedness_residual(program, np.ones(3)) == pytest.approx(1e-4, rel=1e-2)
+
+
+def test_what_cancels_exactly_is_still_a_proof() -> None:
+    """x <= 1 and x >= 1 + 1e-12, by z = 1; the least of (1 - 1e-12) x - y for x = y."""
+    rows = Rows(1)
+    rows.at_least_zero([[-1.0], [1.0]], [1.0, -(1 + 1e-12)])
+    assert infeasibility_residual(rows.program([0.0]), np.ones(2)) == 0
+    falling = Rows(2)
+    falling.equal([[1.0, -1.0]])
+    assert unboundedness_residual(falling.program([1 - 1e-12, -1.0]), np.ones(2)) == 0
