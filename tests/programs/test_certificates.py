@@ -221,7 +221,8 @@ def test_what_rounding_hides_proves_nothing_in_any_order(order) -> None:
         row, offset = (([-1.0, 1.0], 1.0), ([1e-17, 0.0], -1e-13), ([1.0, -1.0], -1.0))[k]
         rows.at_least_zero([row], offset)
     program = rows.program([0.0, 0.0])
-    assert infeasibility_residual(program, np.ones(3)) == pytest.approx(1e-4, rel=1e-2)
+    for size in (1.0, 2.0**40, 2.0**-40):
+        assert infeasibility_residual(program, np.full(3, size)) == pytest.approx(1e-4, rel=1e-2)
 
 
 @pytest.mark.parametrize("order", list(permutations(range(3))))
@@ -230,7 +231,8 @@ def test_no_direction_falls_by_what_rounding_hides(order) -> None:
     rows = Rows(3)
     rows.equal(np.array([[1.0, 1e-17, -1.0]])[:, list(order)])
     program = rows.program(np.array([1.0, -1e-13, -1.0])[list(order)])
-    assert unboundedness_residual(program, np.ones(3)) == pytest.approx(1e-4, rel=1e-2)
+    for size in (1.0, 2.0**40, 2.0**-40):
+        assert unboundedness_residual(program, np.full(3, size)) == pytest.approx(1e-4, rel=1e-2)
 
 
 def test_what_cancels_exactly_is_still_a_proof() -> None:
