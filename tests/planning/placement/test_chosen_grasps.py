@@ -75,7 +75,7 @@ def test_on_a_knifes_edge_the_gap_says_so() -> None:
     chosen = rg.choose_grasp(
         star(4, 9), 2, TILTED, friction=0.5, objective="friction_use", max_force=3.0, most_boxes=2000
     )
-    assert chosen.gap > 1e-3
+    assert chosen.gap > 1e-4
     assert rg.verify(chosen).ok
     # where loads may be a little beside their lines, no such placement is left
     robust = rg.choose_grasp(star(4, 9), 2, TILTED, friction=0.4, load_offset=0.01)
