@@ -10,6 +10,7 @@ import regrasp as rg
 from foreign.beams import withstood
 from proofs import Patches, solid
 from regrasp.errors import InvalidInput
+from regrasp.verification import kinds
 from values import VALUES
 
 pytestmark = pytest.mark.contract
@@ -142,3 +143,21 @@ def test_a_cut_has_no_least_distance_below_zero() -> None:
             assert words.startswith(f"InvalidInput: {name} of a plan must be a number of 0 or more")
     box = VALUES["FaceRegions"]().grasp
     assert "contacts in the plane" in said(SimpleNamespace(**cut | {"contacts": tuple(box)}))
+
+
+def test_numbers_and_rows_at_their_limits() -> None:
+    rows = np.ones((2, 2))
+    for (is_so, _), good, bad in (
+        (kinds._NUMBER, (2**1023 - 1, 0.5, 1), (2**1023, True, "1")),
+        (kinds._DOUBLE, (2**63 - 1, 0.5, nan), (2**63, None)),
+        (kinds._LEAST_0, (0, 0.0, 5e-324), (-5e-324, inf, nan)),
+        (kinds._COUNT, (0, 1, 63, 2**31 - 1), (-1, 2**31, 1.0)),
+        (kinds._ROW, ((), [1, 0.5], np.ones(2)), ([1, "a"], rows, np.ones(2, dtype=complex))),
+        (kinds._ARRAY, (rows, np.array(1)), (rows.astype(np.longdouble), [1.0])),
+        (kinds._POINT, (np.ones(2),), (np.ones(3), [1.0, 1.0])),
+        (kinds._RINGS, ((), (rows,), [rows]), ((np.ones((2, 3)),), (1,))),
+        (kinds._OUTLINE, (np.ones((3, 2)),), (rows, np.array([[nan, 0], [1, 0], [0, 1]]))),
+        (kinds._CUBICS, (np.ones((1, 4, 2)), np.ones((3, 4, 2))), (np.ones((1, 5, 2)), np.ones((1, 4, 3)))),
+    ):  # fmt: skip
+        assert all(is_so(value) for value in good), good
+        assert not any(is_so(value) for value in bad), bad

@@ -103,7 +103,7 @@ def test_places_that_touch_their_limits() -> None:
     shape = SimpleNamespace(cubics=lambda: None, polygon=lambda: SQUARE, hole_polygons=lambda: (near[::-1],))
 
     def told(shape=shape, **changes):
-        proof = planar(rings["vertices"], [[0, 0, 0]], [NODE], **{"rings": rings["rings"]} | changes)
+        proof = planar(**rings | {"loads": [[0, 0, 0]], "nodes": [NODE]} | changes)
         given = {"shape": shape, "places": (24.0, 10.0), "certificate": proof}
         return "; ".join(claims._check_places(chosen("answered", **given), proof))
 
@@ -116,6 +116,14 @@ def test_places_that_touch_their_limits() -> None:
     turned = SimpleNamespace(**vars(shape) | {"hole_polygons": lambda: (near,)})
     assert told(turned) == "the proof is about another outline"
     assert told(SimpleNamespace(surface=lambda: ([], []))) == "the proof is about an outline"
+    second = {"vertices": np.concatenate([rings["vertices"], near / 4]), "rings": np.array([0, 4, 8])}
+    holes = SimpleNamespace(**vars(shape) | {"hole_polygons": lambda: (near[::-1], near[::-1] / 4)})
+    assert told(holes, **second) == ""
+    edges = np.stack([SQUARE, SQUARE / 2, np.roll(SQUARE, -1, 0) / 2, np.roll(SQUARE, -1, 0)], axis=1)
+    for control, good in (edges, True), (np.nextafter(edges, 9), False):
+        curved = SimpleNamespace(**vars(shape) | {"cubics": lambda control=control: control})
+        words = told(curved, vertices=SQUARE, control=edges, rings=None)
+        assert (words == "the proof is about another outline") != good
     floor = np.array([[0, 0, 1.0], [2, 2, 3.0]])
     assert "on none of the sides" in told(sides=floor)
 
@@ -140,5 +148,28 @@ def test_loads_between_those_of_states_are_shown() -> None:
     assert shown([0, -1e-6, 0], [0, -1e-6, 0])
     assert not shown([0, -1e-6, 0], [0, -2e-6, 0])
     assert shown([0, -1, 0], [5e-10, -1, 0])
+    assert shown([0, -100, 0], [2e-8, -100, 0])
     assert not shown([0, -100, 0], [2e-7, -100, 0])
     assert shown([0, 0, 0], [1e-9, 0, 0])
+
+
+def test_spots_that_touch_their_limits(monkeypatch) -> None:
+    grasp = rg.Grasp(rg.Contact([x, 0, 0], [-x, 0, 0], 0.5) for x in (-1, 1))
+    monkeypatch.setattr(claims, "touches", lambda *a: True)
+    shape = SimpleNamespace(surface=lambda: ([], []), centre_of_mass=np.zeros(3))
+    load = SimpleNamespace(load=SimpleNamespace(vector=np.zeros(6)))
+    for share, apart, words in (
+        (0.0, 2 + STEP, ""),
+        (0.5, 2 + 2 * STEP, "two contacts are nearer than the least distance"),
+        (-1.0, 0.0, "the proof is about another mesh"),
+    ):
+        monkeypatch.setattr(claims, "share_of", lambda *a, share=share: share)
+        given = {"corners": 0, "normals": 0, "fingers": 2, "friction": 0.5, "loads": np.zeros((1, 6))}
+        proof = SimpleNamespace(**given, min_distance=apart)
+        made = chosen("peak", grasp=grasp, shape=shape, states=(load,), places=grasp.positions)
+        assert "; ".join(claims._check_spots(made, proof)) == words
+
+
+def test_what_is_said_of_springs() -> None:
+    tied = planar(SQUARE, [[0, 0, 0]], [NODE], tied=np.zeros((0, 3)))
+    assert claims._part(tied) == " of fingers that answer by equal stiffness"

@@ -8,6 +8,7 @@ import pytest
 import regrasp as rg
 from proofs import everything, planar
 from regrasp.planning.placement.levels.moving import MovingTwists
+from regrasp.verification.placed.placements import _Checked
 
 pytestmark = pytest.mark.oracle
 
@@ -72,6 +73,43 @@ def test_what_finger_adds_to_what() -> None:
 )
 def test_what_they_cannot_be(changes, words) -> None:
     assert words in said(moving(**changes))
+
+
+def test_each_finger_has_one_side() -> None:
+    """One of two on two sides is one too many, whichever."""
+    sides = ((0, 0, 1.0), (1, 1, 2.0))
+    proof = moving([[0, 0, -1, 0, 0, 4, 0], [0, 0, 1, 0, 0, -4, 0]], sides=sides[:1])
+    proof = planar(SQUARE, LOADS, [(everything(sides, 2), (0, 0), 0, (0.0,) * 3)], **_changes(proof, sides))
+    assert "shape" not in said(proof)
+    for one in 0, 1:
+        proof.arcs[0] = [[0, 1], [0, 1]]
+        proof.arcs[0][one] = [0, 0]
+        proof.ends[0][one] = [0, 1]
+        assert "more than one side" in _Checked(proof)._excluded(0)[0]
+
+
+def _changes(proof, sides) -> dict[str, object]:
+    given = {
+        name: getattr(proof, name) for name in ("size", "norm", "friction", "bound", "movers", "motions")
+    }
+    return given | {"sides": np.array(sides)}
+
+
+def test_a_quarter_turn_of_all_changes_nothing() -> None:
+    """So that what is added to x is, and at the end of the arc alone."""
+    nodes = [(everything(((0, 0, 1.0),), 1), (0, 0), 0, (0.0, 0.0, 0.0))]
+    turned = np.stack([-SQUARE[:, 1], SQUARE[:, 0]], axis=1)
+    loads = np.array([[1, 0, -1.9375], [1, 0, -2.0625]])
+    for aside, good in (4.0, True), (-4.0, False), (3.75, False):
+        motions = np.array([[0, 0, -1, -aside, 0], [0, 0, 1, 4.0, 0]])
+        proof = planar(turned, loads, nodes, **_changes(moving(), ((0, 0, 1.0),)) | {"motions": motions})
+        assert (said(proof) == "") == good, aside
+
+
+def test_a_bound_of_nothing_needs_no_twist_and_any_other_does() -> None:
+    nothing = np.zeros((2, 5))
+    for bound, good in (0.0, True), (-1.0, True), (1e-300, False), (0.5, False), (1.0, False):
+        assert (said(moving(nothing, bound=bound)) == "") == good, bound
 
 
 def test_twists_are_needed() -> None:
