@@ -225,6 +225,12 @@ def test_what_rounding_hides_proves_nothing_in_any_order(order) -> None:
         assert infeasibility_residual(program, np.full(3, size)) == pytest.approx(1e-4, rel=1e-2)
 
 
+def test_what_is_hidden_in_one_column_is_not_made_good_by_another() -> None:
+    rows = Rows(2)
+    rows.at_least_zero([[-1.0, 1.0], [1e-17, -1e-17], [1.0, -1.0]], [1.0, -1e-13, -1.0])
+    assert infeasibility_residual(rows.program([0.0, 0.0]), np.ones(3)) == pytest.approx(1e-4, rel=1e-2)
+
+
 @pytest.mark.parametrize("order", list(permutations(range(3))))
 def test_no_direction_falls_by_what_rounding_hides(order) -> None:
     """Along (1, 1, 1) the objective falls by 1e-13 of 2, and the row x - y + 1e-17 w = 0 is left by 1e-17."""
