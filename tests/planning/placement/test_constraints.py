@@ -1,11 +1,13 @@
 """Constraints that bounds know nothing of: kept by what is chosen, and the bound stays one."""
 
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
 
 import regrasp as rg
+from refusals import refusal
 
 pytestmark = pytest.mark.oracle
 
@@ -123,6 +125,23 @@ def test_a_finger_can_leave_what_is_chosen_removable() -> None:
 
     assert any(holds(list(pair)) for pair in combinations(chosen.grasp, 2))
     assert rg.verify(chosen).ok
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"keep": lambda p, q, a: [[1], [1, 2]]}, "booleans; it returned [[1], [1, 2]]"),
+        ({"keep": lambda p, q, a: ["x"] * len(p)}, "booleans; it returned ['x'"),
+        ({"keep": lambda p, q, a: np.full(len(p), np.nan)}, "booleans; it returned "),
+        ({"keep": lambda p, q, a: None}, "booleans; it returned None"),
+        ({"max_force": 1.0, "min_normal": 1.1}, "min_normal 1.1 is above max_force 1, which no force meets"),
+        ({"objective": "answered", "max_force": 5.0, "load_offset": 0.1}, "load_offset is of loads"),
+        ({"objective": "wrench", "max_force": 5.0, "load_offset": 0.1}, "load_offset is of loads"),
+    ],
+)
+def test_constraints_that_say_nothing_are_refused(more: dict[str, Any], words: str) -> None:
+    one = rg.Wrench([0, -1])
+    assert words in refusal(lambda: rg.choose_grasp(BRACKET, 2, one, friction=0.4, **more))
 
 
 def test_a_limit_too_low_is_refused_with_a_proof_and_a_filter_without() -> None:

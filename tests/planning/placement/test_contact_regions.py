@@ -183,6 +183,9 @@ def test_limits_of_contacts_are_kept() -> None:
     assert "above the max_force of P1" in str(rg.verify(claimed))
     claimed = replace(free, grasp=rg.Grasp(c.changed(max_force=free.max_force) for c in free.grasp))
     assert rg.verify(claimed).ok
+    limits = rg.ForceLimits([[1.0, 0.0]], [free.max_force])
+    claimed = replace(free, grasp=rg.Grasp(c.changed(limits=limits) for c in free.grasp))
+    assert "P1 has linear limits, which regions do not keep" in str(rg.verify(claimed))
     tight = rg.Grasp([*contacts[:2], contacts[2].changed(max_force=0.99 * least)])
     with pytest.raises(rg.Infeasible, match="above max_force"):
         rg.contact_regions(shape, tight, load)

@@ -41,6 +41,8 @@ def test_what_hangs_on_a_ceiling_needs_least_and_no_sampled_pair_less() -> None:
     outside = rg.choose_grasp(WEDGE, 2, LOADS, friction=0.3)
     found = rg.choose_grasp(WEDGE, 2, LOADS, friction=0.3, in_holes=True)
     assert found.value < 0.99 * outside.value
+    assert "no placement outside of holes on the" in str(rg.verify(outside))
+    assert "holes" not in str(rg.verify(found))
     assert (found.places > WEDGE.length).any()
     sampled = min(cost(rg.Grasp(pair)) for pair in combinations(on_rings(3), 2))
     assert found.bound <= found.value <= sampled * (1 + 1e-3)

@@ -96,6 +96,16 @@ def test_bounds_are_those_of_proofs(objective) -> None:
         assert good or found[0].endswith(f"is below what the proof says, {most:.12g}")
 
 
+@pytest.mark.parametrize("objective", PLAIN)
+def test_bounds_below_zero_prove_zero_and_large_ones_are_compared(objective) -> None:
+    """The square of a bound below 0 is none."""
+    for bound, good in (0.0, True), (1e-300, False), (9.0, False):
+        found = claims._check_bound(chosen(objective, 100.0, bound), proven(-3.0))
+        assert found == ([] if good else [f"bound {bound:.12g} is above what the proof says, 0"])
+    found = claims._check_bound(chosen(objective, 100.0, 1.0), proven(1e200))
+    assert found[0].startswith("value 100 is below what the proof says, 1e+")
+
+
 def test_bounds_are_no_worse_than_values_and_finite() -> None:
     for objective in claims._MEANINGS:
         way, words = (1, "below") if objective in LARGEST else (-1, "above")

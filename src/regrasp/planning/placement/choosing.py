@@ -95,7 +95,8 @@ def choose_grasp(
             another part of the outline [m]; on a curve as seen at 2,000 points of it.
         in_holes: whether fingers may be in the holes of a polygon, too, whose arc lengths go on after the
             outline's, clockwise around one after the other.
-        load_offset: each load may act this far beside its line, to either side [m]. Without it the best
+        load_offset: each load may act this far beside its line, to either side [m]; not with deviations,
+            of ``answered``, ``wrench`` and ``wrench_ball``. Without it the best
             placement may be one where loads balance on a knife's edge: the search tells no places apart that
             are closer than a fraction of ``tolerance``, and leaves a gap there.
         tolerance: gap at which the search ends, as a fraction of the value [-].
@@ -159,6 +160,8 @@ def choose_grasp(
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
+    if offset and goal in ("answered", "wrench", "wrench_ball"):
+        raise InvalidInput(f"load_offset is of loads that are given; {goal} has deviations: put it there")
     level = level_of(goal, mu, load, max_force, disturbance, length_of(goal, length, shape))
     if not isinstance(in_holes, bool) or (in_holes and arcs is not None):
         raise InvalidInput(
@@ -215,6 +218,11 @@ def _check_constraints(constraints: Constraints, goal: str, fingers: int) -> Non
     if not isinstance(constraints.removable, bool):
         raise InvalidInput(f"removable must be True or False, got {shown(constraints.removable)}")
     more = [n for n in ("min_normal", "keep", "removable") if getattr(constraints, n)]
+    if constraints.max_force is not None and constraints.min_normal > constraints.max_force:
+        raise InvalidInput(
+            f"min_normal {constraints.min_normal:g} is above max_force {constraints.max_force:g}, which no "
+            "force meets"
+        )
     if goal in LEVELS and more:
         raise InvalidInput(
             f"{', '.join(more)}: for objectives sum_normal, peak_normal, peak and effort; got {goal!r}"

@@ -25,8 +25,8 @@ def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], 
 
     allowed: largest measure of a solution. feasibility: finds a point of a program, or proves that none is.
     """
-    if solution.status is Status.STOPPED:
-        allowed = min(allowed, PROVEN)  # near rows that contradict each other any point may look like one
+    if solution.status is Status.STOPPED and not _is_point(solution):
+        allowed = min(allowed, PROVEN)
     if solution.status is Status.SOLVED or solution.status is Status.STOPPED:
         if solution.residual <= allowed:
             # It may have stopped short of its own, tighter tolerances; value and duals prove each other.
@@ -37,6 +37,11 @@ def judged(solution: Solution, allowed: float, feasibility: Callable[[Program], 
     if solution.status is Status.UNBOUNDED:
         return _unbounded(solution, feasibility)
     return solution
+
+
+def _is_point(solution: Solution) -> bool:
+    """Whether rows and duals are kept as proofs are: near rows that contradict each other many seem to be."""
+    return max(solution.primal_residual, solution.dual_residual) <= PROVEN
 
 
 def _made_right(solution: Solution, allowed: float, feasibility: Callable[[Program], Solution]) -> Solution:

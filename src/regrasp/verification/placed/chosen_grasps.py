@@ -71,15 +71,11 @@ def verify_chosen(chosen: Chosen) -> Verification:
     else:
         broken += _check_bound(chosen, proof)
         broken += (_check_spots if in_space else _check_places)(chosen, cast(Any, proof))
+    asked = "" if broken else _area(chosen, proof) if in_space else _part(proof, chosen.shape)
     return Verification(
-        tuple(broken),
-        max(residuals),
-        min(angles),
-        min(slacks),
-        excluded=_leaves(proof),
-        bound=chosen.bound,
-        asked="" if broken else _area(chosen, proof) if in_space else _part(proof),
-    )
+        tuple(broken), max(residuals), min(angles), min(slacks), excluded=_leaves(proof), bound=chosen.bound,
+        asked=asked,
+    )  # fmt: skip
 
 
 def verify_proof(proof: Proof) -> Verification:
@@ -106,10 +102,12 @@ def _is_without_margin(chosen: Chosen, proof: Any) -> bool:
     return chosen.objective == "force" and (proof.size, proof.norm) == ("force", "largest")
 
 
-def _part(proof: Proof) -> str:
+def _part(proof: Proof, shape: Any = None) -> str:
     """Which part of the outline the places are on that a proof is about; empty for all of it."""
     share = Touching(proof).share
     tied = "" if proof.tied is None else " of fingers that answer by equal stiffness"
+    if proof.rings is None and len(getattr(shape, "hole_polygons", tuple)()):
+        tied += " outside of holes"
     return tied if share > 1 - _CLOSE else f"{tied} on the {share:.1%} of the outline that was asked about"
 
 
@@ -133,8 +131,7 @@ def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
         if contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")
     positions = chosen.grasp.positions
-    away = np.linalg.norm(positions[:, None] - positions, axis=2)[np.triu_indices(len(positions), 1)]
-    if away.min(initial=inf) < proof.min_distance - float(RESOLUTION) * np.abs(positions).max():
+    if _nearest(positions) < proof.min_distance - float(RESOLUTION) * np.abs(positions).max():
         broken.append("two contacts are nearer than the least distance")
     if not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
@@ -175,10 +172,12 @@ def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:
     if not isfinite(value) or not isfinite(bound):
         return ["value and bound must be finite numbers"]
     if chosen.objective not in _LEVELS:
-        if proof.bound**power > value * (1 + _CLOSE):
-            return [f"value {value:.12g} is below what the proof says, {proof.bound**power:.12g}"]
-        if not Fraction(bound) <= Fraction(proof.bound) ** power * (1 + RESOLUTION):
-            return [f"bound {bound:.12g} is above what the proof says, {proof.bound**power:.12g}"]
+        least = max(proof.bound, 0.0)
+        said, words = Fraction(least) ** power, f"{min(least, 1e150) ** power:.12g}"
+        if said > Fraction(value * (1 + _CLOSE)):
+            return [f"value {value:.12g} is below what the proof says, {words}"]
+        if not Fraction(bound) <= said * (1 + RESOLUTION):
+            return [f"bound {bound:.12g} is above what the proof says, {words}"]
         return []
     if chosen.max_force is None or not 0 < chosen.max_force < inf:
         return ["a level needs the limit of its forces"]
@@ -322,14 +321,16 @@ def _check_places(chosen: Chosen, proof: Proof) -> list[str]:
             broken.append(f"contact {contact.name} is on none of the sides that the proof is about")
         if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")
-    positions = chosen.grasp.positions
-    for i in range(len(positions)):
-        for j in range(i):
-            if np.hypot(*(positions[i] - positions[j])) < proof.min_distance - slack:
-                broken.append("two contacts are nearer than the least distance")
+    if _nearest(chosen.grasp.positions) < proof.min_distance - slack:
+        broken.append("two contacts are nearer than the least distance")
     if chosen.objective not in _ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
     return broken + _off_their_places(chosen, points_at(chosen.places, given, control, proof.rings))
+
+
+def _nearest(positions: Array) -> float:
+    away = np.linalg.norm(positions[:, None] - positions, axis=2)
+    return float(away[np.triu_indices(len(positions), 1)].min(initial=inf))
 
 
 def _all_shown(chosen: Chosen, loads: Array) -> bool:

@@ -52,16 +52,28 @@ def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float
 
 def covered(cells: Array, box: Array) -> bool:
     """Whether cells (c, k, 2) cover a box (k, 2), which can be cut between them, again and again."""
-    if ((cells[:, :, 0] <= box[:, 0]) & (cells[:, :, 1] >= box[:, 1])).all(axis=1).any():
-        return True
+    open_boxes = [(cells, box)]
+    while open_boxes:
+        some, left = open_boxes.pop()
+        if ((some[:, :, 0] <= left[:, 0]) & (some[:, :, 1] >= left[:, 1])).all(axis=1).any():
+            continue
+        halves = _cut(some, left)
+        if not halves:
+            return False
+        open_boxes += halves
+    return True
+
+
+def _cut(cells: Array, box: Array) -> list[tuple[Array, Array]]:
+    """Both parts of a box cut between cells, with the cells in each; empty where each cut meets a cell."""
     for i, (lo, hi) in enumerate(box):
         for cut in cells[:, i, 0]:
             before, after = cells[:, i, 1] <= cut, cells[:, i, 0] >= cut
             if lo < cut < hi and (before | after).all():
                 left, right = box.copy(), box.copy()
                 left[i, 1] = right[i, 0] = cut
-                return covered(cells[before], left) and covered(cells[after], right)
-    return False
+                return [(cells[before], left), (cells[after], right)]
+    return []
 
 
 def chords(control: Array, span: Array) -> float:

@@ -97,12 +97,12 @@ def above(forces: Array, limit: float) -> list[str]:
 
 
 def above_own(grasp: Grasp, limit: float) -> list[str]:
-    """That a limit on every force is not within the limits of contacts."""
+    """That a limit on every force is not within the limits of contacts, or they have others."""
     return [
         f"forces may be {limit:.12g}, above the max_force of {contact.name}"
         for contact in grasp
         if contact.max_force is not None and not limit <= contact.max_force
-    ]
+    ] + [f"{c.name} has linear limits, which regions do not keep" for c in grasp if c.limits is not None]
 
 
 def _check_corners(regions: Regions) -> list[str]:

@@ -110,6 +110,8 @@ class _Patches:
                 if at != first or then != first + some or some + more != count:
                     return [f"proof: the halves of patch {patch} do not cover it"]
                 continue
+            if left in self._part or right in self._part:
+                return [f"proof: a half of patch {patch} is another's"]
             on, t = self._part[patch]
             a, b, o = t[edge], t[(edge + 1) % 3], t[(edge + 2) % 3]
             middle = 0.5 * (a + b)

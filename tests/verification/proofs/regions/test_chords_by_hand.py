@@ -196,3 +196,11 @@ def test_pieces_end_where_the_next_begins() -> None:
     for off, good in (1e-9, True), (-1e-9, False):
         friction = tan(atan(0.5) + atan(0.4) + off)
         assert beside(steps, np.array([0.0, 2]), chord, np.array([0.0, 1]), 0.5, friction) == good
+
+
+def test_cells_may_be_many() -> None:
+    lo = np.arange(1200.0)
+    cells = np.stack([np.stack([lo, lo + 1], axis=1), np.tile([0.0, 3.0], (1200, 1))], axis=1)
+    assert covered(cells, np.array([[0.0, 1200], [0, 3]]))
+    assert not covered(cells, np.array([[0.0, 1200.5], [0, 3]]))
+    assert not covered(np.delete(cells, 700, axis=0), np.array([[0.0, 1200], [0, 3]]))

@@ -120,6 +120,18 @@ def test_a_finger_of_no_polygon_is_at_its_place() -> None:
     assert said([[nan, 0, -1]]) == "A has no polygon"
 
 
+def test_a_place_alone_is_on_a_face_with_its_normal() -> None:
+    away = "A is on no face with its normal"
+    for place, normal, good in (
+        ((0.3, -0.2, -1), UP, True), ((0.3, -0.2, -1), -UP, False), ((0.3, -0.2, 1), UP, False),
+        ((0.3, -0.2, -1.1), UP, False), ((1.1, -0.2, -1), UP, False), ((5.0, 0.3, -0.2), UP, False),
+    ):  # fmt: skip
+        assert said([place], place, normal=normal) == ("" if good else away)
+    for part, good in (0.9, True), (1.1, False):
+        for place in (1 + part * 1e-9 * REACH, 0, -1), (0, 0, -1 - part * 1e-9 * REACH):
+            assert said([place], place) == ("" if good else away)
+
+
 def test_faces_have_the_normal_and_the_plane_of_the_place() -> None:
     assert said(SQUARE, normal=-UP) == OFF
     assert said(SQUARE, vertices=VERTICES * [1, 1, 1.05]) == OFF

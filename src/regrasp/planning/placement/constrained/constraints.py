@@ -10,7 +10,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.errors import Infeasible, InvalidInput, RegraspError, shown
 from regrasp.mechanics.checks import Array, Flags
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
@@ -64,11 +64,15 @@ class Constraints:
         """(m,) which fingers at a first and a second point (m, 2) [m], in their order, may hold together."""
         if self.keep is None:
             return np.ones(len(first), np.bool_)
-        kept = np.asarray(self.keep(first, second, 0.0))
-        if kept.shape != (len(first),):
+        given = self.keep(first, second, 0.0)
+        try:
+            kept = np.asarray(given)
+        except (TypeError, ValueError):
+            kept = np.asarray(None)
+        if kept.shape != (len(first),) or kept.dtype.kind not in "biu":
             raise InvalidInput(
-                f"keep must return which of {len(first)} pairs are allowed, shape ({len(first)},); it "
-                f"returned shape {kept.shape}"
+                f"keep must return which of {len(first)} pairs are allowed, {len(first)} booleans; it "
+                f"returned {shown(given)}"
             )
         return kept.astype(np.bool_)
 

@@ -96,10 +96,8 @@ def ball(
     first, second = np.array(list(combinations(range(3 * k), 2))).T
     facets = np.cross(sides[first], sides[second])
     sizes = np.linalg.norm(facets, axis=1)
-    facets = (
-        facets[sizes > _FLAT * sizes.max(initial=0.0)]
-        / sizes[sizes > _FLAT * sizes.max(initial=0.0)][:, None]
-    )
+    long = sizes > _FLAT * sizes.max(initial=0.0)
+    facets = facets[long] / sizes[long][:, None]
     if not len(facets):
         return 0.0, np.array([0.0, 0.0, 1.0])
     facets = np.vstack([facets, -facets])

@@ -26,8 +26,12 @@ def polygon_wrong(vertices: Array, faces: Any, contact: Contact, patch: Array, r
     """
     name, n, r = contact.name, contact.normal, contact.position
     reach = float(np.linalg.norm(vertices, axis=1).max())
+    flat = _flat(vertices[faces], contact, reach)
+    is_on = bool((away(vertices[faces[flat]], r) <= _CLOSE * reach).any())
     if len(patch) < 3:
-        return [] if radius == 0 and np.abs(patch - r).max() <= _CLOSE * reach else [f"{name} has no polygon"]
+        if radius != 0 or not np.abs(patch - r).max() <= _CLOSE * reach:
+            return [f"{name} has no polygon"]
+        return [] if is_on else [f"{name} is on no face with its normal"]
     sides = np.roll(patch, -1, axis=0) - patch
     lengths = np.linalg.norm(sides, axis=1)
     if (lengths == 0).any():
@@ -42,9 +46,8 @@ def polygon_wrong(vertices: Array, faces: Any, contact: Contact, patch: Array, r
         return [f"the polygon of {name} is not around its place"]
     if np.ptp(up) > _ROUNDING * reach:
         return [f"the polygon of {name} is not flat"]
-    flat = _flat(vertices[faces], contact, reach)
     ends = vertices[_ends(faces[flat])]
-    if not (away(vertices[faces[flat]], r) <= _CLOSE * reach).any() or _within(ends, patch, out, reach).any():
+    if not is_on or _within(ends, patch, out, reach).any():
         return [f"the polygon of {name} is not on faces with its normal"]
     feet = (r + heights[:, None] * out)[heights < radius * (1 - _CLOSE)]
     far = np.linalg.norm(_nearest(ends, r) - feet[:, None], axis=2)
