@@ -11,6 +11,7 @@ from foreign.beams import withstood
 from proofs import Patches, solid
 from regrasp.errors import InvalidInput
 from regrasp.verification import kinds
+from scenarios import planned
 from values import VALUES
 
 pytestmark = pytest.mark.contract
@@ -161,3 +162,68 @@ def test_numbers_and_rows_at_their_limits() -> None:
     ):  # fmt: skip
         assert all(is_so(value) for value in good), good
         assert not any(is_so(value) for value in bad), bad
+
+
+def test_kinds_of_grasps_and_cubics() -> None:
+    planar, spatial = (rg.Grasp([rg.Contact(np.zeros(d), np.eye(d)[0], 0.5)]) for d in (2, 3))
+    for kind, grasp in (kinds._PLANAR, planar), (kinds._SPATIAL, spatial):
+        assert [kind[0](g) for g in (planar, spatial)] == [g is grasp for g in (planar, spatial)]
+    assert kinds._CUBICS[0](np.zeros((1, 4, 2)))
+    assert not kinds._CUBICS[0](np.full((1, 4, 2), None))
+    assert not kinds._is_array(np.zeros(2, dtype=np.longdouble)) or np.dtype(np.longdouble).itemsize == 8
+
+
+def refused(check, value) -> str:
+    try:
+        check(value)
+    except InvalidInput as error:
+        return str(error)
+    return ""
+
+
+def test_transitions_and_regrasps_have_values_of_their_kinds() -> None:
+    whole = {"disturbance": None, "stiffness": None, "early_loss": None}
+    record = {"reserve": 0.1, "balancing": 0.0, "choices": (), "rate_limits": (), "least_normals": ()}
+
+    def transition(**more):
+        scaling = SimpleNamespace(duration=1.0, control=(1.0, 0.0))
+        kept = SimpleNamespace(**record | more)
+        return SimpleNamespace(scaling=scaling, course=None, turn=None, record=kept)
+
+    for withstands, good in (None, True), (SimpleNamespace(**whole), True), ("x", False):
+        words = refused(kinds.check_transition, transition(withstands=withstands))
+        assert words.startswith("" if good else "record.withstands")
+        assert bool(words) != good
+    for name in whole:
+        less = SimpleNamespace(**{n: v for n, v in whole.items() if n != name})
+        assert f"record.withstands.{name}" in refused(kinds.check_transition, transition(withstands=less))
+    assert refused(kinds.check_transition, transition()) == ""
+    plan = {"steps": (), "orientations": (0.0,), "margin": 0.1}
+    for name, value, good in (
+        ("steps", (), True), ("steps", None, False), ("steps", (object(),), False), ("margin", "1", False),
+        ("orientations", "1", False), ("rotations", None, True), ("rotations", np.zeros((1, 3, 3)), True),
+        ("rotations", "1", False), ("steps", (planned(),), True),
+    ):  # fmt: skip
+        words = refused(kinds.check_regrasp, SimpleNamespace(**plan | {name: value}))
+        assert words.startswith(name if not good else "")
+        assert bool(words) != good, (name, value)
+
+
+def test_surfaces_are_vertices_and_triangles() -> None:
+    vertices, faces = np.zeros((4, 3)), np.zeros((2, 3), dtype=int)
+    for value, good in (
+        ((vertices, faces), True), ([vertices, faces], True), ((faces, faces), True), ("ab", False),
+        ((vertices, faces, faces), False), ((vertices,), False), ((vertices[:, :2], faces), False),
+        ((faces, vertices), False), ((vertices, faces[:, :2]), False), ((vertices, faces + 0.0), False),
+        (np.zeros((2, 4, 3)), False), (np.zeros((2, 4, 3), dtype=int), False),
+    ):  # fmt: skip
+        assert kinds._is_surface(value) == good
+
+
+def test_twists_of_cuts_are_planar() -> None:
+    cut = parts(CLAIMS["OutlineCut"]())
+    assert refused(kinds._check_cut, SimpleNamespace(**cut)) == ""
+    for name, columns in ("reached", 3), ("boxes", 6), ("twists", 3):
+        for more in 0, 1:
+            words = refused(kinds._check_cut, SimpleNamespace(**cut | {name: np.zeros((2, columns + more))}))
+            assert (words == "") == (more == 0)
