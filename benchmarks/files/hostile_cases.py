@@ -241,8 +241,8 @@ def of_regions(name: str, regions: rg.ContactRegions) -> Case:
         except (KeyError, TypeError, ValueError, OverflowError):
             return "no regions"
         given = SimpleNamespace(
-            shape=SimpleNamespace(polygon=lambda: ring, cubics=lambda: None), grasp=rg.Grasp.from_dict(grasp),
-            arcs=arcs, places=places, alone=np.zeros((len(arcs), 2)), **numbers,
+            shape=SimpleNamespace(polygon=lambda: ring, cubics=lambda: None, points=lambda s: ring[0]),
+            grasp=rg.Grasp.from_dict(grasp), arcs=arcs, places=places, **numbers, spans=None, cells=None,
             corners=tuple(map(rg.GraspState.from_dict, corners)),
         )  # fmt: skip
         return "\n".join(rg.verify(given).violations)
