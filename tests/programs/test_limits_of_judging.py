@@ -16,6 +16,7 @@ from regrasp.programs.judging.loose_rows import with_loose_rows, without_loose_r
 from regrasp.programs.judging.proofs import infeasibility_residual
 from regrasp.programs.judging.quick import surely_sound
 from regrasp.programs.judging.verdict import MISSED, PROVEN, judged
+from regrasp.programs.solution import Solution
 
 pytestmark = pytest.mark.contract
 
@@ -39,6 +40,22 @@ def test_how_far_outside_is_close(share, inside, r) -> None:
         assert audit == pytest.approx(
             (out, out / 4, 0, out / 2, -0.5, out * r, 0, out, out), rel=1e-5, abs=1e-20
         )
+
+
+@BOTH
+def test_gaps_of_what_stopped_are_the_back_end_s_and_rows_and_duals_are_proofs(share, inside) -> None:
+    """x = -e with z = 1 + e leaves a gap alone; then a row or the duals are off; polished, if not taken."""
+
+    def scaled(x: float, z: float, limit: float) -> Solution:
+        stopped = claim(one(), Status.STOPPED, np.array([x]), np.array([1 + z]))
+        by = share * limit / stopped.residual
+        return claim(one(), Status.STOPPED, np.array([x * by]), np.array([1 + z * by]))
+
+    for x, z, limit in (-1e-6, 1e-6, 1e-6), (1e-8, -1e-8, PROVEN), (0.0, 1e-8, PROVEN):
+        stopped = scaled(x, z, limit)
+        found = judged(stopped, 1e-6, nobody)
+        assert found.status is Status.SOLVED
+        assert (found.said == stopped.said) is inside
 
 
 @BOTH
