@@ -323,3 +323,10 @@ def said_of_changes(
         assert found, (name, at)
         setattr(proof, name, kept)
         yield found
+
+
+def bent(vertices) -> np.ndarray:
+    """(n, 4, 2) control points of cubics along the sides of a polygon (n, 2)."""
+    p = np.array(vertices, dtype=float)
+    q = np.roll(p, -1, axis=0)
+    return np.stack([p, (2 * p + q) / 3, (p + 2 * q) / 3, q], axis=1)

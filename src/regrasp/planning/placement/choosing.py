@@ -183,9 +183,9 @@ def choose_grasp(
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
         best, beyond = run_level(search, level, around * tolerance, most, progress)
-        straight = isinstance(level, FrictionLevel) and not isinstance(sides, CurvedSides)
-        straight = straight and not search.interrupted
-        if best is not None and straight and beyond > level.beyond(best, 1.1 * around * tolerance):
+        on_sides = isinstance(level, FrictionLevel) and not isinstance(sides, CurvedSides)
+        more = on_sides and not search.interrupted
+        if best is not None and more and beyond > level.beyond(best, 1.1 * around * tolerance):
             search, beyond = closed_by_moving(search, level, best, beyond, around * tolerance, most, progress)
         if isinstance(level, WithstoodLevel) and best is not None and not search.interrupted:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)

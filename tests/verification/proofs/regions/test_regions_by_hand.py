@@ -10,18 +10,13 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from proofs import bent
 from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.placed.curved_regions import point_at
 
 pytestmark = pytest.mark.oracle
 
 SLACK = float(RESOLUTION)
-
-
-def bent(vertices) -> np.ndarray:
-    p = np.array(vertices, dtype=float)
-    q = np.roll(p, -1, axis=0)
-    return np.stack([p, (2 * p + q) / 3, (p + 2 * q) / 3, q], axis=1)
 
 
 @dataclass(frozen=True)
