@@ -42,8 +42,7 @@ def outlines() -> Iterator[tuple[str, rg.Outline]]:
         yield f"gear of {teeth}", _polar(angle, np.where(np.arange(4 * teeth) % 4 < 2, 1.0, 0.8))
     for seed in range(12):
         rng = np.random.default_rng(seed)
-        count = int(rng.integers(5, 40))
-        yield f"polygon {seed}", _polar(_angles(rng, count), rng.uniform(0.6, 1.4, count))
+        yield f"polygon {seed}", polygon(rng, int(rng.integers(5, 40)))
     for seed in range(8):
         rng = np.random.default_rng(100 + seed)
         count = int(rng.integers(6, 14))
@@ -51,6 +50,11 @@ def outlines() -> Iterator[tuple[str, rg.Outline]]:
         yield f"spline {seed}", _polar(angle, rng.uniform(0.7, 1.3, count), smooth=True)
     for name, radii in DRAWINGS.items():
         yield name, _polar(np.arange(12) * np.pi / 6, np.array(radii), smooth=True)
+
+
+def polygon(rng: np.random.Generator, count: int) -> rg.Outline:
+    """A random one around its middle."""
+    return _polar(_angles(rng, count), rng.uniform(0.6, 1.4, count))
 
 
 def _polar(angle: np.ndarray, radius: np.ndarray, *, smooth: bool = False) -> rg.Outline:

@@ -15,6 +15,7 @@ ended; ``--attack`` goes over rows that are kept, with so many random placements
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
@@ -48,28 +49,33 @@ def asked(outline: rg.Outline, objective: str) -> dict[str, Any]:
     return {"load": rg.LoadSet.hull(each)} | more
 
 
-def row(outline: rg.Outline, objective: str, fingers: int, cap: float) -> dict[str, Any]:
-    """How a search of at most ``cap`` seconds of processor time went, and what ``verify`` says."""
-    begin, used = perf_counter(), process_time()
-    ended = False
+def within(cap: float) -> tuple[Callable[[], bool], Callable[..., None]]:
+    """Whether a search was ended, and a progress that ends it once, after ``cap`` s of processor time."""
+    used, ended = process_time(), False
 
-    def within_cap(*_: float) -> None:
+    def progress(*_: float) -> None:
         nonlocal ended
         if not ended and process_time() - used > cap:
             ended = True
             raise KeyboardInterrupt
 
+    return lambda: ended, progress
+
+
+def row(outline: rg.Outline, objective: str, fingers: int, cap: float) -> dict[str, Any]:
+    """How a search of at most ``cap`` seconds of processor time went, and what ``verify`` says."""
+    begin, (ended, progress) = perf_counter(), within(cap)
     try:
         chosen = rg.choose_grasp(
             outline, fingers, friction=FRICTION, objective=objective, tolerance=TOLERANCE, from_corners=0.0,
-            progress=within_cap, **asked(outline, objective),
+            progress=progress, **asked(outline, objective),
         )  # fmt: skip
     except rg.Infeasible as refusal:
         seconds, proof = perf_counter() - begin, refusal.certificate
         proven = proof is not None and "not proven" not in str(refusal) and rg.verify(proof).ok
         return {"refused": proven, "seconds": seconds, "random": 0, "better": 0}
     except KeyboardInterrupt:
-        if not ended:
+        if not ended():
             raise
         return {"refused": False, "seconds": perf_counter() - begin, "random": 0, "better": 0}
     seconds = perf_counter() - begin

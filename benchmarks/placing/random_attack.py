@@ -34,7 +34,7 @@ def attack(
     Some more are drawn around ``places``, at distances of 1e-6 to 0.1 of the length, of which ``around`` are
     near, too. Of those not rejected the first ``SHOWN`` of a kind are judged exactly, and all at the bound.
     """
-    rng, places_at = np.random.default_rng(fingers), _on(outline)
+    rng, places_at = np.random.default_rng(fingers), on_outline(outline)
     bound = None if bound is None else bound * (1 + (SLACK if _is_more(objective) else -SLACK))
     reach = float(np.linalg.norm(outline.points(outline.sample(200)), axis=1).max())
     judges: list[tuple[Judge, Judge]] = []
@@ -68,7 +68,7 @@ def attack(
     return found
 
 
-def _on(outline: rg.Outline) -> Callable[[Array], tuple[Array, Array]]:
+def on_outline(outline: rg.Outline) -> Callable[[Array], tuple[Array, Array]]:
     """Points and inward unit normals at arc lengths; on a curve at a millionth of it or so from there."""
     curve, length = outline.boundary, outline.length
     if not isinstance(curve, CurveBoundary):
