@@ -104,11 +104,16 @@ def row(outline: rg.Outline, objective: str, fingers: int, kind: int, cap: float
         return result | {"refused": True, "lies": ["refused"] * held, "seconds": perf_counter() - begin}
     result |= {"value": chosen.value, "bound": chosen.bound, "gap": chosen.gap}
     result["seconds"] = perf_counter() - begin
-    there = Places(chosen.grasp.positions[None], chosen.grasp.normals[None])
-    again = best(there, task)[0] if task.deviations is not None or objective == "wrench_ball" else None
-    if again is None:
-        again = float(norms(there, task, whole=True)[0]) * (-1 if objective in LARGEST else 1)
+    again = judged_again(chosen, task)
     return result | {"again": again, "lies": lies(result | {"again": again}, objective, rg.verify(chosen).ok)}
+
+
+def judged_again(chosen: rg.ChosenGrasp, task: Task) -> float:
+    """The value of the places that were chosen, by the judges of samples."""
+    there = Places(chosen.grasp.positions[None], chosen.grasp.normals[None])
+    if task.deviations is not None or task.objective == "wrench_ball":
+        return best(there, task)[0]
+    return float(norms(there, task, whole=True)[0]) * (-1 if task.objective in LARGEST else 1)
 
 
 def lies(found: dict[str, Any], objective: str, verified: bool) -> list[str]:

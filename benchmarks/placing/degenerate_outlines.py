@@ -1,0 +1,147 @@
+"""Degenerate outlines, without friction and with critical friction: answers, refusals, and nothing else.
+
+    python benchmarks/placing/degenerate_outlines.py [--cap 20] [--seconds 300]
+    python benchmarks/placing/degenerate_outlines.py --table
+
+Needles, collinear points, tiny edges, pockets, holes, spikes, symmetric shapes whose corners are best, and
+coordinates far from zero, under every objective. Each search ends after ``--cap`` seconds of processor time
+by an interrupt; what goes on for more than ``LATE`` of them *hangs*. Answers are verified and judged against
+all pairs of 40 points and triples of 16. A row is kept when it is done, in a random order.
+"""
+
+import argparse
+import json
+from itertools import product
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import Any
+
+import numpy as np
+
+import regrasp as rg
+from brute_force import OBJECTIVES, asked, judged_again, lies
+from placement_outlines import within
+from sampled_places import all_of, best, points_of
+
+RESULTS = Path(__file__).parents[1] / "results" / "degenerate_outlines.json"
+LATE = 2.0  # times the cap
+POINTS = {2: 40, 3: 16}
+FRICTIONS = {"none": 0.0, "1e-12": 1e-12, "0.3": 0.3, "critical": 1.0}
+HALF = np.arange(16) * np.pi / 8
+SHAPES = {
+    "needle": rg.Outline([[0, 0], [10, 0], [10, 1e-3], [0, 1e-3]]),
+    "sliver": rg.Outline([[0, 0], [10, 0], [5, 1e-2]]),
+    "collinear points, tiny edges": rg.Outline(
+        [[0, 0], [1, 0], [2, 0], [2 + 1e-6, 0], [4, 0], [4, 3], [2, 3 + 1e-7], [0, 3]]
+    ),
+    "pocket and hole": rg.Outline(
+        [[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]],
+        holes=[[[0.4, 0.4], [0.4, 0.8], [0.8, 0.4]]],
+    ),
+    "slot of 1e-3": rg.Outline([[0, 0], [4, 0], [4, 3], [2.001, 3], [2.001, 1], [2, 1], [2, 3], [0, 3]]),
+    "spikes": rg.Outline(
+        np.where(np.arange(16) % 2, 0.02, 1.0)[:, None] * np.column_stack([np.cos(HALF), np.sin(HALF)])
+    ),
+    "square": rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]]),
+    "triangle": rg.Outline([[0, 0], [2, 0], [1, np.sqrt(3)]]),
+    "chords of an ellipse": rg.Outline(rg.Outline.ellipse(2, 1).polygon(0.01)),
+    "flat ellipse": rg.Outline.ellipse(2, 0.01),
+    "circle": rg.Outline.ellipse(1, 1),
+    "far from zero": rg.Outline(np.array([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]]) + 1e7),
+}
+
+
+def row(
+    outline: rg.Outline, objective: str, fingers: int, friction: float, kind: int, cap: float
+) -> dict[str, Any]:
+    """How a search ended, and what is wrong with its answer."""
+    name, given, task = asked(outline, objective, kind)
+    task = task._replace(friction=friction)
+    holes = bool(outline.holes)
+    begin, used, (_, progress) = perf_counter(), process_time(), within(cap)
+    result: dict[str, Any] = {"loads": name, "lies": []}
+    chosen = None
+    try:
+        chosen = rg.choose_grasp(
+            outline, fingers, friction=friction, objective=objective, in_holes=holes, from_corners=0.0,
+            tolerance=1e-2 if objective == "wrench" else 1e-3, progress=progress, **given,
+        )  # fmt: skip
+        result |= {"end": "answer", "value": chosen.value, "bound": chosen.bound, "gap": chosen.gap}
+    except rg.Infeasible as refusal:
+        proof = refusal.certificate
+        proven = proof is not None and "not proven" not in str(refusal) and rg.verify(proof).ok
+        result |= {"end": "refusal, proven" if proven else "refusal", "words": str(refusal)[:100]}
+    except rg.InvalidInput as refusal:
+        result |= {"end": "refused as input", "words": str(refusal)[:100]}
+    except KeyboardInterrupt:
+        result["end"] = "nothing at the cap"
+    except Exception as error:
+        result |= {"end": "error", "words": repr(error)[:200], "lies": ["error"]}
+    late = process_time() - used > LATE * cap
+    result["seconds"] = perf_counter() - begin
+    result["lies"] += ["hangs"] * late
+    if friction:
+        samples = all_of(points_of(outline, POINTS[fingers], in_holes=holes), fingers)
+        found, held = best(samples, task)
+        result |= {"held": held, "best": found if held else None}
+        if held and chosen is None and result["end"].startswith("refus"):
+            result["lies"].append("refused")
+    if chosen is not None:
+        again = judged_again(chosen, task) if friction else chosen.value
+        sampled = result.get("best")
+        judged = result | {"again": again, "best": chosen.value if sampled is None else sampled}
+        result["again"] = again
+        result["lies"] += lies(judged, objective, rg.verify(chosen).ok)
+    return result
+
+
+def table(kept: dict[str, Any]) -> str:
+    """A line for each shape."""
+    ends = ("answer", "refusal, proven", "refusal", "refused as input", "nothing at the cap")
+    lines = [
+        "| outline | searches | gap reached | answers with a gap | refused with proof | not proven | "
+        "refused as input | nothing at the cap | longest [s] | wrong |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    for name in SHAPES:
+        rows = [(key, r) for key, r in kept.items() if key.startswith(f"{name}; ")]
+        if not rows:
+            continue
+        small = [
+            r["end"] == "answer" and r["gap"] <= (1e-2 if "; wrench," in key else 1e-3) for key, r in rows
+        ]
+        counts = [sum(r["end"] == end for _, r in rows) for end in ends]
+        lines.append(
+            f"| {name} | {len(rows)} | {sum(small)} | {counts[0] - sum(small)} | {counts[1]} | {counts[2]} | "
+            f"{counts[3]} | {counts[4]} | {max(r['seconds'] for _, r in rows):.1f} | "
+            f"{sum(bool(r['lies']) for _, r in rows)} |"
+        )
+    return "\n".join(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cap", type=float, default=20.0, help="of a search, of processor time [s]")
+    parser.add_argument("--seconds", type=float, default=np.inf, help="after which no other row is begun")
+    parser.add_argument("--table", action="store_true")
+    parser.add_argument("-o", "--output", type=Path, default=RESULTS)
+    given = parser.parse_args()
+    kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    if given.table:
+        print(table(kept))
+        return
+    begin = perf_counter()
+    every = list(product((2, 3), FRICTIONS.items(), enumerate(SHAPES.items()), enumerate(OBJECTIVES)))
+    np.random.default_rng(0).shuffle(every)
+    for fingers, (called, friction), (i, (name, outline)), (j, objective) in every:
+        key = f"{name}; {objective}, {fingers}; {called}"
+        if key in kept or perf_counter() - begin > given.seconds:
+            continue
+        found = row(outline, objective, fingers, friction, (i + j) % 3, given.cap)
+        kept[key] = {k: float(f"{v:.7g}") if isinstance(v, float) else v for k, v in found.items()}
+        print(key, kept[key], flush=True)
+        given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
