@@ -72,6 +72,36 @@ def test_maps_show_values_where_fingers_hold_and_a_ring_at_the_best() -> None:
     assert parts["best"] + parts["no hold"] == len(found.places)
 
 
+@pytest.mark.parametrize(("objective", "times"), [("peak", 5), ("effort", 25)])
+def test_forces_of_maps_that_grow_without_end_have_one_colour_beyond_some_times_the_best(
+    objective: str, times: float
+) -> None:
+    found = rg.placement_map(SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, objective=objective, count=40)
+    least = np.nanmin(found.values)
+    assert np.nanmax(found.values) > 10 * times * least
+    ax = plots.plot_placement_map(found)
+    drawn = next(artist for artist in ax.collections if artist.get_gid() == "values")
+    colour = drawn.to_rgba
+    assert drawn.norm.vmax == pytest.approx(times * least)
+    assert (colour([1.01 * times * least]) == colour([1e6 * least])).all()
+    assert (colour([0.9 * times * least]) != colour([1e6 * least])).any()
+    assert (colour([least]) != colour([1.1 * least])).any()
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert words == [f"no hold: {1 - found.share:.0%}", f"over {times} times the best"]
+
+
+def test_shares_of_friction_and_what_is_largest_at_best_are_told_apart_to_the_last() -> None:
+    for objective in ("friction_use", "angle"):
+        found = rg.placement_map(
+            SQUARE_OUTLINE, WEIGHT_IN_PLANE, friction=0.5, objective=objective, max_force=30.0, count=20
+        )
+        ax = plots.plot_placement_map(found)
+        norm = next(artist for artist in ax.collections if artist.get_gid() == "values").norm
+        most = np.nanmax(found.values)
+        assert norm.vmax == pytest.approx(np.degrees(most) if objective == "angle" else most)
+        assert [text.get_text()[:7] for text in ax.get_legend().get_texts()] == ["no hold"]
+
+
 @pytest.mark.parametrize("shape", [SQUARE_OUTLINE, rg.Outline.ellipse(0.2, 0.1)], ids=["square", "ellipse"])
 def test_regions_of_two_fingers_are_a_box_on_their_map_either_way_around(shape: rg.Outline) -> None:
     """On the ellipse one arc runs past the first vertex: its box is drawn at both ends."""

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from regrasp.files import GraspScenario, SpaceGraspScenario
     from regrasp.planning.placement.chosen import ChosenGrasp
 
+_COUNT, _SLOW = 120, 48  # places of a map, and where each of its values is a program
+
 
 def choose(
     scenario: "GraspScenario | SpaceGraspScenario", name: str | Path, output: Path, *, draw: bool
@@ -75,9 +77,9 @@ def _pictures(
     level: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length} if word in LEVELS else {}
     if (disturbance := getattr(scenario.load, "disturbance", None)) is not None:
         level["disturbance"] = disturbance.around(scenario.load.wrench)
-    objective = "answered" if word == "wrench" else word  # what is withstood has no map
+    count = _SLOW if word == "wrench" else _COUNT
     try:
-        found = placement_map(shape, load, friction=scenario.friction, objective=objective, **level)
+        found = placement_map(shape, load, friction=scenario.friction, objective=word, count=count, **level)
         yield "map.png", image(plots.plot_placement_map(found, regions=regions))
     except RegraspError as error:
         say(f"\nno map.png: {error}")

@@ -9,7 +9,6 @@ import pytest
 
 import regrasp as rg
 from placements import BRACKET, DEVIATIONS
-from refusals import refusal
 from regrasp.planning.placement.levels.tied import Ties
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
@@ -120,8 +119,21 @@ def test_a_set_without_zero_is_scaled_about_no_deviation() -> None:
 def test_what_it_needs_it_says(more: dict[str, object], words: str) -> None:
     with pytest.raises(rg.InvalidInput, match=words):
         rg.choose_grasp(BRACKET, 2, WEIGHT, **ASKED | more)  # type: ignore[arg-type]
-    said = str(refusal(lambda: rg.placement_map(BRACKET, WEIGHT, **ASKED)))
-    assert "no map" in said
+
+
+def test_a_map_of_what_is_withstood_has_what_set_points_withstand_in_each_cell() -> None:
+    found = rg.placement_map(BRACKET, WEIGHT, count=10, **ASKED)  # type: ignore[arg-type]
+    held = 0
+    for i, s in enumerate(found.places):
+        for j, t in enumerate(found.places[:i]):
+            wanted = withstood(rg.Grasp(BRACKET.contact_at(v, friction=0.5) for v in (s, t)))
+            if wanted > 0:
+                held += 1
+                assert found.values[i, j] == pytest.approx(wanted, rel=1e-5, abs=1e-6)
+            else:
+                assert not found.values[i, j] > 0
+    assert held > 3
+    assert found.more
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def placement_map(
         free: how many fingers move, 1 or 2.
         objective: as of ``choose_grasp``.
         max_force: limit on every force, as of ``choose_grasp`` [N].
-        disturbance: hull of deviations for ``answered``.
+        disturbance: hull of deviations for ``answered`` and ``wrench``.
         length: by which torques are divided, for ``wrench_ball`` [m].
         count: places, evenly spread; those near a corner are left out.
 
@@ -116,8 +116,6 @@ def placement_map(
     if comb(count, free) > MOST_PLACEMENTS:
         raise InvalidInput(f"count {count} makes more than {MOST_PLACEMENTS} placements; give fewer")
     word, law = goal
-    if word == "wrench":
-        raise InvalidInput("what is withstood has no map: take objective 'answered'; got 'wrench'")
     level = level_of(word, mu, load, max_force, disturbance, length_of(word, length, shape))
     if max_force is not None and word not in LEVELS:
         raise InvalidInput(f"max_force is for {', '.join(LEVELS)}; got objective {word!r}")
@@ -135,7 +133,7 @@ def placement_map(
         value = _value(search, level, law.power, sides.on(fingers), fingers)
         values[at] = value
         values[at[::-1]] = value
-    more = word in ("angle", "force", "answered", "wrench_ball")
+    more = word in LEVELS and word != "friction_use"
     return PlacementMap(
         shape,
         word,
@@ -153,11 +151,7 @@ def _value(search: Search, level: Level | None, power: int, places: np.ndarray, 
     if level is None:
         norm = search.norm_at(places, u)
         return norm**power if norm < inf else np.nan
-    level.put(search, level.start)
-    if not search.norm_at(places, u) <= level.max_force:
-        return np.nan
-    reached = level.reached(search, level.start, places, u)
-    return level.value(reached) if reached > 0 or not isinstance(level, BallLevel) else np.nan
+    return level.of(search, places, u)
 
 
 def _best(values: Array, more: bool) -> Array:

@@ -1,7 +1,6 @@
 """Maps of placement: values over the places of two fingers, and on the outline itself."""
 
 from itertools import product
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,11 +14,9 @@ from regrasp.mechanics.checks import Array, instance
 from regrasp.planning.placement.maps import PlacementMap
 from regrasp.planning.placement.regions import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
-from regrasp.plots.look.style import INK, NO_HOLD, SMALL, TEXT, axes_or_new, label_axis, legend
+from regrasp.plots.look.style import INK, NO_HOLD, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
-from regrasp.plots.placement.values import as_drawn, drawn_in
-
-_WORST = 90.0  # percentile of values that colours tell apart: the worst grow without end
+from regrasp.plots.placement.values import as_drawn, colour_bar, scale_of
 
 
 def plot_placement_map(
@@ -30,6 +27,8 @@ def plot_placement_map(
     units: Units = SI,
 ) -> Axes:
     """The value of two fingers over both arc lengths; grey where they do not hold, a ring at the best.
+
+    Forces grow without end: of more than some times the best all have one colour, as the legend says.
 
     Args:
         placements: what ``regrasp.placement_map`` found for two fingers that move.
@@ -52,11 +51,13 @@ def plot_placement_map(
     edges = _edges(placements.places, length)
     none = np.where(np.isnan(values), 0.0, np.nan)
     ax.pcolormesh(edges, edges, none, cmap=ListedColormap([NO_HOLD]), zorder=1, gid="no hold")
-    drawn = ax.pcolormesh(edges, edges, values, **_colours(placements, values), zorder=1, gid="values")
-    _bar(ax, drawn, placements, units)
-    handles = []
+    scale = scale_of(placements.objective, values, placements.more)
+    drawn = ax.pcolormesh(edges, edges, values, cmap=scale.cmap, norm=scale.norm, zorder=1, gid="values")
+    colour_bar(drawn, scale, placements.objective, units, ax=ax, fraction=0.046, pad=0.03)
+    handles = [Line2D([], [], color=NO_HOLD, linewidth=5, label=f"no hold: {1 - placements.share:.0%}")]
+    handles += scale.key()
     if regions is not None:
-        handles = _draw_regions(ax, regions)
+        handles += _draw_regions(ax, regions)
     if placements.at.size:
         best = np.array([placements.at, placements.at[::-1]]).T
         ax.plot(*best, "o", mfc="none", mec="white", ms=8, mew=2.6, zorder=5)
@@ -65,10 +66,7 @@ def plot_placement_map(
     ax.set_aspect("equal", adjustable="box")
     label_axis(ax.xaxis, "one finger at arc length", units.length, length)
     label_axis(ax.yaxis, "the other at", units.length, length)
-    if handles:
-        legend(ax, handles, ncols=2)
-    else:
-        ax.set_title(f"{placements.share:.0%} of all placements hold", fontsize=TEXT, loc="left")
+    legend(ax, handles, ncols=2)
     return ax
 
 
@@ -117,15 +115,15 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
             capstyle="butt", zorder=2, gid="no hold",
         )
     )  # fmt: skip
-    colours = _colours(placements, best)
+    scale = scale_of(placements.objective, best, placements.more)
     drawn = LineCollection(
         [s for s, holds in zip(strokes, held, strict=True) if holds], array=best[held], linewidths=5,
-        capstyle="butt", zorder=3, gid="best", cmap=colours["cmap"],
+        capstyle="butt", zorder=3, gid="best", cmap=scale.cmap,
+        norm=scale.norm,
     )  # fmt: skip
-    drawn.set_clim(colours["vmin"], colours["vmax"])
     ax.add_collection(drawn)
-    _bar(ax, drawn, placements, units)
-    handles = [Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold")]
+    colour_bar(drawn, scale, placements.objective, units, ax=ax, fraction=0.046, pad=0.03)
+    handles = [Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold"), *scale.key()]
     if placements.fixed.size:
         at = shape.points(placements.fixed)
         ax.plot(*at.T, "o", color=INK, markersize=5, zorder=5, gid="fixed")
@@ -135,29 +133,8 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
         ring = Line2D([], [], marker="o", linestyle="none", markersize=7, label="best")
         ring.set(markerfacecolor="white", markeredgecolor=INK)
         handles.append(ring)
-    legend(ax, handles, ncols=3)
+    legend(ax, handles, ncols=3 if len(handles) < 4 else 2)
     return ax
-
-
-def _colours(placements: PlacementMap, values: Array) -> dict[str, Any]:
-    """Yellow is best; what is worse than most has the colour of the worst."""
-    held = values[~np.isnan(values)]
-    if not held.size:
-        return {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
-    if placements.more:
-        return {"cmap": "viridis", "vmin": 0.0, "vmax": float(held.max()) or 1.0}
-    low, high = float(held.min()), float(np.percentile(held, _WORST))
-    return {"cmap": "viridis_r", "vmin": low, "vmax": high if high > low else low + (abs(low) or 1.0)}
-
-
-def _bar(ax: Axes, drawn: Any, placements: PlacementMap, units: Units) -> None:
-    bar = ax.figure.colorbar(
-        drawn, ax=ax, fraction=0.046, pad=0.03, extend="neither" if placements.more else "max"
-    )
-    bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
-    bar.outline.set_linewidth(0.6)
-    unit = units.of(drawn_in(placements.objective))
-    bar.set_label(f"{placements.objective.replace('_', ' ')} [{unit}]", fontsize=TEXT)
 
 
 def _ends(places: Array, length: float) -> tuple[Array, Array]:

@@ -3,9 +3,8 @@
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize, to_rgba
+from matplotlib.colors import to_rgba
 from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
@@ -14,12 +13,11 @@ from regrasp.planning.placement.space.surface_map import SurfaceMap
 from regrasp.plots.grasps.space_body import draw_edges
 from regrasp.plots.look.solids import creases, face_normals
 from regrasp.plots.look.space_axes import equal_scale, include, space_axes
-from regrasp.plots.look.style import GREY, NO_HOLD, SMALL, TEXT, legend
+from regrasp.plots.look.style import GREY, NO_HOLD, legend
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.look.view import sight
-from regrasp.plots.placement.values import as_drawn, drawn_in
+from regrasp.plots.placement.values import as_drawn, colour_bar, scale_of
 
-_WORST = 90.0  # percentile of values that colours tell apart: the worst grow without end
 _PIECES = 10_000
 _BEST = 8  # points, which new axes look at from above or below
 _RAISED, _TURNED = 25.0, -55.0  # [deg]
@@ -48,11 +46,10 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     reach = float(np.linalg.norm(mesh[0], axis=1).max())
     away = np.linalg.norm((pieces.mean(axis=1)[:, None] - surface.points) / reach, axis=2)
     away += _FACING * np.linalg.norm(normals[:, None] - surface.normals, axis=2)
-    values = as_drawn(surface.objective, surface.best)[away.argmin(axis=1)]
-    held = values[~np.isnan(values)]
-    low, high = (float(held.min()), float(np.percentile(held, _WORST))) if held.size else (0.0, 1.0)
-    scale = Normalize(low, high if high > low else low + 1.0, clip=True)
-    colours = colormaps["viridis_r"](scale(np.nan_to_num(values)))
+    values = as_drawn(surface.objective, surface.best)
+    scale = scale_of(surface.objective, values, more=False)
+    values, drawn_as = values[away.argmin(axis=1)], ScalarMappable(scale.norm, scale.cmap)
+    colours = drawn_as.to_rgba(np.nan_to_num(values))
     colours[np.isnan(values)] = to_rgba(NO_HOLD)
     drawn = Poly3DCollection(
         pieces[seen], facecolors=colours[seen], edgecolors=colours[seen], linewidths=0.3, zorder=1
@@ -61,20 +58,13 @@ def plot_surface_map(surface: SurfaceMap, ax: Any = None, *, units: Units = SI) 
     ax.add_collection3d(drawn)
     draw_edges(ax, creases((mesh[0], mesh[1][face_normals(mesh) @ towards >= 0])), GREY, gid="edges")
     include(ax, mesh[0])
-    bar = ax.figure.colorbar(
-        ScalarMappable(scale, "viridis_r"),
-        cax=ax.figure.add_axes((0.85, 0.25, 0.03, 0.5)) if new else None,
-        ax=ax,
-        shrink=0.6,
-        pad=0.16,
-        extend="max" if held.size else "neither",
-    )
-    bar.ax.tick_params(labelsize=SMALL, length=2.5, width=0.6)
-    word = surface.objective.replace("_", " ")
-    bar.set_label(f"{word} [{units.of(drawn_in(surface.objective))}]", fontsize=TEXT)
-    if len(held) < len(values):
-        key = Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold through here")
-        legend(ax, [key], bbox_to_anchor=(0, 1.12))
+    beside = ax.figure.add_axes((0.85, 0.25, 0.03, 0.5)) if new else None
+    colour_bar(drawn_as, scale, surface.objective, units, ax=ax, cax=beside, shrink=0.6, pad=0.16)
+    keys = scale.key()
+    if np.isnan(values).any():
+        keys.append(Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold through here"))
+    if keys:
+        legend(ax, keys, bbox_to_anchor=(0, 1.12))
     equal_scale(ax, units)
     spans = [np.ptp(limits) for limits in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim())]
     for axis, span in zip((ax.xaxis, ax.yaxis, ax.zaxis), spans, strict=True):

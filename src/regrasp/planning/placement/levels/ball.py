@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 from itertools import combinations
-from math import sqrt
+from math import nan, sqrt
 
 import numpy as np
 
@@ -21,6 +21,7 @@ _NEARER = 0.999  # of the tolerance: what is given back to rounding is within it
 _STEP = 1e-6  # of the limit, beyond none at all
 _FLAT = 1e-14
 _ROUNDING = 1e-12
+_NONE = 1e-9  # of the limit: where some load is not held at all, rounding leaves less
 
 
 class BallLevel(Level):
@@ -56,6 +57,11 @@ class BallLevel(Level):
     def top(self, search: Search) -> float:
         """Forces of the limit make no larger one."""
         return search.fingers * self.max_force * sqrt(1 + self.friction**2)
+
+    def of(self, search: Search, places: np.ndarray, u: Array) -> float:
+        """The radius of a placement; NaN where it is no more than rounding."""
+        radius = self.reached(search, self.start, places, u)
+        return radius if radius > _NONE * self.max_force else nan
 
     def reached(self, search: Search, known: float, places: np.ndarray, u: Array) -> float:
         """The radius of a placement, be it less than what is known; its weakest direction is remembered."""

@@ -8,7 +8,7 @@ placements that are found raise the level.
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from contextlib import suppress
-from math import atan, inf, isnan, sqrt, tan
+from math import atan, inf, isnan, nan, sqrt, tan
 
 import numpy as np
 
@@ -66,6 +66,13 @@ class Level(ABC):
     def value(self, level: float) -> float:
         """The objective at a level."""
         return level
+
+    def of(self, search: Search, places: np.ndarray, u: Array) -> float:
+        """The objective of a placement; NaN where it does not hold at all."""
+        self.put(search, self.start)
+        if not search.norm_at(places, u) <= self.max_force:
+            return nan
+        return self.value(self.reached(search, self.start, places, u))
 
     def reached(self, search: Search, known: float, places: np.ndarray, u: Array) -> float:
         """The best level at which a placement has forces below the limit, at least ``known``."""

@@ -6,7 +6,7 @@ boxes of groups of edges are excluded by the loads one by one; those that are le
 """
 
 from itertools import product
-from math import inf
+from math import inf, nan
 
 import numpy as np
 
@@ -136,6 +136,12 @@ class WithstoodLevel(AnsweredLevel):
                     best, places, u, helped = factor, on, there, True
             step *= 1.0 if helped else 0.5
         return -best, places, u
+
+    def of(self, search: Search, places: np.ndarray, u: Array) -> float:
+        """What a placement withstands; NaN where it does not hold the load, or not by itself."""
+        self.put(search, self.start)
+        found = self._factor(search, places, u) if search.norm_at(places, u) <= self.max_force else -1.0
+        return found if found >= 0 else nan
 
     def _factor(self, search: Search, places: np.ndarray, u: Array) -> float:
         """What a placement withstands; below zero for one that does not hold."""
