@@ -51,7 +51,7 @@ class Scale(NamedTuple):
         last = self.norm.vmax
         if not self.beyond or last is None:
             return []
-        colour = ScalarMappable(self.norm, self.cmap).to_rgba([last])[0]
+        colour = ScalarMappable(self.norm, self.cmap).to_rgba(np.array([last]))[0]
         return [Line2D([], [], color=colour, linewidth=5, label=self.beyond)]
 
 
