@@ -31,8 +31,9 @@ if TYPE_CHECKING:
     from regrasp.planning.placement.choosing import choose_grasp
     from regrasp.planning.placement.chosen import ChosenGrasp
     from regrasp.planning.placement.maps import PlacementMap, placement_map
-    from regrasp.planning.placement.regions import ContactRegions, contact_regions
-    from regrasp.planning.placement.space.face_regions import FaceRegions
+    from regrasp.planning.placement.regions.asking import contact_regions
+    from regrasp.planning.placement.regions.contact_arcs import ContactRegions
+    from regrasp.planning.placement.regions.face_patches import FaceRegions
     from regrasp.planning.placement.space.surface_map import SurfaceMap, surface_map
     from regrasp.planning.regrasps.problem import RegraspProblem
     from regrasp.planning.regrasps.verbs import plan_regrasps
@@ -100,10 +101,10 @@ _LATER = {
     "choose_grasp": "regrasp.planning.placement.choosing",
     "Closure": "regrasp.measures.closure",
     "closure": "regrasp.measures.closure",
-    "contact_regions": "regrasp.planning.placement.regions",
-    "ContactRegions": "regrasp.planning.placement.regions",
+    "contact_regions": "regrasp.planning.placement.regions.asking",
+    "ContactRegions": "regrasp.planning.placement.regions.contact_arcs",
     "EquilibriumLocus": "regrasp.planning.states.two_fingers",
-    "FaceRegions": "regrasp.planning.placement.space.face_regions",
+    "FaceRegions": "regrasp.planning.placement.regions.face_patches",
     "ForceCost": "regrasp.planning.states.objectives",
     "held_centres": "regrasp.planning.surveys.extremes.held_centres",
     "held_directions": "regrasp.planning.surveys.held_directions",

@@ -1,6 +1,7 @@
 """From a scenario to a chosen grasp on disk, judged again from there."""
 
 import json
+import re
 from inspect import signature
 from pathlib import Path
 
@@ -14,19 +15,34 @@ from scenarios import regrasp
 
 pytestmark = pytest.mark.end_to_end
 
+WRITTEN = {"plan.json", "grasp.png", "regions.json", "regions.png"}
+
 
 def test_a_grasp_is_chosen_written_and_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "grasp.toml").write_text(template("grasp"), encoding="utf-8")
     status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
     assert (status, err) == (0, "")
     assert "no placement is below" in out
-    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png", "regions.png"}
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {
+        "plan.json",
+        "grasp.png",
+        "regions.json",
+        "regions.png",
+    }
     status, out, err = regrasp(capsys, "verify", str(tmp_path / "out"), "--json")
     assert (status, err) == (0, "")
     facts = json.loads(out)
     assert facts["plan"]["kind"] == "grasp"
     assert facts["verification"]["excluded"] > 0
     assert facts["plan"]["bound"] <= facts["plan"]["value"]
+    file = tmp_path / "out" / "regions.json"
+    status, out, err = regrasp(capsys, "verify", str(file))
+    assert (status, err) == (0, "")
+    assert "ContactRegions" in out
+    file.write_text(re.sub(r'"half_width": 0', '"half_width": 1', file.read_text(encoding="utf-8")))
+    status, out, err = regrasp(capsys, "verify", str(file))
+    assert (status, out) == (2, "")
+    assert "digest" in err
 
 
 def test_two_fingers_have_a_map_too_and_what_has_no_regions_says_so(
@@ -38,14 +54,14 @@ def test_two_fingers_have_a_map_too_and_what_has_no_regions_says_so(
     text = template("grasp").replace("fingers = 3", "fingers = 2").replace("friction = 0.4", "friction = 0.8")
     (tmp_path / "grasp.toml").write_text(text, encoding="utf-8")
     for folder, drawn, said in (
-        ("all", {"grasp.png", "regions.png", "map.png"}, ""),
-        ("some", {"grasp.png", "map.png"}, "no regions.png: there are none"),
+        ("all", {"grasp.png", "regions.json", "regions.png", "map.png"}, ""),
+        ("some", {"grasp.png", "map.png"}, "no regions.json: there are none"),
     ):
         status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / folder))
         assert (status, err) == (0, "")
         assert {file.name for file in (tmp_path / folder).iterdir()} == {"plan.json", *drawn}
         assert said in out
-        monkeypatch.setattr("regrasp.planning.placement.regions.contact_regions", none)
+        monkeypatch.setattr("regrasp.planning.placement.regions.asking.contact_regions", none)
 
 
 def test_every_option_of_the_verb_is_a_key_and_in_the_example() -> None:
@@ -65,7 +81,12 @@ def test_a_grasp_on_a_mesh_of_a_file_is_chosen_drawn_and_verified(
     status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
     assert (status, err) == (0, "")
     assert "no placement is below" in out
-    assert {file.name for file in (tmp_path / "out").iterdir()} == {"plan.json", "grasp.png", "regions.png"}
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {
+        "plan.json",
+        "grasp.png",
+        "regions.json",
+        "regions.png",
+    }
     status, out, err = regrasp(capsys, "verify", str(tmp_path / "out"), "--json")
     assert (status, err) == (0, "")
     assert json.loads(out)["plan"]["bound"] <= json.loads(out)["plan"]["value"]

@@ -30,7 +30,7 @@ def some(folder: Path):
             yield given.of_choice(name, given.CHOSEN[name](), folder)
         else:
             yield given.of_setpoints(name, given.PLANS["removal"](), folder)
-    yield given.regions()
+    yield given.regions(folder)
     yield given.of_state("state in space", given.STATES["state in space"]())
     import hostile_ways as ways
 

@@ -150,7 +150,7 @@ def test_every_key_is_needed_or_has_a_default(name: str) -> None:
             "centre",
             "turned",
             "forbidden",
-        ):
+        ) and not (key == "max_force" and "Regions" in name):
             assert type(value).from_dict(less) is not None
         else:
             with pytest.raises(rg.InvalidInput, match=r"must have the key|must have exactly one of"):

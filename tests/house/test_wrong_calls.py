@@ -113,6 +113,7 @@ def test_every_parameter_is_tried_where_it_has_a_right_value_too() -> None:
         "read_scenario",
         "read_plan",
         "read_cut",
+        "read_regions",
         "read_motions",
         "read_ways",
         "Outline.from_file",

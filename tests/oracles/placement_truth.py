@@ -238,13 +238,16 @@ def _least(placement, mu: float, load: np.ndarray, size: str, norm: str) -> floa
 
 
 def region_lies(data: dict) -> str:
-    """What is wrong with contact regions on a polygon, of plain data."""
+    """What is wrong with contact regions on a polygon without holes, of plain data."""
     for state in data["corners"]:
         if lie := state_lies(state):
             return lie
         if max(full for _, full in forces_of(state)) > data["max_force"] * (1 + CLOSE):
             return "a force is above the limit"
-    ring = np.array(data["polygon"])
+    ring = np.array(data["shape"]["vertices"], dtype=float)
+    ends = np.roll(ring, -1, axis=0)
+    twice = ring[:, 0] * ends[:, 1] - ends[:, 0] * ring[:, 1]
+    ring = ring - (twice @ (ring + ends)) / (3 * twice.sum())  # about the centre of mass
     ends = np.roll(ring, -1, axis=0)
     lengths = np.hypot(*(ends - ring).T)
     starts, size = np.concatenate([[0.0], np.cumsum(lengths)]), float(np.abs(ring).max())

@@ -20,7 +20,7 @@ def choose(
 ) -> dict[str, Any]:
     """Write the chosen grasp with its proof as plan.json, and draw it."""
     from regrasp.disk.staging import whole_folder
-    from regrasp.files import write_plan
+    from regrasp.files import write_plan, write_regions
     from regrasp.files.source import naming
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
@@ -34,9 +34,13 @@ def choose(
         say(f"{name}: {one_line(remark)}")
     say(f"{one_line(scenario.title)}\n\n{chosen}" if scenario.title else chosen)
     say(verdict)
+    regions = _regions(chosen, scenario)
     with whole_folder(output) as folder:
         write_plan(chosen, folder / "plan.json")
-        for figure, image in _pictures(chosen, scenario) if draw else ():
+        if regions is not None:
+            verified(verify(regions), "regions.json")
+            write_regions(regions, folder / "regions.json")
+        for figure, image in _pictures(chosen, regions, scenario) if draw else ():
             (folder / figure).write_bytes(image)
         written = sorted(file.name for file in folder.iterdir())
     say("")
@@ -45,8 +49,22 @@ def choose(
     return verdict_facts(chosen, verdict, 0) | {"wrote": [output / file for file in written]}
 
 
+def _regions(chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenario") -> Any:
+    """The regions around its fingers; None, and why in words, where there are none."""
+    from regrasp.errors import RegraspError
+    from regrasp.planning.placement.regions.asking import contact_regions
+
+    if chosen.objective == "wrench_ball":  # its load is zero, which every region holds
+        return None
+    try:
+        return contact_regions(chosen.shape, chosen.grasp, scenario.load.value, max_force=chosen.max_force)
+    except RegraspError as error:
+        say(f"\nno regions.json: {error}")
+        return None
+
+
 def _pictures(
-    chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenario"
+    chosen: "ChosenGrasp", regions: Any, scenario: "GraspScenario | SpaceGraspScenario"
 ) -> Iterator[tuple[str, bytes]]:
     """The grasp, the regions around its fingers, and of two on an outline the map of all places.
 
@@ -57,7 +75,6 @@ def _pictures(
     from regrasp.outline.outline import Outline
     from regrasp.planning.placement.laws import LEVELS
     from regrasp.planning.placement.maps import placement_map
-    from regrasp.planning.placement.regions import contact_regions
     from regrasp.plots.look.png import png
 
     def image(ax: Any) -> bytes:
@@ -65,13 +82,8 @@ def _pictures(
 
     shape, load, word = chosen.shape, scenario.load.value, chosen.objective
     yield "grasp.png", image(plots.plot_chosen_grasp(chosen))
-    regions: Any = None
-    if word != "wrench_ball":  # its load is zero, which every region holds
-        try:
-            regions = contact_regions(shape, chosen.grasp, load, max_force=chosen.max_force)
-            yield "regions.png", image(plots.plot_contact_regions(regions))
-        except RegraspError as error:
-            say(f"\nno regions.png: {error}")
+    if regions is not None:
+        yield "regions.png", image(plots.plot_contact_regions(regions))
     if not isinstance(shape, Outline) or len(chosen.grasp) != 2:
         return
     level: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length} if word in LEVELS else {}

@@ -18,10 +18,11 @@ from regrasp.cli.verdicts import names_of, verdict_facts, verified
 def verify(path: Path, rate: float | None) -> dict[str, Any]:
     """Check a PLAN in exact arithmetic.
 
-    PLAN is a plan.json or the folder that holds it, or a file of the cut that proves that there is none. A
-    setpoints.csv beside it is checked too: every row must hold the object and be the plan's at its time. So
-    is a motions.csv, with positions, velocities and contacts of all fingers, and with a motions.json beside
-    it the ways between rows, against the shape and one another.
+    PLAN is a plan.json or the folder that holds it, a file of the cut that proves that there is none, or a
+    regions.json, by how much fingers may miss. A setpoints.csv beside a plan is checked too: every row must
+    hold the object and be the plan's at its time. So is a motions.csv, with positions, velocities and
+    contacts of all fingers, and with a motions.json beside it the ways between rows, against the shape and
+    one another.
     """
     import numpy as np
 
@@ -29,6 +30,7 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
     from regrasp import verify as verdict_on
     from regrasp.files import read_plan
     from regrasp.files.plans.cut_file import holds_a_cut, read_cut
+    from regrasp.files.plans.regions_file import holds_regions, read_regions
     from regrasp.files.plans.setpoints import checked, read_setpoints
     from regrasp.files.source import legible
     from regrasp.mechanics.checks import number
@@ -36,10 +38,11 @@ def verify(path: Path, rate: float | None) -> dict[str, Any]:
     if rate is not None:
         number(rate, "rate", above=0)
     path = path / "plan.json" if path.is_dir() else path
-    if holds_a_cut(path):
-        cut = read_cut(path)
-        say(cut)
-        verdict = verified(verdict_on(cut), path)
+    if holds_a_cut(path) or holds_regions(path):
+        claim: Any = read_cut(path) if holds_a_cut(path) else read_regions(path)
+        with np.errstate(all="ignore"):
+            say(claim)
+            verdict = verified(verdict_on(claim), path)
         say(verdict)
         return {"status": "verified", "exit": VERIFIED, "verification": asdict(verdict)}
     planned = read_plan(path)

@@ -16,7 +16,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_removal
 from regrasp.planning.placement.maps import placement_map
-from regrasp.planning.placement.regions import contact_regions
+from regrasp.planning.placement.regions.asking import contact_regions
 from regrasp.planning.robustness.tolerances import tolerances
 from regrasp.planning.states.batch import best_squeezes
 from regrasp.planning.states.choosing import choose_state

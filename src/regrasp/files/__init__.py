@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from regrasp.files.plans.motion_rows import MotionRows, read_motions
     from regrasp.files.plans.motions_table import write_motions
     from regrasp.files.plans.plan_file import read_plan, write_plan
+    from regrasp.files.plans.regions_file import read_regions, write_regions
     from regrasp.files.plans.setpoints import write_setpoints
     from regrasp.files.plans.ways_file import Ways, read_ways, write_ways
     from regrasp.files.scenarios.grasp import GraspScenario
@@ -41,6 +42,7 @@ __all__ = [
     "read_cut",
     "read_motions",
     "read_plan",
+    "read_regions",
     "read_scenario",
     "read_ways",
     "scenario_schema",
@@ -48,6 +50,7 @@ __all__ = [
     "write_mcap",
     "write_motions",
     "write_plan",
+    "write_regions",
     "write_setpoints",
     "write_ways",
 ]
@@ -67,6 +70,7 @@ _WHERE = {
     "read_cut": "plans.cut_file",
     "read_motions": "plans.motion_rows",
     "read_plan": "plans.plan_file",
+    "read_regions": "plans.regions_file",
     "read_scenario": "scenarios.scenario",
     "read_ways": "plans.ways_file",
     "scenario_schema": "scenarios.scenario",
@@ -74,6 +78,7 @@ _WHERE = {
     "write_mcap": "plans.bag",
     "write_motions": "plans.motions_table",
     "write_plan": "plans.plan_file",
+    "write_regions": "plans.regions_file",
     "write_setpoints": "plans.setpoints",
     "write_ways": "plans.ways_file",
 }

@@ -46,6 +46,12 @@ def rows() -> dict[str, Row]:
         "write_cut": Row(
             files.write_cut, {"cut": VALUES["RegraspCut"](), "path": os.devnull}, {"cut": "value"}
         ),
+        "read_regions": Row(files.read_regions, {}, {"path": "path"}),
+        "write_regions": Row(
+            files.write_regions,
+            {"regions": VALUES["ContactRegions"](), "path": os.devnull},
+            {"regions": "value"},
+        ),
         "read_plan": Row(files.read_plan, {}, {"path": "path"}),
         "read_motions": Row(files.read_motions, {"path": "none.csv", "plan": removal()}),
         "read_ways": Row(files.read_ways, {"path": "none.json", "plan": removal()}),

@@ -1,7 +1,7 @@
 """Grasps that are chosen on a shape."""
 
 import regrasp as rg
-from values import SQUARE_OUTLINE, WEIGHT, WEIGHT_IN_PLANE, mapped, placed
+from values import SQUARE_OUTLINE, VALUES, WEIGHT, WEIGHT_IN_PLANE, mapped, on_faces, placed
 from wrong_calls.row import Row
 
 
@@ -49,5 +49,9 @@ def rows() -> dict[str, Row]:
             {"shape": SQUARE_OUTLINE, "grasp": placed().grasp, "load": WEIGHT_IN_PLANE},
             {"shape": "value", "widest": "word"},
         ),
+        "ContactRegions.from_dict": Row(
+            rg.ContactRegions.from_dict, {"data": VALUES["ContactRegions"]().to_dict()}
+        ),
+        "FaceRegions.from_dict": Row(rg.FaceRegions.from_dict, {"data": on_faces().to_dict()}),
         "ChosenGrasp.from_dict": Row(rg.ChosenGrasp.from_dict, {"data": placed().to_dict()}),
     }

@@ -1,13 +1,9 @@
 """Files of cuts: why no regrasp exists, to be judged by ``verify``."""
 
-import json
 from pathlib import Path
-from typing import Any
+from typing import cast
 
-from regrasp.disk.staging import whole_file
-from regrasp.errors import InvalidInput, shown
-from regrasp.files.plans.json_text import data_of
-from regrasp.mechanics.checks import file_path
+from regrasp.files.plans.claims import holds_claim, read_claim, write_claim
 from regrasp.plans.outline_cut import OutlineCut
 from regrasp.plans.regrasp_cut import RegraspCut
 
@@ -27,12 +23,7 @@ def write_cut(cut: RegraspCut | OutlineCut, path: str | Path) -> None:
     Raises:
         InvalidInput: For what is no cut, and where the file cannot be written.
     """
-    form = next((form for form, kind in FORMATS.items() if isinstance(cut, kind)), None)
-    if form is None:
-        raise InvalidInput(f"write_cut writes a RegraspCut or an OutlineCut, got {shown(cut)}")
-    with whole_file(file_path(path)) as file:
-        json.dump({"format": form, "version": 1} | cut.to_dict(), file, indent=1, allow_nan=False)
-        file.write("\n")
+    write_claim(cut, path, FORMATS, "write_cut")
 
 
 def read_cut(path: str | Path) -> RegraspCut | OutlineCut:
@@ -44,28 +35,9 @@ def read_cut(path: str | Path) -> RegraspCut | OutlineCut:
     Raises:
         InvalidInput: For a file that holds no cut.
     """
-    path = file_path(path)
-    data = data_of(path, "a cut")
-    kind = _kind(data)
-    if kind is None or data.get("version") != 1:
-        known = " or ".join(map(repr, FORMATS))
-        raise InvalidInput(f"{path}: not a cut of format {known}, version 1")
-    try:
-        return kind.from_dict({k: v for k, v in data.items() if k not in ("format", "version")})
-    except InvalidInput as error:
-        raise InvalidInput(f"{path}: {error}") from None
+    return cast(RegraspCut | OutlineCut, read_claim(path, FORMATS, "a cut"))
 
 
 def holds_a_cut(path: Path) -> bool:
     """Whether a file says that it is a cut."""
-    try:
-        data = data_of(path, "a cut")
-    except InvalidInput:
-        return False
-    return _kind(data) is not None
-
-
-def _kind(data: Any) -> type[RegraspCut | OutlineCut] | None:
-    """The class of a file's cut, by the format it states."""
-    form = data.get("format") if isinstance(data, dict) else None
-    return FORMATS.get(form) if isinstance(form, str) else None
+    return holds_claim(path, FORMATS)

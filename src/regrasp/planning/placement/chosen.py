@@ -15,6 +15,7 @@ from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
+from regrasp.planning.placement.proofs.shape_data import shape_data, shape_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -88,7 +89,7 @@ class ChosenGrasp(ArrayValue):
     def to_dict(self) -> dict[str, Any]:
         """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one."""
         return {
-            "shape": _shape_data(self.shape),
+            "shape": shape_data(self.shape),
             "objective": self.objective,
             "grasp": self.grasp.to_dict(),
             "states": [state.to_dict() for state in self.states],
@@ -123,7 +124,7 @@ class ChosenGrasp(ArrayValue):
         others = [
             entries(o, "others", ("grasp", "places", "value")) for o in listed(given["others"], "others")
         ]
-        shape = _shape(given["shape"])
+        shape = shape_of(given["shape"])
         flat = isinstance(shape, Outline)
         if not isinstance(given["objective"], str):
             raise InvalidInput(f"objective must be a word, got {given['objective']!r}")
@@ -180,16 +181,3 @@ def _words(places: Array) -> str:
     if places.ndim == 1:
         return ", ".join(f"{s:.6g}" for s in places)
     return ", ".join("(" + ", ".join(f"{v:.6g}" for v in p) + ")" for p in places)
-
-
-def _shape_data(shape: Outline | Mesh) -> dict[str, Any]:
-    if isinstance(shape, Outline):
-        return shape.to_dict()
-    return {"vertices": shape.vertices.tolist(), "faces": shape.faces.tolist()}
-
-
-def _shape(data: Any) -> Outline | Mesh:
-    if not isinstance(data, Mapping) or "faces" not in data:
-        return Outline.from_dict(data)
-    given = entries(data, "a mesh", ("vertices", "faces"))
-    return Mesh(given["vertices"], given["faces"])

@@ -12,8 +12,8 @@ from regrasp.mechanics.checks import Array, instance
 from regrasp.mechanics.contact import Contact
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.chosen import ChosenGrasp
-from regrasp.planning.placement.regions import ContactRegions
-from regrasp.planning.placement.space.face_regions import FaceRegions
+from regrasp.planning.placement.regions.contact_arcs import ContactRegions
+from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.png import png
 from regrasp.plots.look.space_axes import equal_scale

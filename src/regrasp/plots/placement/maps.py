@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, instance
 from regrasp.planning.placement.maps import PlacementMap
-from regrasp.planning.placement.regions import ContactRegions
+from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.style import INK, NO_HOLD, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units

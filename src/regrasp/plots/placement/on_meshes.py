@@ -8,7 +8,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-u
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.chosen import ChosenGrasp
-from regrasp.planning.placement.space.face_regions import FaceRegions
+from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.plots.grasps.body import extent
 from regrasp.plots.grasps.space_body import dot, draw_body_in_space
 from regrasp.plots.look.solids import Triangles

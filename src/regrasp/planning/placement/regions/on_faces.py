@@ -1,7 +1,6 @@
 """Regions of contacts on flat faces in space: polygons such that every choice within them holds."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from math import atan, inf, prod, sqrt, tan
@@ -12,10 +11,11 @@ from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
-from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.regions.face_patches import FaceRegions
+from regrasp.planning.placement.regions.needs import LESS, limit_of
 from regrasp.planning.placement.sides import moved
 from regrasp.planning.placement.space.face_pieces import FacePlace, place_on
 from regrasp.planning.states.choosing import choose_state
@@ -23,62 +23,14 @@ from regrasp.planning.states.choosing import choose_state
 _SIDES = {3: 6, 4: 4}  # of polygons around discs
 _MOST_CORNERS = 4096
 _HALVINGS, _OWN_HALVINGS = 9, 5
-_LESS = 1e-6  # of radii and of friction, given up so that rounding does not decide
 _KEPT = 1e-3  # of friction, given up so that what a search leaves of the balance can be made good
 _ROUNDING = 1e-12  # of forces, as if they were off by so much
 _PRECISE = 5e-2  # of efforts: any forces do
 _ROUNDS, _MORE = 8, 1.1  # of moments, and by how much more than needed is tried next
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class FaceRegions(ArrayValue):
-    """Polygons on flat faces, one for each finger: wherever in them the fingers are, they hold the loads.
-
-    Args:
-        shape: the mesh.
-        grasp: the contacts in the middle of it all.
-        patches: (m, 3) corners of each polygon, relative to the centre of mass [m].
-        radius: every finger may be so far off along its face, in any direction, all at once; where the face
-            ends nearer, to a line through its nearest point [m].
-        radii: (k,) the same of each finger by itself: those whose patches could grow have more [m].
-        alone: (k,) how far one finger may be off while the others are at their places; not proven by
-            ``forces``, nor judged by ``regrasp.verify`` [m].
-        max_force: no force need be larger [N].
-        loads: (l, 6) that are held, and all between [N, N m].
-        moments: (l, k) about each finger's normal, which corners hold on top of a load, both ways [N m].
-        tilts: (l, k, 3) along the face: forces are nearly along the normal, plus the tilt, plus the focus
-            times the way from the finger's place.
-        focus: (l, k) of the same [1/m].
-        forces: (l, c, s, k, 3) at all combinations of corners, under each load with all signs of moments:
-            they prove the regions [N].
-    """
-
-    shape: Mesh
-    grasp: Grasp
-    patches: tuple[Array, ...]
-    radius: float
-    radii: Array
-    alone: Array
-    max_force: float
-    loads: Array
-    moments: Array
-    tilts: Array
-    focus: Array
-    forces: Array
-
-    def __repr__(self) -> str:
-        radii = ", ".join(f"{r:.4g}" for r in self.radii)
-        return f"FaceRegions(all off by {self.radius:.4g}, radii {radii})"
-
-
-def regions_on_faces(
-    mesh: Mesh,
-    grasp: Grasp,
-    loads: Array,
-    given: float | None,
-    limit_of: Callable[[float, float | None], float],
-) -> FaceRegions:
-    """What ``contact_regions`` finds on a mesh; limit_of: of forces, where a grasp needs so much."""
+def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None) -> FaceRegions:
+    """What ``contact_regions`` finds on a mesh."""
     search = _Regions(mesh, grasp, loads)
     grasp = search.grasp
     limit = search.limit = limit_of(search.need(), given)
@@ -86,7 +38,7 @@ def regions_on_faces(
     none = np.zeros(k)
     if not search.holds(none):
         raise Infeasible("the grasp holds the loads, but with too little of its friction left for regions")
-    radius = (1 - _LESS) * _farthest(lambda r: search.holds(none + r), 0.0, far, _HALVINGS)
+    radius = (1 - LESS) * _farthest(lambda r: search.holds(none + r), 0.0, far, _HALVINGS)
     radii, alone = none + radius, none.copy()
     for i in range(k):
         radii[i] = _farthest(partial(search.holds_with, radii, i), radius, far, _OWN_HALVINGS)
@@ -99,7 +51,7 @@ def regions_on_faces(
     moments, tilts, focus, forces = map(read_only, search.proof(radii))
     return FaceRegions(
         mesh, grasp, tuple(map(read_only, search.patches(radii))), radius, read_only(radii), read_only(alone),
-        limit * (1 + _LESS), read_only(loads.copy()), moments, tilts, focus, forces,
+        limit * (1 + LESS), read_only(loads.copy()), moments, tilts, focus, forces,
     )  # fmt: skip
 
 
@@ -167,7 +119,7 @@ class _Regions:
             if forces is None:
                 return None
             needed, tilts, focus = self._needed(patches, forces)
-            if (needed * (1 + _LESS) <= moments).all():
+            if (needed * (1 + LESS) <= moments).all():
                 return moments, tilts, focus, forces
             moments = np.maximum(moments, _MORE * needed)
         return None
@@ -200,7 +152,7 @@ class _Regions:
             forces += (left @ inverses).reshape(forces.shape)
         along = (forces * normals).sum(axis=3)
         across = np.linalg.norm(forces - along[..., None] * normals, axis=3)
-        good = (across <= self.grasp.frictions[0] * (1 - _LESS) * along).all()
+        good = (across <= self.grasp.frictions[0] * (1 - LESS) * along).all()
         return forces * self.unit if good and np.linalg.norm(forces, axis=3).max() <= limit else None
 
     def _needed(self, patches: list[Array], forces: Array) -> tuple[Array, Array, Array]:

@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput, RegraspError
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
@@ -22,15 +22,18 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.curves.curved_sides import CurvedSides, curved_sides
 from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.regions.contact_arcs import ContactRegions
+from regrasp.planning.placement.regions.growing import farthest, moved_out
+from regrasp.planning.placement.regions.needs import LESS, limit_of
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides, moved
 from regrasp.planning.states.choosing import choose_state
 
 ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
-_LESS = 1e-6  # of friction and limits, given up so that forces at the corners exist for solvers, too
 _BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
 _CELLS, _STATES = 16, 4096  # at most
 _LITTLE = 0.02  # parts that turn by less are not halved [rad]
+_ON_CURVES = 11  # halvings
 _STEEP = 1.3  # angles of forces to a chord's normal of no more are tried [rad]
 
 
@@ -80,7 +83,7 @@ class CurvedPlaces:
 
     def corners(self, span: Array) -> tuple[Array, Array, float] | None:
         """(k, 2, 2) points, (k, 2) normals and friction of fingers beside parts; None where cones differ."""
-        mu = float(self.grasp.frictions[0]) * (1 - _LESS)
+        mu = float(self.grasp.frictions[0]) * (1 - LESS)
         points, normals, angles, wide = [], [], [], []
         for lo, hi in span:
             hull, tangents = self.sides.hull(lo, hi)
@@ -141,6 +144,33 @@ class CurvedPlaces:
                     ) from None
                 states.append(GraspState(at, load, forces))
         return tuple(states)
+
+
+def on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
+    """What ``contact_regions`` finds on a smooth outline."""
+    at, k = around.places, len(around.places)
+    single = np.stack([at, at], axis=1)
+    limit = limit_of(around.need(around.spans(single)), given)
+    far = 0.25 * around.shape.length
+    ways: Array = np.array([-1.0, 1.0])
+
+    def holds(box: Array) -> bool:
+        return around.cells(around.spans(box), limit) is not None
+
+    half = (1 - LESS) * farthest(lambda width: holds(single + width * ways), far, _ON_CURVES)
+    box, alone = single + half * ways, np.zeros((k, 2))
+    for i, end in product(range(k), range(2)):
+        last = at[i] + far * ways[end]
+        box[i, end] = at[i] + (1 - LESS) * (moved_out(holds, box, i, end, last, _ON_CURVES) - at[i])
+        alone[i, end] = (1 - LESS) * abs(moved_out(holds, single, i, end, last, _ON_CURVES) - at[i])
+    cells = around.cells(around.spans(box), limit)
+    if cells is None:
+        raise Infeasible("the regions found were left without forces by rounding")
+    return ContactRegions(
+        around.shape, around.grasp, read_only(at), read_only(box), half * (1 - LESS), read_only(alone),
+        limit * (1 + LESS), tuple(s for cell in cells for s in around.states(cell, limit * (1 + LESS))),
+        read_only(around.spans(box)), read_only(np.array(cells)),
+    )  # fmt: skip
 
 
 def _turned(tangents: Array) -> tuple[Array, float, float]:

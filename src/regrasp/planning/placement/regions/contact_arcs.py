@@ -1,0 +1,74 @@
+"""Arcs of an outline within which the fingers of a grasp may be."""
+
+from dataclasses import dataclass
+from typing import Any, Self
+
+from regrasp.errors import InvalidInput
+from regrasp.mechanics.checks import Array, array, number
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.plain import listed
+from regrasp.mechanics.state import GraspState
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.regions.sealed import Sealed
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactRegions(Sealed):
+    """Arcs of an outline, one for each finger: wherever in them the fingers are, they hold the loads.
+
+    Args:
+        shape: the outline.
+        grasp: the contacts in the middle of it all.
+        places: (k,) their arc lengths [m].
+        arcs: (k, 2) arc lengths at which regions begin and end: all may be anywhere in theirs at once [m].
+        half_width: every finger may be so far off, to either side or to the end of its side less two
+            millionths of the way, all at once [m].
+        alone: (k, 2) how far one finger may be off, back and ahead, while the others are at their places: not
+            proven by ``corners``, nor judged by ``regrasp.verify`` [m].
+        max_force: no force need be larger [N].
+        corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12). On a curve
+            they are beside it, at the ends of chords, with the cones that all points of a part share, cell by
+            cell.
+        spans: (k, 2) of arcs on a curve, number of the cubic and fraction of it passed; None on a polygon.
+        cells: (c, k, 2) boxes of parts of the arcs, as ``spans``, which cover all of them; None on a polygon.
+    """
+
+    shape: Outline
+    grasp: Grasp
+    places: Array
+    arcs: Array
+    half_width: float
+    alone: Array
+    max_force: float
+    corners: tuple[GraspState, ...]
+    spans: Array | None = None
+    cells: Array | None = None
+
+    @property
+    def widths(self) -> Array:
+        """(k,) of the arcs [m]."""
+        result: Array = self.arcs[:, 1] - self.arcs[:, 0]
+        return result
+
+    def __repr__(self) -> str:
+        widths = ", ".join(f"{w:.4g}" for w in self.widths)
+        return f"ContactRegions(all off by {self.half_width:.4g}, widths {widths})"
+
+    @classmethod
+    def _checked(cls, given: dict[str, Any]) -> Self:
+        grasp, spans, cells = Grasp.from_dict(given["grasp"]), given.get("spans"), given.get("cells")
+        k = len(grasp)
+        if grasp.dimension != 2:
+            raise InvalidInput("regions on an outline have a grasp in the plane")
+        return cls(
+            Outline.from_dict(given["shape"]),
+            grasp,
+            array(given["places"], "places", (k,)),
+            array(given["arcs"], "arcs", (k, 2)),
+            number(given["half_width"], "half_width", least=0),
+            array(given["alone"], "alone", (k, 2)),
+            number(given["max_force"], "max_force", above=0),
+            tuple(GraspState.from_dict(state) for state in listed(given["corners"], "corners")),
+            None if spans is None else array(spans, "spans", (k, 2)),
+            None if cells is None else array(cells, "cells", (None, k, 2)),
+        )

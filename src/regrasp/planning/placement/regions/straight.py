@@ -1,0 +1,102 @@
+"""How far the fingers of a grasp may miss their places on straight sides: exact by corners."""
+
+from itertools import product
+
+import numpy as np
+
+from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.mechanics.checks import Array, read_only
+from regrasp.mechanics.grasp import Grasp
+from regrasp.mechanics.state import GraspState
+from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.outline import Outline
+from regrasp.planning.placement.laws import LAWS
+from regrasp.planning.placement.reachable import sides_of
+from regrasp.planning.placement.regions.contact_arcs import ContactRegions
+from regrasp.planning.placement.regions.growing import farthest, moved_out, traded
+from regrasp.planning.placement.regions.needs import LESS, limit_of
+from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sides import Sides, moved
+from regrasp.planning.states.choosing import choose_state
+
+_ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
+
+
+def on_sides(
+    shape: Outline, grasp: Grasp, loads: Array, given: float | None, powers: tuple[int, ...]
+) -> ContactRegions:
+    """What ``contact_regions`` finds on a polygon."""
+    sides = sides_of(shape, 0.0)
+    places, u = _sides_under(sides, grasp)
+    kept = float(grasp.frictions[0]) * (1 - LESS)
+    search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
+    limit = limit_of(search.norm_at(places, u), given)
+    to = (sides.contact(int(side), v, kept, "at") for side, v in zip(places, u, strict=True))
+    grasp = Grasp(map(moved, grasp, to))
+    k = len(places)
+    lengths = sides.lengths[sides.edges[places]]
+    ends = np.stack([u, u], axis=1)
+    room = sides.ends[places]  # (k, 2)
+    ways: Array = np.array([-1.0, 1.0])
+
+    def holds(box: Array) -> bool:
+        return all(search.norm_at(places, np.array(c)) <= limit for c in product(*box))
+
+    def off(width: float) -> Array:
+        result: Array = np.clip(u[:, None] + ways * width / lengths[:, None], room[:, :1], room[:, 1:])
+        return result
+
+    half = farthest(lambda width: holds(off(width)), float(lengths.max()))
+    box = off(half * (1 - LESS))
+    for i, end in product(range(k), range(2)):
+        box[i, end] = moved_out(holds, box, i, end, room[i, end])
+    for power in powers:
+        box = traded(holds, box, u, room, lengths, power)
+    if powers:
+        free = box != room  # ends that are not the end of their side
+        half = float(
+            (np.abs(box - u[:, None]) * lengths[:, None]).min(where=free, initial=half + lengths.max())
+        )
+    box = u[:, None] + (1 - LESS) * (box - u[:, None])
+    alone = np.zeros((k, 2))
+    for i, end in product(range(k), range(2)):
+        reached = moved_out(holds, ends, i, end, room[i, end])
+        alone[i, end] = abs(reached - u[i]) * lengths[i]
+    corners = []
+    for corner in product(*box):
+        at = Grasp(
+            sides.contact(int(side), float(v), c.friction, c.name or "")
+            for side, v, c in zip(places, corner, grasp, strict=True)
+        )
+        try:
+            corners += [_plain(at, Wrench.from_vector(w), limit) for w in search.loads]
+        except RegraspError as error:
+            raise Infeasible(
+                f"a corner of the regions was left without forces by rounding: {error}"
+            ) from None
+    starts = sides.starts[sides.edges[places]] - sides.edges[places] * lengths
+    return ContactRegions(
+        shape, grasp, read_only(starts + u * lengths), read_only(starts[:, None] + box * lengths[:, None]),
+        half * (1 - LESS) ** 2, read_only(alone * (1 - LESS)), limit * (1 + LESS), tuple(corners),
+    )  # fmt: skip
+
+
+def _plain(grasp: Grasp, load: Wrench, limit: float) -> GraspState:
+    return GraspState(grasp, load, choose_state(grasp, load, "peak", max_force=limit * (1 + LESS)).forces)
+
+
+def _sides_under(sides: Sides, grasp: Grasp) -> tuple[np.ndarray, Array]:
+    """The sides that contacts are on, by point and normal, and their u."""
+    unit = sides.vectors / sides.lengths[:, None]
+    places, u = [], []
+    for contact in grasp:
+        away = contact.position - sides.vertices
+        along = np.clip((away * unit).sum(axis=1), 0.0, sides.lengths)
+        distance = np.hypot(*(away - along[:, None] * unit).T) / sides.size
+        turned = np.hypot(contact.normal[0] + unit[:, 1], contact.normal[1] - unit[:, 0])
+        side = int(np.argmin(distance + turned))
+        if distance[side] + turned[side] > _ON_SIDE:
+            raise InvalidInput(f"contact {contact.name} is on no side of the outline, with its inward normal")
+        places.append(side)
+        u.append(side + along[side] / sides.lengths[side])
+    return np.array(places), np.array(u)
