@@ -92,7 +92,8 @@ def _pictures(
     count = _SLOW if word == "wrench" else _COUNT
     try:
         found = placement_map(shape, load, friction=scenario.friction, objective=word, count=count, **level)
-        yield "map.png", image(plots.plot_placement_map(found, regions=regions))
+        outside = regions is not None and (regions.places < shape.length).all()  # of holes
+        yield "map.png", image(plots.plot_placement_map(found, regions=regions if outside else None))
     except RegraspError as error:
         say(f"\nno map.png: {error}")
 

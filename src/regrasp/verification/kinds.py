@@ -192,7 +192,8 @@ def _check_proof(proof: Any, where: str) -> None:
 def _check_regions(regions: Any) -> None:
     _check(regions, "", grasp=_PLANAR, max_force=_DOUBLE, places=_TABLE, arcs=_TABLE, half_width=_DOUBLE)
     _check(regions, "", corners=_STATES, spans=_or_none(_TABLE), cells=_or_none(_TABLE))
-    _check_shape(regions, points=_answers(_POINT, 0.0))
+    holes = {"hole_polygons": _answers(_RINGS)} if is_there(read(regions, "shape"), "hole_polygons") else {}
+    _check_shape(regions, points=_answers(_POINT, 0.0), **holes)
 
 
 def _check_face_regions(regions: Any) -> None:

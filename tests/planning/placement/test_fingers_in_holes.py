@@ -9,6 +9,7 @@ import pytest
 
 import regrasp as rg
 from refusals import refusal
+from regrasp import plots
 from regrasp.planning.placement.reachable import sides_of
 
 pytestmark = pytest.mark.oracle
@@ -74,3 +75,55 @@ def test_holes_that_are_curves_and_arcs_are_refused() -> None:
     ):
         asked = {"friction": 0.3, "in_holes": True} | more
         assert words in str(refusal(lambda s=shape, a=asked: rg.choose_grasp(s, 2, LOADS, **a)))
+
+
+def test_regions_of_fingers_in_holes_hold_and_are_no_wider_than_that() -> None:
+    """Every choice within holds, some at the ends of wider ones do not, and arcs elsewhere do not verify."""
+    chosen = rg.choose_grasp(WEDGE, 2, LOADS, friction=0.3, in_holes=True, objective="peak", tolerance=0.01)
+    assert (chosen.places > WEDGE.length).all()
+    regions = rg.contact_regions(WEDGE, chosen.grasp, LOADS)
+    assert regions.places == pytest.approx(chosen.places, abs=1e-9)
+    assert rg.verify(regions).ok
+    assert regions.half_width > 0.1
+    tangents = np.stack([regions.grasp.normals[:, 1], -regions.grasp.normals[:, 0]], axis=1)
+
+    def need(off: np.ndarray) -> float:
+        assert LOADS.vertices is not None
+        moved = rg.Grasp(
+            rg.Contact(c.position + s * t, c.normal, 0.3)
+            for c, s, t in zip(regions.grasp, off, tangents, strict=True)
+        )
+        try:
+            loads = map(rg.Wrench.from_vector, LOADS.vertices)
+            return max(rg.choose_state(moved, load, "peak").value for load in loads)
+        except rg.Infeasible:
+            return np.inf
+
+    rng = np.random.default_rng(3)
+    low, high = (regions.arcs - regions.places[:, None]).T
+    assert all(need(rng.uniform(low, high)) <= regions.max_force * (1 + 1e-6) for _ in range(40))
+    wider = 1.01 * regions.half_width * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
+    assert max(map(need, wider)) > regions.max_force
+    again = rg.ContactRegions.from_dict(json.loads(json.dumps(regions.to_dict())))
+    assert again == regions
+    shift = np.array([[WEDGE.length], [0.0]])
+    for wrong in (
+        replace(regions, arcs=regions.arcs - shift, places=regions.places - shift[:, 0]),
+        replace(regions, shape=rg.Outline([[0, 3], [2, 0], [4, 3]], holes=HOLES[::-1])),
+        replace(regions, shape=rg.Outline([[0, 3], [2, 0], [4, 3]])),
+    ):
+        assert not rg.verify(wrong).ok
+    ax = plots.plot_contact_regions(regions)
+    drawn = [line.get_xydata() for line in ax.lines if line.get_gid() == "region"]
+    for line, contact, t, *ends in zip(drawn, regions.grasp, tangents, low, high, strict=True):
+        assert line == pytest.approx(contact.position + np.outer(ends, t))
+    pairs = rg.placement_map(WEDGE, LOADS, friction=0.3, count=12)
+    said = refusal(lambda: plots.plot_placement_map(pairs, regions=regions))
+    assert "on the outline of the map" in str(said)
+
+
+def test_contacts_in_round_holes_have_no_regions() -> None:
+    plate = rg.Outline([[0, 0], [4, 0], [4, 4], [0, 4]], holes=[rg.Outline.ellipse(1, 1, centre=(2, 2))])
+    fingers = rg.Grasp([rg.Contact([0, 1], [0, 1], 0.5), plate.contact_at(2.0, friction=0.5)])
+    said = str(refusal(lambda: rg.contact_regions(plate, fingers, rg.Wrench([0, -1]))))
+    assert "on no side of the outline or of a hole that is a polygon" in said

@@ -95,18 +95,22 @@ def plot_contact_regions(
     ax = plot_outline(regions.shape, ax, units=units)
     size = float(np.ptp(regions.shape.polygon(), axis=0).max())
     colours = contact_colours(regions.grasp)
-    handles = []
+    handles: list[Line2D] = []
     for contact, (lo, hi), width, place, (back, ahead) in zip(
         regions.grasp, regions.arcs, regions.widths, regions.places, regions.alone, strict=True
     ):
         colour, name = colours[contact.name or ""], contact.name or ""
         _cone(ax, contact, 0.6 * _CONE * size, colour)
         narrow = 3 + 0.9 * max(1 - width / regions.shape.length, 0.0)  # arcs that share an edge are all seen
+        below = sum(
+            other[0] < hi and lo < other[1] and (wide, -number) > (width, -len(handles))
+            for number, (other, wide) in enumerate(zip(regions.arcs, regions.widths, strict=True))
+        )
         for start, end, points, alpha, above, gid in (
             (place - back, place + ahead, 7, 0.3, 2.9, "alone"),
-            (lo, hi, 4, 0.85, narrow, "region"),
+            (lo, hi, 4 * 0.55**below, 0.85, narrow, "region"),
         ):
-            arc = regions.shape.points(np.linspace(start, end, 2 if regions.spans is None else 60))
+            arc = _arc(regions, contact, np.array([start, end]) - place, place)
             look = Line2D(
                 *arc.T, color=colour, linewidth=points, solid_capstyle="butt", alpha=alpha, zorder=above
             )
@@ -121,6 +125,15 @@ def plot_contact_regions(
     ]
     legend(ax, handles, ncols=2)
     return ax
+
+
+def _arc(regions: ContactRegions, contact: Contact, off: Array, place: float) -> Array:
+    """(n, 2) points from one way off a contact to another, along its straight side or its curve."""
+    if regions.spans is not None:
+        return regions.shape.points(place + np.linspace(off[0], off[1], 60))
+    ahead = np.array([contact.normal[1], -contact.normal[0]])
+    result: Array = contact.position + off[:, None] * ahead
+    return result
 
 
 def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:

@@ -42,7 +42,9 @@ def plot_placement_map(
         raise InvalidInput("expected the map of two fingers; plot_placement_outline draws that of one")
     if regions is not None:
         instance(regions, "regions", ContactRegions)
-        if len(regions.places) != 2 or placements.fixed.size or regions.shape != placements.shape:
+        in_holes = regions.spans is None and (regions.places >= regions.shape.length).any()
+        others = len(regions.places) != 2 or bool(placements.fixed.size)
+        if in_holes or others or regions.shape != placements.shape:
             raise InvalidInput(
                 "regions must be those of two fingers on the outline of the map, which are all"
             )

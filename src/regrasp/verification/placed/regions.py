@@ -110,8 +110,7 @@ def _check_corners(regions: Regions) -> list[str]:
     control = regions.shape.cubics()
     if control is not None:
         return _check_curved(regions, control)
-    vertices = np.asarray(regions.shape.polygon())
-    along = np.roll(vertices, -1, axis=0) - vertices
+    vertices, along = straight_edges(regions.shape)
     lengths = np.hypot(*along.T)
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     slack = float(RESOLUTION) * float(starts[-1])
@@ -142,6 +141,12 @@ def _check_corners(regions: Regions) -> list[str]:
         ends.append([vertices[edge] + (s - starts[edge]) * unit for s in (off, off + hi - lo)])
         normals.append(normal)
     return _missing(regions, regions.corners, ends, normals, regions.grasp.frictions, slack)
+
+
+def straight_edges(shape: Any) -> tuple[Array, Array]:
+    """(n, 2) where the edges of a polygon begin, then those of its holes, clockwise; (n, 2) their vectors."""
+    rings = [np.asarray(shape.polygon()), *(hole[::-1] for hole in getattr(shape, "hole_polygons", tuple)())]
+    return np.concatenate(rings), np.concatenate([np.roll(r, -1, axis=0) - r for r in rings])
 
 
 def _check_curved(regions: Regions, control: Array) -> list[str]:

@@ -63,9 +63,9 @@ def contact_regions(
 
     Args:
         shape: a polygon, a smooth outline, or a mesh of flat faces.
-        grasp: contacts on its outer boundary to a millionth, all of one friction, relative to the centre of
-            mass; up to six, on a mesh three or four, away from edges. Regions are around the points of the
-            boundary that are nearest to them.
+        grasp: contacts on its outer boundary, or of a polygon in holes that are polygons, to a millionth, all
+            of one friction, relative to the centre of mass; up to six, on a mesh three or four, away from
+            edges. Regions are around the points of the boundary that are nearest to them.
         load: external wrench on the object about its centre of mass, or a set of them [N, N m].
         max_force: limit on every force, beside those of the contacts, of which the least counts for all [N];
             three times the least that the grasp needs if there is none.

@@ -10,6 +10,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
+from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
@@ -26,7 +27,8 @@ def on_sides(
     shape: Outline, grasp: Grasp, loads: Array, given: float | None, powers: tuple[int, ...]
 ) -> ContactRegions:
     """What ``contact_regions`` finds on a polygon."""
-    sides = sides_of(shape, 0.0)
+    straight = all(isinstance(hole, PolygonBoundary) for hole in shape.holes)
+    sides = sides_of(shape, 0.0, in_holes=straight)  # into holes that are curves nobody asks fingers
     places, u = _sides_under(sides, grasp)
     kept = float(grasp.frictions[0]) * (1 - LESS)
     search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
@@ -96,7 +98,10 @@ def _sides_under(sides: Sides, grasp: Grasp) -> tuple[np.ndarray, Array]:
         turned = np.hypot(contact.normal[0] + unit[:, 1], contact.normal[1] - unit[:, 0])
         side = int(np.argmin(distance + turned))
         if distance[side] + turned[side] > _ON_SIDE:
-            raise InvalidInput(f"contact {contact.name} is on no side of the outline, with its inward normal")
+            raise InvalidInput(
+                f"contact {contact.name} is on no side of the outline or of a hole that is a polygon, with "
+                "its inward normal"
+            )
         places.append(side)
         u.append(side + along[side] / sides.lengths[side])
     return np.array(places), np.array(u)
