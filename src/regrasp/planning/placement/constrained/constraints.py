@@ -15,9 +15,10 @@ from regrasp.mechanics.checks import Array, Flags
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.holds.pairs import Filter
-from regrasp.planning.placement.constrained.sampled import LARGEST, Placed, Value, sampled, slid
+from regrasp.planning.placement.constrained.sampled import LARGEST, drawn, sampled
 from regrasp.planning.placement.results import Asked, grasp_at, proof_of
 from regrasp.planning.placement.search import Progress, Search
+from regrasp.planning.placement.sliding import Placed, Value, slid
 from regrasp.planning.states.choosing import choose_state
 
 CONSTRAINED_BOXES = 20_000
@@ -27,6 +28,7 @@ _ENOUGH = 1e3  # times the loads, forces of those that stay without any limit
 _ABOUT = 1 + 1e-6  # rounding
 _JUDGED = 3  # placements of a batch of boxes whose forces are computed, the best first
 _LEAST, _ROUGH = 20, 0.01  # placements of the least largest forces to begin with, and their gap [-]
+_GAIN = 1e-6  # of a value, the least that counts
 _SEEDS = 200  # placements of points to begin with
 _FIRST, _LAST = 0.125, 1e-4  # steps of sliding, as parts of an edge
 _STAGES = ((14, _FIRST, 0.1), (6, 0.06, 0.02), (2, 0.015, _LAST))  # how many slide, from which step to which
@@ -123,7 +125,7 @@ def run_constrained(
             if progress is not None:
                 progress(search.bound, search.best)
         if search.best < inf:
-            search.accept(*slid(search, (search.best, *search.found), value, _FIRST, _LAST))
+            search.accept(*_slid(search, (search.best, *search.found), value, _FIRST, _LAST))
     except KeyboardInterrupt:
         if search.best == inf:
             raise
@@ -157,10 +159,19 @@ def _begun(search: Search, asked: Asked, kept: Constraints, most: int, value: Va
     best = {tuple(places): (norm, places, u) for norm, places, u in found}  # of the same edges
     sliding = list(best.values())
     for many, step, last in _STAGES:
-        sliding = [slid(search, placed, value, step, last) for placed in sliding[-many:]]
+        sliding = [_slid(search, placed, value, step, last) for placed in sliding[-many:]]
         sliding.sort(key=lambda placed: -placed[0])
         found += sliding
     return sorted(found, key=lambda placed: -placed[0])
+
+
+def _slid(search: Search, placed: Placed, value: Value, step: float, last: float) -> Placed:
+    """The best placement that fingers find by sliding, one alone or all at once."""
+
+    def less(places: np.ndarray, u: Array, than: float) -> float:
+        return value(places, u, than * (1 - _GAIN))
+
+    return slid(search, placed, less, step, last, drawn(search.fingers))
 
 
 def _norm(

@@ -1,4 +1,4 @@
-"""Placements of points spread over the sides that may keep constraints, and how fingers slide from there."""
+"""Placements of points spread over the sides that may keep constraints, and ways to slide from there."""
 
 from collections.abc import Callable, Iterator
 from itertools import combinations
@@ -9,16 +9,13 @@ import numpy as np
 from regrasp.mechanics.checks import Array, Flags
 from regrasp.planning.placement.laws import Law
 from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sliding import Placed
 
-Placed = tuple[float, np.ndarray, Array]
 May = Callable[[Array, Array], Flags]
 """Which of two points (m, 2) and (m, 2) fingers may be at."""
-Value = Callable[[np.ndarray, Array, float], float]
-"""Of a placement where it is below a level; infinite elsewhere."""
 _POINTS = {2: 160, 3: 48, 4: 20}  # of so many fingers: 5,000 to 17,000 placements
 _OF_SAME_EDGES = 2
 _DRAWN = 3  # ways for all fingers at once, drawn at each step, a finger
-_GAIN = 1e-6  # of a value, the least that counts
 
 LARGEST = Law("force", "largest")
 _POWER = {"sum": 1.0, "squares": 0.5, "largest": 0.0}  # of k, the norm of k ones
@@ -77,28 +74,10 @@ def sampled(
     return first
 
 
-def slid(search: Search, placed: Placed, value: Value, step: float, last: float) -> Placed:
-    """The best placement that fingers find by sliding, one alone or all at once, by steps that are halved.
-
-    step, last: parts of an edge.
-    """
-    best, places, u = placed
-    rng, alone = np.random.default_rng(0), np.vstack([np.eye(len(u)), -np.eye(len(u))])
-    while step > last:
-        helped = False
-        for way in np.vstack([alone, rng.uniform(-1, 1, (_DRAWN * len(u), len(u)))]):
-            moved = [
-                search.sides.moved(int(on), float(at), step * side)
-                for on, at, side in zip(places, u, way, strict=True)
-            ]
-            on, at = np.array([m[0] for m in moved]), np.array([m[1] for m in moved])
-            if np.array_equal(at, u):
-                continue
-            found = value(on, at, best * (1 - _GAIN))
-            if found < inf:
-                best, places, u, helped = found, on, at, True
-        step *= 1.0 if helped else 0.5
-    return best, places, u
+def drawn(fingers: int) -> Callable[[], Array]:
+    """Ways of each finger alone, ahead and back, and of all at once, drawn at each step."""
+    rng, alone = np.random.default_rng(0), np.vstack([np.eye(fingers), -np.eye(fingers)])
+    return lambda: np.vstack([alone, rng.uniform(-1, 1, (_DRAWN * fingers, fingers))])
 
 
 def _points(search: Search, count: int) -> tuple[np.ndarray, Array]:

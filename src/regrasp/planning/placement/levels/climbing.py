@@ -7,6 +7,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.planning.placement.levels.level import SURE, Level
 from regrasp.planning.placement.search import Progress, Search
+from regrasp.planning.placement.sliding import Placed, moved, one_by_one, slid
 
 _STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
 _SETTLING, _NEARER = 24, 2
@@ -101,10 +102,7 @@ def improved(
     while step > _SHORTEST:
         before = u
         for way in (sign * step * way for way in ways for sign in (-1, 1)):
-            moved = [
-                search.sides.moved(int(j), v, w) for j, v, w in zip(places, u.tolist(), way, strict=True)
-            ]
-            on, there = np.array([j for j, _ in moved]), np.array([v for _, v in moved])
+            on, there = moved(search.sides, places, u, way)
             level.put(search, level.beyond(best, _SLOW))
             if not search.are_apart(on, there) or search.norm_at(on, there) > level.max_force * (1 - SURE):
                 continue
@@ -118,25 +116,16 @@ def improved(
     return best, places, u
 
 
-def _slid_below(
-    search: Search, norm: float, starts: list[tuple[float, np.ndarray, Array]]
-) -> tuple[np.ndarray, Array] | None:
+def _slid_below(search: Search, norm: float, starts: list[Placed]) -> tuple[np.ndarray, Array] | None:
     """Where the first of some placements comes that reaches a norm by sliding; None where none does."""
-    slid = (_slid(search, places, u) for _, places, u in starts)
-    return next((at for at in slid if search.norm_at(*at) <= norm), None)
 
+    def less(places: np.ndarray, u: Array, than: float) -> float:
+        found = search.norm_at(places, u) if search.are_apart(places, u) else inf
+        return found if found < than else inf
 
-def _slid(search: Search, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
-    """Places of less norm, one finger at a time, by steps that are halved where none helps."""
-    norm, step = search.norm_at(places, u), _FIRST
-    while step > _NEAR:
-        helped = False
-        for i in range(len(u)):
-            for way in (-step, step):
-                on, there = places.copy(), u.copy()
-                on[i], there[i] = search.sides.moved(int(places[i]), float(u[i]), way)
-                found = search.norm_at(on, there) if search.are_apart(on, there) else inf
-                if found < norm:
-                    norm, places, u, helped = found, on, there, True
-        step *= 1.0 if helped else 0.5
-    return places, u
+    for _, places, u in starts:
+        start = search.norm_at(places, u), places, u
+        found, *at = slid(search, start, less, _FIRST, _NEAR, one_by_one(len(u)))
+        if found <= norm:
+            return at[0], at[1]
+    return None

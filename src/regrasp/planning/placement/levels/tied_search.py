@@ -12,6 +12,7 @@ from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.levels.level import AnsweredLevel
 from regrasp.planning.placement.levels.tied import Ties, Withstood
 from regrasp.planning.placement.search import Progress, Search
+from regrasp.planning.placement.sliding import Placed
 
 STRICT = 1e-9
 """Of the limit, by which excluded boxes must be above it."""
@@ -19,8 +20,6 @@ _BOXES = 50  # that a program counts for; half of the programs are for first loo
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _EVEN = 0.02  # of an arc, that counts where its fingers press in one place under all loads
 _GIVEN = 1e-6  # of a factor, that solvers may be off by
-
-Placed = tuple[float, np.ndarray, Array]
 
 
 class TiedSearch:

@@ -5,7 +5,6 @@ boxes of groups of edges are excluded by the loads one by one; those that are le
 (``Ties``), the one that may withstand most first.
 """
 
-from itertools import product
 from math import inf, nan
 
 import numpy as np
@@ -18,9 +17,10 @@ from regrasp.mechanics.robust.stiffness import response
 from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.wrench import Wrench
 from regrasp.planning.placement.levels.level import AnsweredLevel, Shown
-from regrasp.planning.placement.levels.tied_search import STRICT, Placed, TiedSearch
+from regrasp.planning.placement.levels.tied_search import STRICT, TiedSearch
 from regrasp.planning.placement.results import grasp_at
 from regrasp.planning.placement.search import Progress, Search
+from regrasp.planning.placement.sliding import Placed, one_by_one, slid
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
@@ -119,23 +119,18 @@ class WithstoodLevel(AnsweredLevel):
         return found
 
     def _climbed(self, search: Search, placed: Placed, tolerance: float) -> Placed:
-        """The best placement that fingers find by sliding, one at a time, by steps that are halved."""
-        best, places, u = -placed[0], placed[1], placed[2]
-        step = _FIRST
-        while step > _LAST:
-            helped = False
-            for i, way in product(range(len(u)), (-step, step)):
-                on, there = places.copy(), u.copy()
-                on[i], there[i] = search.sides.moved(int(places[i]), float(u[i]), way)
-                wanted = best * (1 + 0.1 * tolerance) + _GAIN
-                self.put(search, wanted)
-                if not search.are_apart(on, there) or search.norm_at(on, there) > self.max_force:
-                    continue  # it does not even answer more
-                factor = self._factor(search, on, there)
-                if factor > wanted:
-                    best, places, u, helped = factor, on, there, True
-            step *= 1.0 if helped else 0.5
-        return -best, places, u
+        """The best placement that fingers find by sliding, one at a time."""
+
+        def less(places: np.ndarray, u: Array, than: float) -> float:
+            """The negative of what it withstands."""
+            wanted = -than * (1 + 0.1 * tolerance) + _GAIN
+            self.put(search, wanted)
+            if not search.are_apart(places, u) or search.norm_at(places, u) > self.max_force:
+                return inf  # it does not even answer more
+            factor = self._factor(search, places, u)
+            return -factor if factor > wanted else inf
+
+        return slid(search, placed, less, _FIRST, _LAST, one_by_one(len(placed[2])))
 
     def of(self, search: Search, places: np.ndarray, u: Array) -> float:
         """What a placement withstands; NaN where it does not hold the load, or not by itself."""

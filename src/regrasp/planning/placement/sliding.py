@@ -1,0 +1,51 @@
+"""Fingers that slide along the boundary to where a placement is better, by steps that are halved."""
+
+from collections.abc import Callable
+from math import inf
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sides import Sides
+
+Placed = tuple[float, np.ndarray, Array]
+"""The value of a placement, of which less is better, and the sides and u of its fingers."""
+Value = Callable[[np.ndarray, Array, float], float]
+"""Of a placement where it is better than a value given; infinite elsewhere."""
+
+
+def slid(
+    search: Search, placed: Placed, value: Value, step: float, last: float, ways: Callable[[], Array]
+) -> Placed:
+    """The best placement that fingers come to, by steps that are halved where none helps.
+
+    step, last: parts of an edge. ways: of all fingers, (w, k) at each step.
+    """
+    best, places, u = placed
+    while step > last:
+        helped = False
+        for way in ways():
+            on, at = moved(search.sides, places, u, step * way)
+            if np.array_equal(at, u):
+                continue
+            found = value(on, at, best)
+            if found < inf:
+                best, places, u, helped = found, on, at, True
+        step *= 1.0 if helped else 0.5
+    return best, places, u
+
+
+def one_by_one(fingers: int) -> Callable[[], Array]:
+    """Each finger alone, back and ahead."""
+    ways: Array = np.repeat(np.eye(fingers), 2, axis=0) * np.tile([-1.0, 1.0], fingers)[:, None]
+    return lambda: ways
+
+
+def moved(sides: Sides, places: np.ndarray, u: Array, way: Array) -> tuple[np.ndarray, Array]:
+    """Where fingers come some way along their sides, fractions of edges (k,)."""
+    there = [
+        sides.moved(int(on), float(at), float(by)) if by else (int(on), float(at))
+        for on, at, by in zip(places, u, way, strict=True)
+    ]
+    return np.array([on for on, _ in there]), np.array([at for _, at in there])
