@@ -149,6 +149,10 @@ def test_open_ends_that_mean_nothing_are_refused() -> None:
             "keep and arcs cannot",
         ),
         ({"goal": None, "arcs": [None] * 2}, "arcs must have an entry for each of three fingers"),
+        ({"goal": None, "goal_orientation": "up"}, "goal_orientation must be a number, got 'up'"),
+        ({"goal": None, "goal_orientation": float("nan")}, "goal_orientation must be finite, got nan"),
+        ({"goal": None, "goal_orientation": 1.0, "load": "down"}, "load must be a Wrench or a LoadSet, got"),
+        ({"goal": None, "keep": "left"}, "keep must be a function of first points, second points"),
         ({"outline": box, "goal": None}, "the shape is in space and load in the plane"),
     ):
         call = {"outline": ELLIPSE, "start": START, "goal": START, "load": LOAD, **OPTIONS, **given}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from regrasp.errors import Infeasible, InvalidInput, shown
-from regrasp.mechanics.checks import Array, rotation
+from regrasp.mechanics.checks import Array, function, number, rotation
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.wrench import Wrench
 from regrasp.plans.regrasp_plan import RegraspPlan
@@ -48,8 +48,9 @@ def best_between(
         raise InvalidInput(
             "weights compare sequences between two grasps; give one start and one goal with them"
         )
+    turn = number(options.get("goal_orientation", 0.0), "goal_orientation")
     starts = _grasps(start, "start", shape, load, options)
-    goals = _grasps(goal, "goal", shape, _seen_at_the_end(load, options), options)
+    goals = _grasps(goal, "goal", shape, _seen_at_the_end(load, turn, options), options)
     if len(starts) * len(goals) > MOST_ENDS:
         raise InvalidInput(
             f"{len(starts)} starts and {len(goals)} goals are more than {MOST_ENDS} pairs; give fewer"
@@ -74,13 +75,14 @@ def _rank(found: Any) -> tuple[int, float]:
     return len(plan.moves), -plan.margin
 
 
-def _seen_at_the_end(load: Wrench, options: dict[str, Any]) -> Wrench:
+def _seen_at_the_end(load: Wrench, turn: float, options: dict[str, Any]) -> Wrench:
     """The load as the object sees it where it ends."""
-    if isinstance(load, Wrench) and load.dimension == 3 and options.get("goal_rotation") is not None:
+    if not isinstance(load, Wrench):  # which is refused
+        return load
+    if load.dimension == 3 and options.get("goal_rotation") is not None:
         back = rotation(options["goal_rotation"], "goal_rotation").T
         return Wrench(back @ load.force, back @ load.torque)
-    turn = float(options.get("goal_orientation", 0.0))
-    return load if turn == 0 else load.rotated(-turn)
+    return load if turn == 0 or load.dimension == 3 else load.rotated(-turn)
 
 
 def _grasps(end: End, what: str, shape: Any, load: Wrench, options: dict[str, Any]) -> list[Grasp]:
@@ -132,6 +134,8 @@ def _chosen_on_outline(what: str, outline: Any, load: Wrench, options: dict[str,
     from regrasp.planning.placement.choosing import choose_grasp
 
     own = _OwnArcs(outline, options.get("arcs"))
+    if options.get("keep") is not None:
+        function(options["keep"], "keep", "a function of first points, second points and an angle", 3)
     keep, turn = options.get("keep"), float(options.get("goal_orientation", 0.0)) if what == "goal" else 0.0
 
     def may(first: Array, second: Array, _: float) -> Any:
