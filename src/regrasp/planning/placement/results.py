@@ -31,6 +31,7 @@ _ATTEMPTS = 20  # placements whose forces are computed, the best first, until on
 _AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found is at the edge of what holds
 _DIFFERENT = 0.05  # of the length
 _OTHERS = 4
+_AT_ONCE = 1_000_000  # numbers
 
 
 @dataclass(frozen=True)
@@ -218,12 +219,14 @@ def _others(
     sides, length = search.sides, float(search.sides.lengths.sum())
     kept, tried = _alike(search, u), search.placements()
     found: list[OtherGrasp] = []
-    queue = [(one[0], number, exact is None) for number, one in enumerate(tried)]
+    s = _along(sides, np.sort([at for _, _, at in tried], axis=1))
+    differs = _apart(s, kept, length) >= _DIFFERENT * length
+    queue = [(tried[number][0], number, exact is None) for number in np.flatnonzero(differs).tolist()]
     while queue and len(found) < _OTHERS:
         norm, number, known = heappop(queue)
         _, places, at = tried[number]
         order = np.argsort(at, kind="stable")
-        if norm == inf or _farthest(_along(sides, at[order]), kept, length) < _DIFFERENT * length:
+        if norm == inf or _apart(s[number, None], kept, length)[0] < _DIFFERENT * length:
             continue
         if exact is not None and not known:
             heappush(queue, (exact(places, at), number, True))
@@ -251,7 +254,11 @@ def _along(sides: Sides, u: Array) -> Array:
     return result
 
 
-def _farthest(s: Array, others: Array, length: float) -> float:
-    """The largest way of a finger from one placement to the nearest of others (i, k)."""
-    way = np.abs(s - others)
-    return float(np.minimum(way, length - way).max(axis=1).min())
+def _apart(s: Array, others: Array, length: float) -> Array:
+    """(n,) the largest way of a finger from each placement (n, k) to the nearest of others (i, k)."""
+    parts = []
+    for some in np.array_split(s, 1 + s.shape[0] * others.size // _AT_ONCE):
+        way = np.abs(some[:, None] - others)
+        parts.append(np.minimum(way, length - way).max(axis=2).min(axis=1))
+    result: Array = np.concatenate(parts)
+    return result

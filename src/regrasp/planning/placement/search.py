@@ -289,7 +289,8 @@ class Search:
     def _read(self, rows: Array) -> list[tuple[float, np.ndarray, Array]]:
         rows = rows[np.isfinite(rows[:, 0])]
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
-        return [(row[0] * self.unit, row[1::2].astype(int), row[2::2]) for row in rows]
+        norms = rows[:, 0] * self.unit
+        return list(zip(norms.tolist(), rows[:, 1::2].astype(int), rows[:, 2::2], strict=True))
 
     def proof(self, bound: float, edges: Array, centre: Array) -> PlacementProof:
         """That no norm is below ``bound`` [N].
