@@ -83,9 +83,9 @@ def certified(outline: rg.Outline, fingers: int, rounds: int) -> dict[str, Any]:
     begin = perf_counter()
     ok = rg.verify(chosen).ok
     return {
-        "seconds": passed, "processor": worked, "value": chosen.value, "bound": chosen.bound, "gap": chosen.gap,
-        "boxes": chosen.certificate.leaves, "verified": ok, "verify_seconds": perf_counter() - begin,
-        "over_time": seen,
+        "seconds": passed, "processor": worked, "value": chosen.value, "bound": chosen.bound,
+        "gap": chosen.gap, "boxes": chosen.certificate.leaves, "verified": ok,
+        "verify_seconds": perf_counter() - begin, "over_time": seen,
     }  # fmt: skip
 
 

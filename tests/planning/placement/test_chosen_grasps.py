@@ -10,6 +10,7 @@ import regrasp as rg
 from placements import BRACKET, TILTED, star, value_of
 from regrasp.planning.placement.loads import inner_and_outer
 from regrasp.planning.placement.symmetries import images
+from values import placed
 
 pytestmark = pytest.mark.oracle
 
@@ -199,3 +200,23 @@ def test_symmetries_of_a_square_are_those_of_its_loads(loads: list[list[float]],
     assert np.abs(points).max(axis=1) == pytest.approx(np.ones(count))
     halves = np.insert(square, [1, 2, 3, 4], [[0, -1], [1, 0], [0, 1], [-1, 0.0]], axis=0)
     assert len(images(halves, np.array(loads), np.array([0.2]))) == count  # vertices within sides
+
+
+@pytest.mark.parametrize(
+    ("objective", "word"),
+    [("peak", "below"), ("friction_use", "below"), ("angle", "above"), ("wrench_ball", "above")],
+)
+def test_no_placement_is_on_the_better_side_of_the_bound_though_the_gap_is_closed(
+    objective: str, word: str
+) -> None:
+    closed = replace(placed(), objective=objective, bound=placed().value)
+    assert f"; no placement is {word} {closed.bound:.6g}, a gap of 0" in str(closed)
+
+
+def test_columns_stay_apart_and_rounding_is_no_number() -> None:
+    first, second = placed().grasp
+    moved = rg.Contact([-0.00956194321, -0.00313698765], normal=first.normal, friction=0.5, name="F1")
+    flat = rg.Contact([0.024, 1.7e-18], normal=second.normal, friction=0.5, name="F2")
+    lines = str(replace(placed(), grasp=rg.Grasp([moved, flat]), places=np.array([0.123456789, 2.0])))
+    assert "  0.123457  (-0.00956194, -0.00313699)  " in lines
+    assert "(0.024, 0)" in lines

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any, Self
 
+import numpy as np
+
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, number
 from regrasp.mechanics.grasp import Grasp
@@ -13,9 +15,12 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
+from regrasp.planning.placement.laws import LARGEST
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.proofs.shape_data import shape_data, shape_of
+
+_ROUNDING = 1e-12  # of the largest coordinate, which is printed as 0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -156,11 +161,13 @@ class ChosenGrasp(ArrayValue):
         width = 26 if arcs[0] else 36
         head = f"{'arc length':>14}" if arcs[0] else ""
         rows = [f"{'':10}{head}{'position':>{width}}{'inward normal':>{width - 4}}"]
-        for contact, s in zip(self.grasp, arcs, strict=True):
-            at = ", ".join(f"{v:.6g}" for v in contact.position)
+        positions = self.grasp.positions
+        positions = np.where(np.abs(positions) < _ROUNDING * np.abs(positions).max(), 0.0, positions)
+        for contact, s, position in zip(self.grasp, arcs, positions, strict=True):
+            at = ", ".join(f"{v:.6g}" for v in position)
             normal = ", ".join(f"{v + 0.0:.4f}" for v in contact.normal)
-            rows.append(f"{contact.name or '':10}{s}{f'({at})':>{width}}{f'({normal})':>{width - 4}}")
-        better = "above" if self.bound > self.value else "below"
+            rows.append(f"{contact.name or '':10}{s}  {f'({at})':>{width - 2}}  {f'({normal})':>{width - 6}}")
+        better = "above" if self.objective in LARGEST else "below"
         return "\n".join(
             [
                 *rows,

@@ -40,6 +40,8 @@ LAWS: Mapping[str, Law] = MappingProxyType(
     }
 )
 LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
+LARGEST = tuple(word for word in LEVELS if word != "friction_use")
+"""Objectives that are best as large as can be; of the others less is better."""
 
 
 def law_of(objective: str | Objective) -> tuple[str, Law]:

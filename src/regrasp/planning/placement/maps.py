@@ -14,7 +14,7 @@ from regrasp.mechanics.value import ArrayValue
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.asking import check_task, length_of, level_of
-from regrasp.planning.placement.laws import LEVELS, law_of
+from regrasp.planning.placement.laws import LARGEST, LEVELS, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import Level
 from regrasp.planning.placement.loads import inner_and_outer
@@ -133,7 +133,7 @@ def placement_map(
         value = _value(search, level, law.power, sides.on(fingers), fingers)
         values[at] = value
         values[at[::-1]] = value
-    more = word in LEVELS and word != "friction_use"
+    more = word in LARGEST
     return PlacementMap(
         shape,
         word,

@@ -16,7 +16,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
-from regrasp.planning.placement.laws import Law
+from regrasp.planning.placement.laws import LARGEST, Law
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import AnsweredLevel, Level, Shown
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
@@ -113,7 +113,7 @@ def chosen_at_level(
     grasp, places, u, (states, value) = found
     level.put(search, beyond)
     bound = level.value(beyond)
-    bound = max(bound, value) if asked.objective != "friction_use" else min(bound, value)
+    bound = max(bound, value) if asked.objective in LARGEST else min(bound, value)
     trivial = not search.closed or bound == 0.0
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, tuple(map(_plain, states)), value, bound,

@@ -28,7 +28,7 @@ class PlacementProof(BoxProof):
         size: of a force, ``normal``, ``force``, or ``margin``: |f| of forces that keep a margin.
         norm: of the sizes, ``sum``, ``squares`` or ``largest``.
         min_distance: between fingers, 0 for none [m].
-        bound: no placement holds all loads with a smaller norm [N].
+        bound: no placement holds all loads with a smaller norm [N]; of size ``margin`` nor with this one.
         arcs: (n, fingers, 2) first and last side of each arc.
         ends: (n, fingers, 2) least and largest u of each arc.
         children: (n, 2) the first box that one is split into, and how many; 0 of a box that is not.
