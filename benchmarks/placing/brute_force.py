@@ -30,6 +30,7 @@ OBJECTIVES = (
 )  # fmt: skip
 LIMITED = OBJECTIVES[4:]
 FRICTION, LIMIT, AROUND = 0.4, 3.0, 72
+FAR_APART = 31  # steps from one of them to the next, so that few placements are left early
 POINTS = {2: 200, 3: 60}
 RESULTS = Path(__file__).parents[1] / "results" / "brute_force.json"
 ROUNDING, INNER, ROUND = (
@@ -76,7 +77,7 @@ def asked(outline: rg.Outline, objective: str, kind: int) -> tuple[str, dict[str
         rows = np.array([[x, -1, y * reach] for x, y in ((0.3, 0.05), (-0.3, 0.05), (0, -0.1), (0.1, 0.1))])
         hull = rg.LoadSet.hull(map(rg.Wrench.from_vector, rows))
         return "hull of 4", more | {"load": hull}, task._replace(loads=rows)
-    angle = 2 * np.pi * np.arange(AROUND) / AROUND
+    angle = 2 * np.pi * FAR_APART * np.arange(AROUND) / AROUND
     far = 1 / np.cos(np.pi / AROUND)  # a polygon around all orientations
     rows = np.column_stack([far * np.cos(angle), far * np.sin(angle), 0 * angle])
     return "turned", more | {"load": rg.LoadSet.turned(rg.Wrench([0, -1]))}, task._replace(loads=rows)

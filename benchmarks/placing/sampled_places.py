@@ -105,8 +105,10 @@ def norms(places: Places, task: Task, *, whole: bool = False) -> Array:
 def _norms_of(places: Places, task: Task, load: Array) -> Array:
     if not len(places.positions):
         return np.zeros(0)
+    d = places.positions.shape[-1]
+    force, torque = load[:d], load[d:] if d == 3 else load[2]
     found = rg.choose_states(
-        *places, task.friction, load[:2], load[2], objective=task.objective, max_force=task.limit
+        *places, task.friction, force, torque, objective=task.objective, max_force=task.limit
     )
     signed = -found.values if task.objective in LARGEST else found.values
     return np.where(found.held, signed, np.inf)
