@@ -122,13 +122,14 @@ def lies(found: dict[str, Any], objective: str, verified: bool) -> list[str]:
     sign = -1 if objective in LARGEST else 1
     value, bound, sampled, again = (sign * found[k] for k in ("value", "bound", "best", "again"))
     size = max(abs(value), 1e-3)
+    close = max(abs(value), 1e-2)
     about = {"turned": ROUND, "deviations": INNER}.get(found["loads"], ROUNDING)
     return [
         word
         for word, is_so in (
             ("bound beaten", sampled < bound - ROUNDING * size),
             ("bound above value", bound > value),
-            ("not what it says", abs(again - value) > about * size),
+            ("not what it says", abs(again - value) > about * close),
             ("not verified", not verified),
         )
         if is_so

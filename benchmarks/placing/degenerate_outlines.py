@@ -25,6 +25,7 @@ from sampled_places import all_of, best, points_of
 
 RESULTS = Path(__file__).parents[1] / "results" / "degenerate_outlines.json"
 LATE = 2.0  # times the cap
+NONE = 1e-9  # what the judges take for no friction
 POINTS = {2: 40, 3: 16}
 FRICTIONS = {"none": 0.0, "1e-12": 1e-12, "0.3": 0.3, "critical": 1.0}
 HALF = np.arange(16) * np.pi / 8
@@ -80,14 +81,14 @@ def row(
     late = process_time() - used > LATE * cap
     result["seconds"] = perf_counter() - begin
     result["lies"] += ["hangs"] * late
-    if friction:
+    if friction > NONE:
         samples = all_of(points_of(outline, POINTS[fingers], in_holes=holes), fingers)
         found, held = best(samples, task)
         result |= {"held": held, "best": found if held else None}
         if held and chosen is None and result["end"].startswith("refus"):
             result["lies"].append("refused")
     if chosen is not None:
-        again = judged_again(chosen, task) if friction else chosen.value
+        again = judged_again(chosen, task) if friction > NONE else chosen.value
         sampled = result.get("best")
         judged = result | {"again": again, "best": chosen.value if sampled is None else sampled}
         result["again"] = again

@@ -88,6 +88,27 @@ def test_on_a_knifes_edge_the_gap_says_so() -> None:
         assert value_of(robust.grasp, load[None], "sum_normal") <= robust.value * (1 + 1e-6)
 
 
+@pytest.mark.parametrize("fingers", [2, 3])
+def test_at_critical_friction_what_rounding_decides_hides_no_placement_that_holds(fingers: int) -> None:
+    """Two loads at the friction angle of the lowest side: fingers on it hold by exact arithmetic alone."""
+    loads = rg.LoadSet.hull(
+        [
+            rg.Wrench([0.3, -1], 0.13),
+            rg.Wrench([-0.3, -1], 0.13),
+            rg.Wrench([0, -1], -0.27),
+            rg.Wrench([0.1, -1], 0.27),
+        ]
+    )
+    asked = {"objective": "peak", "from_corners": 0.0, "most_boxes": 5000}
+    chosen = rg.choose_grasp(BRACKET, fingers, loads, friction=0.3, **asked)
+    less = rg.choose_grasp(BRACKET, fingers, loads, friction=0.3 * (1 - 1e-5), **asked)
+    more = rg.choose_grasp(BRACKET, fingers, loads, friction=0.3 * (1 + 1e-5), **asked)
+    assert chosen.value <= less.value * (1 + 1e-3)
+    assert chosen.bound <= more.value  # what holds by exact arithmetic counts for the bound
+    assert more.value < 0.7 * less.value
+    assert rg.verify(chosen).ok
+
+
 def test_progress_sees_both_bounds_close_in() -> None:
     seen: list[tuple[float, float]] = []
     rg.choose_grasp(star(8, 12), 3, TILTED, friction=0.3, progress=lambda low, high: seen.append((low, high)))

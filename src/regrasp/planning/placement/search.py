@@ -76,6 +76,7 @@ class Search:
                 if progress is not None:
                     progress(self.bound, self.best)
         except KeyboardInterrupt:
+            self.interrupted = True
             if self.best == inf:
                 raise
 
@@ -198,9 +199,10 @@ class Search:
         """Take these for the placements found, whatever was."""
         self._kept = placements
 
-    def anew(self) -> "Search":
-        """A search for the same from the beginning."""
-        return Search(self.sides, self.fingers, self.friction, self.loads, self.law, self.apart, self.narrow)
+    def anew(self, friction: float | None = None) -> "Search":
+        """A search for the same from the beginning, perhaps with other ``friction``."""
+        mu = self.friction if friction is None else friction
+        return Search(self.sides, self.fingers, mu, self.loads, self.law, self.apart, self.narrow)
 
     def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None) -> float:
         """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
