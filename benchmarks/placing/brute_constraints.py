@@ -5,8 +5,8 @@
 
 Random polygons, loads, frictions and objectives, each with one constraint or two of ``max_force``,
 ``min_normal``, ``keep``, ``removable``, ``min_distance``, ``from_corners``, ``arcs`` and ``tip_radius``.
-Which samples keep them is decided here; forces with least normals come from ``forces_within_limits``, all
-others from ``choose_states``. A row is kept when it is done, so that a run goes on where it was ended.
+Which samples keep them is decided here; forces with least normals come from linear programs, all others from
+``choose_states``. A row is kept when it is done, so that a run goes on where it was ended.
 """
 
 import argparse
@@ -22,9 +22,8 @@ import numpy as np
 import regrasp as rg
 from brute_force import LIMIT
 from fifty_outlines import polygon
-from forces_within_limits import least
 from placement_outlines import within
-from sampled_places import LARGEST, Places, Task, best, norms, points_of
+from sampled_places import LARGEST, Places, Task, best, least, norms, points_of
 
 Array = np.ndarray
 NORMS = ("sum_normal", "peak_normal", "peak", "effort")

@@ -2,12 +2,16 @@
 
     python benchmarks/placing/brute_force.py [--objectives peak] [--fingers 2] [--cap 20] [--seconds 300]
     python benchmarks/placing/brute_force.py --table
+    python benchmarks/placing/brute_force.py --space [--cap 40]
 
 Every objective on seven outlines, of a load, a hull of four or every orientation by turns, friction 0.4,
 forces of at most 3 N where a limit is needed, fingers at corners allowed; a gap of 0.1 % asked for, 1 % of
 what is withstood, within ``--cap`` seconds of processor time. Of every orientation samples are judged by a
 polygon of 72 loads around all of them. The places that are chosen are judged by the same judges as the
 samples (``sampled_places``). A row is kept when it is done, so that a run goes on where it was ended.
+
+In space: the bracket under six loads and a plain box under three, the four norms, three fingers, a gap of 1 %
+asked for, fingers at edges allowed, against all triples of 40 points drawn evenly over the faces.
 """
 
 import argparse
@@ -21,6 +25,7 @@ import numpy as np
 
 import regrasp as rg
 from fifty_outlines import outlines
+from on_surfaces import BOX, BRACKET, SIX, THREE, Surface
 from placement_outlines import within
 from sampled_places import LARGEST, Places, Task, all_of, best, norms, points_of
 
@@ -32,6 +37,8 @@ LIMITED = OBJECTIVES[4:]
 FRICTION, LIMIT, AROUND = 0.4, 3.0, 72
 FAR_APART = 31  # steps from one of them to the next, so that few placements are left early
 POINTS = {2: 200, 3: 60}
+SPOTS = 40
+MESHES = (("bracket, 6 loads", BRACKET, SIX, 0.6), ("box, 3 loads", BOX, THREE, 0.5))
 RESULTS = Path(__file__).parents[1] / "results" / "brute_force.json"
 ROUNDING, INNER, ROUND = (
     1e-7,
@@ -166,6 +173,46 @@ def table(kept: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def in_space(cap: float) -> None:
+    """A line for each mesh and norm."""
+    print(
+        "| mesh | objective | triples | best of them | value | bound | gap | refining buys [%] | again | "
+        "time [s] | wrong |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|---|"
+    )
+    for name, mesh, loads, friction in MESHES:
+        spots = Surface(mesh).random(np.random.default_rng(7), SPOTS)
+        samples = all_of((spots[:, :3], spots[:, 3:]), 3)
+        held = rg.LoadSet.hull(map(rg.Wrench.from_vector, loads))
+        for objective in OBJECTIVES[:4]:
+            task = Task(objective, friction, loads, np.inf)
+            sampled = float(norms(samples, task).min())
+            begin = perf_counter()
+            chosen = rg.choose_grasp(
+                mesh, 3, held, friction=friction, objective=objective, tolerance=0.01, from_corners=0.0,
+                progress=within(cap)[1],
+            )  # fmt: skip
+            took = perf_counter() - begin
+            there = Places(chosen.grasp.positions[None], chosen.grasp.normals[None])
+            again = float(norms(there, task, whole=True)[0])
+            wrong = [
+                word
+                for word, is_so in (
+                    ("bound beaten", sampled < chosen.bound * (1 - ROUNDING)),
+                    ("bound above value", chosen.bound > chosen.value),
+                    ("not what it says", abs(again / chosen.value - 1) > 10 * ROUNDING),
+                    ("not verified", not rg.verify(chosen).ok),
+                )
+                if is_so
+            ]
+            print(
+                f"| {name} | `{objective}` | {len(samples.positions):,} | {sampled:.5f} | "
+                f"{chosen.value:.5f} | {chosen.bound:.5f} | {chosen.gap:.3f} | "
+                f"{100 * (sampled / chosen.value - 1):.2f} | "
+                f"{again:.5f} | {took:.1f} | {', '.join(wrong)} |",
+                flush=True,
+            )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--objectives", nargs="+", default=OBJECTIVES, choices=OBJECTIVES)
@@ -173,8 +220,12 @@ def main() -> None:
     parser.add_argument("--cap", type=float, default=20.0, help="of a search, of processor time [s]")
     parser.add_argument("--seconds", type=float, default=np.inf, help="after which no other row is begun")
     parser.add_argument("--table", action="store_true")
+    parser.add_argument("--space", action="store_true")
     parser.add_argument("-o", "--output", type=Path, default=RESULTS)
     given = parser.parse_args()
+    if given.space:
+        in_space(given.cap)
+        return
     kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
     if given.table:
         print(table(kept))
