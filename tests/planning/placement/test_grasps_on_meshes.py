@@ -77,7 +77,7 @@ def test_what_was_passed_over_is_worth_what_it_says() -> None:
 
 
 def test_on_many_faces_a_search_ends_after_so_many_corners(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("regrasp.planning.placement.space.choosing.MOST_ROWS", 1000)
+    monkeypatch.setattr("regrasp.planning.placement.space.choosing.MOST_LOOKS", 1000)
     loads = rg.LoadSet.hull(
         rg.Wrench([x, y, -1.8], [0.005, 0, 0]) for x, y in ((0.5, 0), (-0.5, 0), (0, 0.5), (0, -0.5))
     )

@@ -111,8 +111,8 @@ def choose_grasp(
             of a polygon that turns too little for a corner.
         most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
             200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help, and
-            1,000,000 on a mesh, and fewer on one of many faces: such whose more than a thousand corners
-            of faces are 40 millions in all, for all loads.
+            1,000,000 on a mesh, and fewer on one of many faces: such for which 1.5 billion corners and groups
+            of faces were looked at.
         progress: called with the bound and the best value so far as the search goes on: of the four norms
             the norm of forces behind the objective [N], infinite while none is found; of the others the
             objective itself, NaN while none is, with a bound that comes near at the end of the search alone.

@@ -22,8 +22,13 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
     whole, sizes = _areas(t), _areas(np.asarray(corners))
     surface, reach = _Flat(t, -cross / (2 * whole)[:, None]), float(np.abs(vertices).max())
     given = _Flat(np.asarray(corners), np.asarray(normals))
-    used, covered = set[int](), 0.0
+    alike = _alike(given, surface)
+    used, covered = set(alike.values()), float(sizes[list(alike)].sum())
+    if len(used) < len(alike):
+        return -1.0
     for k, triangle in enumerate(given.corners):
+        if k in alike:
+            continue
         flat = (triangle - triangle.mean(axis=0)) @ given.normals[k]
         on = surface.beside(triangle, given.normals[k], reach)
         if np.abs(flat).max() > _ON * reach or not len(on):
@@ -81,6 +86,14 @@ class _Flat:
         c = np.searchsorted(self._reached, heights.min() - room)
         d = np.searchsorted(self._lowest, heights.max() + room)
         return np.sort(self._by_normal[a:b] if b - a < d - c else self._by_height[c:d])
+
+
+def _alike(given: _Flat, surface: _Flat) -> dict[int, int]:
+    """Which triangles are faces to the last digit, in the order of their corners, too."""
+    places = {corners.tobytes(): j for j, corners in enumerate(surface.corners + 0.0)}
+    found = {k: places.get(corners.tobytes(), -1) for k, corners in enumerate(given.corners + 0.0)}
+    off = np.abs(given.normals - surface.normals[list(found.values())]).max(axis=1) if found else np.zeros(0)
+    return {k: j for k, j in found.items() if j >= 0 and off[k] <= _ON}
 
 
 def _areas(t: Array) -> Array:

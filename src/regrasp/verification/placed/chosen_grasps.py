@@ -70,8 +70,9 @@ def verify_chosen(chosen: Chosen) -> Verification:
         broken += wrong
     else:
         broken += _check_bound(chosen, proof)
-        broken += (_check_spots if in_space else _check_places)(chosen, cast(Any, proof))
-    asked = "" if broken else _area(chosen, proof) if in_space else _part(proof, chosen.shape)
+        share = _share(chosen, proof) if in_space else 0.0
+        broken += _check_spots(chosen, cast(Any, proof), share) if in_space else _check_places(chosen, proof)
+    asked = "" if broken else _area(share) if in_space else _part(proof, chosen.shape)
     return Verification(
         tuple(broken), max(residuals), min(angles), min(slacks), excluded=_leaves(proof), bound=chosen.bound,
         asked=asked,
@@ -111,16 +112,21 @@ def _part(proof: Proof, shape: Any = None) -> str:
     return tied if share > 1 - _CLOSE else f"{tied} on the {share:.1%} of the outline that was asked about"
 
 
-def _area(chosen: Chosen, proof: Any) -> str:
+def _share(chosen: Chosen, proof: Any) -> float:
+    """The part of a mesh that a proof is about, -1 where it is about no part of it."""
+    shape: Any = chosen.shape
+    return share_of(proof.corners, proof.normals, *shape.surface()) if hasattr(shape, "surface") else -1.0
+
+
+def _area(share: float) -> str:
     """Which part of a mesh the places are on that a proof is about; empty for all of it."""
-    share = share_of(proof.corners, proof.normals, *cast(Any, chosen.shape).surface())
     return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the surface that was asked about"
 
 
-def _check_spots(chosen: Chosen, proof: SurfaceProof) -> list[str]:
-    """That the contacts are fingers that the proof is about, on the mesh given."""
+def _check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:
+    """That the contacts are fingers that the proof is about, which has a share of the mesh given."""
     shape: Any = chosen.shape
-    if not hasattr(shape, "surface") or share_of(proof.corners, proof.normals, *shape.surface()) < 0:
+    if share < 0:
         return ["the proof is about another mesh"]
     if len(chosen.grasp) != proof.fingers:
         return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]

@@ -3,7 +3,7 @@
 from typing import Any
 
 from regrasp.closed_form.compiled.compiling import digest
-from regrasp.closed_form.compiled.patches import patch_gauge, patch_search
+from regrasp.closed_form.compiled.patches import patch_gauge, patch_search, patch_support
 from regrasp.closed_form.compiled.patches.patch_gauge import gauge
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.compilation import kept
@@ -21,8 +21,8 @@ def _loop(digest: str) -> Any:
         """
         _ = digest
         mu, size, norm, precision = law
-        one, single, work = spare[3], spare[4], spare[9]
-        best, inverse, x, exact, shares, pushes = work[13], work[6], work[7], work[9], work[11], work[12]
+        each, work, alone = spare[3], spare[8], (spots, *spare[9:])
+        best, inverse, x, exact, shares, pushes = work[16], work[6], work[7], work[9], work[11], work[12]
         k = len(points)
         for number in range(len(corners)):
             corner = start if number == 0 else (number - 1 if number <= start else number)
@@ -32,7 +32,7 @@ def _loop(digest: str) -> Any:
                     spots[i, 3 + c] = normals[i, c]
             for load in range(len(loads)):
                 w = loads[load]
-                found = gauge(spots, one, single, w, mu, size, norm, limit, precision, best, work[:13])
+                found = gauge(alone, each, w, mu, size, norm, limit, -1.0, precision, best, work[:16])
                 if found >= limit:
                     return corner
                 untilted = True
@@ -53,4 +53,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-corner_forces = _loop(digest((patch_gauge, patch_search, placement_search)))
+corner_forces = _loop(digest((patch_gauge, patch_search, patch_support, placement_search)))

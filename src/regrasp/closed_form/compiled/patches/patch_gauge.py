@@ -14,60 +14,29 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
+from regrasp.closed_form.compiled.patches.patch_support import DEEP, largest
 
 NEVER = 1e5
 """Norm, as a multiple of the wrench's, from which nothing is held: what columns cost that no finger makes."""
-_MOST, _FEW, _WORK = 150, 24, 500_000  # columns made; but fewer of patches of many rows, for so many in all
+_MOST = 150  # columns made
 _TILT = 1e-10  # of the wrench, which keeps it off faces of the bodies that columns span
 _MISSED = 1e-8  # of the wrench, by which forces may be off it
 
 
 @njit(**VIEWS)
-def _sigma(row, y, mu, size, force):  # type: ignore[no-untyped-def]
-    """The most work of a force of size 1 along a twist, and the force that does it."""
-    vx = y[0] + y[4] * row[2] - y[5] * row[1]
-    vy = y[1] + y[5] * row[0] - y[3] * row[2]
-    vz = y[2] + y[3] * row[1] - y[4] * row[0]
-    along = vx * row[3] + vy * row[4] + vz * row[5]
-    tx, ty, tz = vx - along * row[3], vy - along * row[4], vz - along * row[5]
-    across = sqrt(tx * tx + ty * ty + tz * tz)
-    slope, most = mu, along + mu * across
-    if size == 1:  # |f| = 1
-        if across <= mu * along:
-            slope = across / along if along > 0.0 else 0.0
-        most = (along + slope * across) / sqrt(1.0 + slope * slope)
-    if most <= 0.0:
-        force[0] = force[1] = force[2] = 0.0
-        return 0.0
-    length = 1.0 if size == 0 else 1.0 / sqrt(1.0 + slope * slope)
-    share = slope / across if across > 0.0 else 0.0
-    force[0] = (row[3] + share * tx) * length
-    force[1] = (row[4] + share * ty) * length
-    force[2] = (row[5] + share * tz) * length
-    return most
-
-
-@njit(**VIEWS)
-def support(rows, first, count, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
+def support(surface, patches, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
     """s(y), and the column at which it is attained: its wrench, and each finger's row and weight."""
-    k = len(first)
+    k = len(patches)
     column, at, weight, force, best, most = work[:6]
-    dual, top, squares = 0.0, 0, 0.0
+    stack, above, looked = work[13:16]
+    rows, dual, top, squares = surface[0], 0.0, 0, 0.0
     for i in range(k):
-        if i > 0 and first[i] == first[i - 1] and count[i] == count[i - 1]:
+        if i > 0 and patches[i] == patches[i - 1]:
             at[i], most[i] = at[i - 1], most[i - 1]
             for c in range(3):
                 best[i, c] = best[i - 1, c]
         else:
-            most[i], at[i] = 0.0, first[i]
-            for c in range(3):
-                best[i, c] = 0.0
-            for r in range(first[i], first[i] + count[i]):
-                found = _sigma(rows[r], y, mu, size, force)
-                if found > most[i]:
-                    most[i], at[i] = found, r
-                    for c in range(3):
-                        best[i, c] = force[c]
+            most[i], at[i] = largest(surface, patches[i], y, mu, size, force, best[i], stack, above, looked)
         if most[i] > most[top]:
             top = i
         dual += most[i]
@@ -97,27 +66,29 @@ def support(rows, first, count, y, mu, size, norm, work):  # type: ignore[no-unt
 
 
 @njit(**VIEWS)
-def bound_by(rows, first, count, w, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
+def bound_by(surface, patches, w, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
     """What a twist proves of the norm of forces that make w; infinite where none do."""
     gain = 0.0
     for c in range(6):
         gain += w[c] * y[c]
     if gain <= 0.0:
         return 0.0
-    dual = support(rows, first, count, y, mu, size, norm, work)
+    dual = support(surface, patches, y, mu, size, norm, work)
     return gain / dual if dual > 0.0 else np.inf
 
 
 @njit(**VIEWS)
-def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work):  # type: ignore[no-untyped-def]
+def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, work):  # type: ignore[no-untyped-def]
     """A bound of the norm of forces that make w, within ``precision`` or not below ``level``, and its twist.
 
-    rows: (P, 6) points and inward normals. first, count: (k,) rows of each finger's patch. best: (6,) the
-    twist. In ``work`` stay the columns that make w: their amounts x (6,), and of each finger its rows (6, k),
-    weights (6, k) and forces of size 1 (6, k, 3).
+    It ends, too, where forces make w whose norm is at most ``enough``.
+
+    surface: as of ``largest``. patches: (k,) of the fingers. best: (6,) the twist. In ``work`` stay the
+    columns that make w: their amounts x (6,), and of each finger its rows (6, k), weights (6, k) and forces
+    of size 1 (6, k, 3).
     """
-    column, at, weight, _, pushed, _, inverse, x, y, d, made, shares, pushes = work
-    k = len(first)
+    column, at, weight, _, pushed, _, inverse, x, y, d, made, shares, pushes = work[:13]
+    k = len(patches)
     scale = 0.0
     for c in range(6):
         scale += abs(w[c])
@@ -134,20 +105,18 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
         x[r] = abs(push) * NEVER
         for i in range(k):
             shares[r, i] = 0.0
-            made[r, i] = first[i]
+            made[r, i] = surface[1][patches[i], 0]
             for c in range(3):
                 pushes[r, i, c] = 0.0
-    proven, total_rows = 0.0, 0
-    for i in range(k):
-        total_rows += count[i]
-    for _ in range(min(_MOST, max(_FEW, _WORK // total_rows))):
+    proven = 0.0
+    for _ in range(_MOST):
         value = 0.0
         for c in range(6):
             y[c] = 0.0
             for r in range(6):
                 y[c] += inverse[r, c]
             value += w[c] * y[c]
-        dual = support(rows, first, count, y, mu, size, norm, work)
+        dual = support(surface, patches, y, mu, size, norm, work)
         bound = 0.0
         if value > 0.0:
             bound = value / dual if dual > 0.0 else np.inf
@@ -160,7 +129,7 @@ def gauge(rows, first, count, w, mu, size, norm, level, precision, best, work): 
         total = 0.0
         for r in range(6):
             total += x[r]
-        if total - proven <= precision * total:
+        if total <= enough or total - proven <= precision * total:
             break
         leaving, least = -1, np.inf
         for r in range(6):
@@ -212,9 +181,9 @@ def reached(w, k, work):  # type: ignore[no-untyped-def]
 
 
 def workspace(k: int) -> tuple[Any, ...]:
-    """Memory for ``gauge`` and what it leaves there, for k fingers."""
+    """Memory for ``gauge`` and what it leaves there, for k fingers; the last is how much it has looked at."""
     return (
         np.zeros(6), np.zeros(k, np.int64), np.zeros(k), np.zeros(3), np.zeros((k, 3)), np.zeros(k),
         np.zeros((6, 6)), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros((6, k), np.int64), np.zeros((6, k)),
-        np.zeros((6, k, 3)),
+        np.zeros((6, k, 3)), np.zeros(DEEP, np.int64), np.zeros(DEEP), np.zeros(1, np.int64),
     )  # fmt: skip

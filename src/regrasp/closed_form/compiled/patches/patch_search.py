@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.patches import patch_gauge
+from regrasp.closed_form.compiled.patches import patch_gauge, patch_support
 from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, reached, workspace
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.closed_form.compiled.places.placement_search import (
@@ -29,9 +29,8 @@ from regrasp.closed_form.compiled.places.placement_search import (
 )
 from regrasp.compilation import kept
 
-MANY = 1000
-"""Rows of a box that are counted: those of smaller ones take no time to speak of."""
 _CORNERS = 3  # rows of a triangle
+_MANY = 1000  # rows of a patch that take time
 _AGREE = 1e-6  # of a norm, by which what forces reach and a bound agree
 
 
@@ -41,26 +40,29 @@ def _apart(p, q):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _judge(rows, first, count, loads, law, level, start, twist, seen, work, placed):  # type: ignore[no-untyped-def]
+def _judge(surface, patches, loads, law, level, start, twist, seen, work, placed):  # type: ignore[no-untyped-def]
     """The bound of patches, the load behind it, and where forces press; until one load reaches ``level``.
 
     placed: patches are points, and the norm is asked for that forces reach, where the bound is less.
     seen: (k, 6) of each finger: weight, weight times place (3), times its square, row of the largest weight.
     """
     mu, size, norm, precision = law
-    best = work[13]
+    best, rows = work[16], surface[0]
     made, shares, x = work[10], work[11], work[7]
-    k = len(first)
-    worst, critical = -1.0, start
+    k = len(patches)
+    worst, critical, many = -1.0, start, False
     for i in range(k):
+        many = many or surface[1][patches[i], 1] > _MANY
         for c in range(6):
             seen[i, c] = 0.0
         seen[i, 5] = -1.0
     for number in range(len(loads)):
         load = number if number > start else (number - 1 if number > 0 else start)
-        found = gauge(rows, first, count, loads[load], mu, size, norm, level, precision, best, work[:13])
+        enough = worst if many and not placed else -1.0  # a load that needs no more is not the worst
+        w = loads[load]
+        found = gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, work[:16])
         if placed and found < level:
-            norm_of_forces = reached(loads[load], k, work[:13])
+            norm_of_forces = reached(loads[load], k, work[:16])
             if found < norm_of_forces * (1.0 - max(precision, _AGREE)):
                 found = norm_of_forces
         if found > worst:
@@ -176,50 +178,55 @@ def _locate(spans, radius, patches, first, count, wide):  # type: ignore[no-unty
 @njit(**VIEWS)
 def value_of(spots, loads, law, level, start, least, spare):  # type: ignore[no-untyped-def]
     """The norm that fingers at spots (k, 6) need, for the worst load; infinite where they are too near."""
-    one, single, _, _, nowhere, scrap, work = spare[3:10]
+    each, _, _, nowhere, scrap, work, spans, halves, balls = spare[3:]
     for i in range(len(spots)):
         for j in range(i):
             if _apart(spots[i], spots[j]) < least:
                 return np.inf
-    found, _ = _judge(spots, one, single, loads, law, level, start, scrap, nowhere, work, True)
+    found, _ = _judge(
+        (spots, spans, halves, balls), each, loads, law, level, start, scrap, nowhere, work, True
+    )
     return found
 
 
 def spare(k: int) -> tuple[Any, ...]:
     """Memory that a search of k fingers works in."""
+    spans = np.column_stack([np.arange(k), np.ones(k, np.int64)])
     return (
-        np.zeros(k, np.int64), np.zeros(k, np.int64), np.zeros(k), np.arange(k), np.ones(k, np.int64),
-        np.zeros((k, 6)), np.zeros((k, 6)), np.zeros((k, 6)), np.zeros(6), (*workspace(k), np.zeros(6)),
+        np.zeros(k, np.int64), np.zeros(k, np.int64), np.zeros(k), np.arange(k), np.zeros((k, 6)),
+        np.zeros((k, 6)), np.zeros((k, 6)), np.zeros(6), (*workspace(k), np.zeros(6)), spans,
+        np.full((k, 3), -1), np.zeros((1, 9)),
     )  # fmt: skip
 
 
 def _loop(digest: str) -> Any:
     @kept("the search for places on surfaces", error_model="numpy", _nrt=False)
     def search(  # type: ignore[no-untyped-def]
-        rows, spans, tree, radius, loads, trials, law, usable, tolerance, least, narrow, boxes, heap, state,
+        surface, radius, loads, trials, law, usable, tolerance, least, narrow, boxes, heap, state,
         found, tried, budget, spare,
     ):  # fmt: skip
         """Goes on with a search; see the module. Returns why it ends.
 
-        rows: (R, 6) points and inward normals. spans: (K, 2) first row and rows of each patch. tree: (K, 3)
-        its halves, -1 for none, and the edge across which a triangle is halved. radius: (K,) of each. trials:
-        loads, and more that placements tried must hold, too. law: mu, size, norm, precision; usable: mu for
-        placements tried.
+        surface: rows (R, 6), points and inward normals; spans (K, 2), first row and rows of each patch; tree
+        (K, 3), its halves, -1 for none, and the edge across which a triangle is halved; and balls (G, 9)
+        around groups (``patch_support``). radius: (K,) of each patch. trials: loads, and more that placements
+        tried must hold, too. law: mu, size, norm, precision; usable: mu for placements tried.
         boxes: patches (N, k), bounds (N,), twists (N, 6), loads' numbers (N,), kinds (N,), first children and
         their number (N, 2), placements to try (N, k, 6), fingers to split (N,). state: numbers of boxes, of
-        those in the heap, of placements tried, of patches, of rows, and of rows looked at (``MANY``). found:
+        those in the heap, of placements tried, of patches, of rows, and of what was looked at. found:
         (1 + 6 k) the least value and its spots.
         """
         _ = digest
         patches, bounds, twists, critical, kinds, children, places, fingers = boxes
-        first, count, wide, _, _, seen, twist = spare[0], spare[1], spare[2], 0, 0, spare[5], spare[8]
-        work, k, looked = spare[9], patches.shape[1], 0
+        first, count, wide, seen, twist, work = spare[0], spare[1], spare[2], spare[4], spare[7], spare[8]
+        rows, spans, tree, _ = surface
+        k, looked = patches.shape[1], 0
         mu, size, norm, precision = law
         trying = (usable, size, norm, precision)
         if state[0] == 1 and kinds[0] == OPEN and state[2] == 0 and bounds[0] == 0.0:
             _locate(spans, radius, patches[0], first, count, wide)
             bounds[0], critical[0] = _judge(
-                rows, first, count, loads, law, np.inf, 0, twists[0], seen, work, False
+                surface, patches[0], loads, law, np.inf, 0, twists[0], seen, work, False
             )
             fingers[0] = _plan(rows, first, count, wide, narrow, seen, places[0])
         while state[1] > 0:
@@ -231,6 +238,7 @@ def _loop(digest: str) -> Any:
             if state[0] + k + 1 > len(bounds) or state[3] + 2 > len(spans) or state[4] + 6 > len(rows):
                 return FULL
             looked += 1
+            state[5] = work[15][0]
             box = pop(heap, state[1], bounds)
             state[1] -= 1
             value = value_of(places[box], trials, trying, found[0], critical[box], least, spare)
@@ -274,17 +282,12 @@ def _loop(digest: str) -> Any:
                 if least > 0.0 and _too_near(rows, first, count, least):
                     kinds[child] = NEAR
                     continue
-                total = 0
-                for f in range(k):
-                    total += count[f]
-                if total > MANY:
-                    state[5] += total
                 w = loads[critical[box]]
-                known = bound_by(rows, first, count, w, twists[box], mu, size, norm, work[:13])
+                known = bound_by(surface, patches[child], w, twists[box], mu, size, norm, work[:16])
                 bounds[child] = max(known, bounds[box])
                 if known < level:
                     proven, load = _judge(
-                        rows, first, count, loads, law, level, critical[box], twist, seen, work, False
+                        surface, patches[child], loads, law, level, critical[box], twist, seen, work, False
                     )
                     if proven > known and proven >= bounds[box]:
                         bounds[child], critical[child] = proven, load
@@ -305,4 +308,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch this, too.
-search = _loop(digest((patch_gauge, placement_search)))
+search = _loop(digest((patch_gauge, patch_support, placement_search)))

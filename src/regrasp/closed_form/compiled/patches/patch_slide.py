@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.patches import patch_gauge, patch_search
+from regrasp.closed_form.compiled.patches import patch_gauge, patch_search, patch_support
 from regrasp.closed_form.compiled.patches.patch_search import value_of
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.compilation import kept
@@ -121,4 +121,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-slide = _loop(digest((patch_gauge, patch_search, placement_search)))
+slide = _loop(digest((patch_gauge, patch_search, patch_support, placement_search)))

@@ -20,7 +20,7 @@ from regrasp.planning.placement.laws import LEVELS, Law
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.patches import patches_of
-from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, MOST_ROWS, SurfaceSearch
+from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, MOST_LOOKS, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
@@ -77,9 +77,9 @@ def choose_on_mesh(
     few = _on_samples(corners, normals, search)
     for _, spots in few.placements()[:_OTHERS]:
         search.accept(spots)
-    boxes, rows = (MOST_BOXES, MOST_ROWS) if most is None else (most, inf)
-    rows = -1 if few.interrupted else rows  # some boxes, for a bound, and no more after an interrupt
-    search.run(half, boxes, _NARROW, progress, rows)
+    boxes, looks = (MOST_BOXES, MOST_LOOKS) if most is None else (most, inf)
+    looks = -1 if few.interrupted else looks  # some boxes, for a bound, and no more after an interrupt
+    search.run(half, boxes, _NARROW, progress, looks)
     power = law.power
     for norm, spots in search.placements()[:_ATTEMPTS]:
         try:

@@ -12,8 +12,8 @@ from regrasp.planning.placement.space.patches import Patches
 
 MOST_BOXES = 1_000_000
 """Boxes of a search in space unless told otherwise: about 300 bytes each for three fingers."""
-MOST_ROWS = 40_000_000
-"""Corners of faces that boxes of more than a thousand have, for all loads, unless told how many boxes."""
+MOST_LOOKS = 1_500_000_000
+"""Corners and groups of faces looked at, unless told how many boxes."""
 _FIRST_BOXES = 4096
 _AT_A_TIME, _ROWS = 512, 3000  # boxes, on so many rows
 _TRIED = 4096
@@ -63,6 +63,7 @@ class SurfaceSearch:
         self._rows = _room(rows, len(rows) + 3 * room)
         self._spans, self._tree = _room(patches.spans, room), _room(patches.tree, room)
         self._radius = _room(patches.radius / self.size, room)
+        self._balls = patches.balls / np.repeat([self.size, 1.0], [4, 5])
         self._boxes = _memory(_FIRST_BOXES, fingers)
         self._heap = np.zeros(_FIRST_BOXES, np.int64)
         self._state = np.array([1, 1, 0, len(patches.spans), len(rows), 0])
@@ -72,11 +73,11 @@ class SurfaceSearch:
         self.closed = self.interrupted = False
 
     def run(
-        self, tolerance: float, most: int, narrow: float, progress: Progress | None, rows: float = inf
+        self, tolerance: float, most: int, narrow: float, progress: Progress | None, looks: float = inf
     ) -> None:
         """Search until no placement can be better by the fraction ``tolerance``, or ``most`` boxes are used.
 
-        rows: corners of faces that large boxes may have, after which it ends, too.
+        looks: corners and groups of faces looked at, after which it ends, too.
 
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
@@ -88,7 +89,7 @@ class SurfaceSearch:
         try:
             while True:
                 ended = search(
-                    self._rows, self._spans, self._tree, self._radius, self._wanted, self._trials,
+                    self._surface, self._radius, self._wanted, self._trials,
                     self._law, self._usable, tolerance, self.apart / self.size, narrow, self._boxes,
                     self._heap, self._state, self._found, self._tried, each, memory,
                 )  # fmt: skip
@@ -99,14 +100,17 @@ class SurfaceSearch:
                 if progress is not None:
                     progress(self.bound, self.best)
                 self.closed = ended == CLOSED
-                looked = int(self._state[5]) * len(self._wanted)
-                if self.closed or looked > rows or (ended == FULL and not self._grow(most)):
+                if self.closed or self._state[5] > looks or (ended == FULL and not self._grow(most)):
                     break
             self._slide(0.1 * _STEP, _SHORTEST)
         except KeyboardInterrupt:
             self.interrupted = True
             if self.best == inf:
                 raise
+
+    @property
+    def _surface(self) -> tuple[np.ndarray, ...]:
+        return self._rows, self._spans, self._tree, self._balls
 
     def keep_one_on(self, patch: int) -> None:
         """One finger is on a patch; to be said before the search."""
