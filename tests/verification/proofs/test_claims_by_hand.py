@@ -10,6 +10,7 @@ import pytest
 import regrasp as rg
 from proofs import planar, solid
 from regrasp.verification.placed import chosen_grasps as claims
+from regrasp.verification.placed.meshes.areas import part_of_surface
 
 pytestmark = pytest.mark.contract
 
@@ -253,7 +254,7 @@ def test_the_ball_of_a_pair(length) -> None:
 
 def test_what_is_shared_of_surfaces() -> None:
     for missing, whole in (JUST, True), (MORE, False):
-        told = claims._area(1 - missing)
+        told = part_of_surface(1 - missing)
         assert told == ("" if whole else " on the 100.0% of the surface that was asked about")
 
 

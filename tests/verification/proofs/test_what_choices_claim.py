@@ -10,8 +10,8 @@ import pytest
 
 import regrasp as rg
 from regrasp.verification.placed.arc_lengths import points_at
-from regrasp.verification.placed.areas import share_of
-from regrasp.verification.placed.surfaces import touches
+from regrasp.verification.placed.meshes.areas import share_of
+from regrasp.verification.placed.meshes.surfaces import touches
 from regrasp.verification.placed.touching import Touching
 
 pytestmark = pytest.mark.contract

@@ -10,10 +10,10 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.arc_lengths import points_at
-from regrasp.verification.placed.areas import share_of
+from regrasp.verification.placed.meshes.areas import part_of_surface, share_on
+from regrasp.verification.placed.meshes.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.placements import check_proof
 from regrasp.verification.placed.protocol import Chosen, Proof
-from regrasp.verification.placed.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.touching import Touching
 from regrasp.verification.placed.whole_sets import answer_alike, makes_ball
 from regrasp.verification.verdict import Verification
@@ -70,9 +70,9 @@ def verify_chosen(chosen: Chosen) -> Verification:
         broken += wrong
     else:
         broken += _check_bound(chosen, proof)
-        share = _share(chosen, proof) if in_space else 0.0
+        share = share_on(chosen.shape, proof) if in_space else 0.0
         broken += _check_spots(chosen, cast(Any, proof), share) if in_space else _check_places(chosen, proof)
-    asked = "" if broken else _area(share) if in_space else _part(proof, chosen.shape)
+    asked = "" if broken else part_of_surface(share) if in_space else _part(proof, chosen.shape)
     return Verification(
         tuple(broken), max(residuals), min(angles), min(slacks), excluded=_leaves(proof), bound=chosen.bound,
         asked=asked,
@@ -110,17 +110,6 @@ def _part(proof: Proof, shape: Any = None) -> str:
     if proof.rings is None and len(getattr(shape, "hole_polygons", tuple)()):
         tied += " outside of holes"
     return tied if share > 1 - _CLOSE else f"{tied} on the {share:.1%} of the outline that was asked about"
-
-
-def _share(chosen: Chosen, proof: Any) -> float:
-    """The part of a mesh that a proof is about, -1 where it is about no part of it."""
-    shape: Any = chosen.shape
-    return share_of(proof.corners, proof.normals, *shape.surface()) if hasattr(shape, "surface") else -1.0
-
-
-def _area(share: float) -> str:
-    """Which part of a mesh the places are on that a proof is about; empty for all of it."""
-    return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the surface that was asked about"
 
 
 def _check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from regrasp.verification.placed.areas import share_of
+from regrasp.verification.placed.meshes.areas import share_of
 
 pytestmark = pytest.mark.oracle
 

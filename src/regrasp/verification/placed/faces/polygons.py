@@ -6,7 +6,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
-from regrasp.verification.placed.surfaces import away
+from regrasp.verification.placed.meshes.surfaces import away
 
 _ROUNDING = 2.0**-46  # of the reach: how uneven a polygon may be, or its corners in one line
 _INSIDE = 1e-12  # of the reach: by less an edge is not within a polygon

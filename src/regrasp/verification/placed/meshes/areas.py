@@ -8,6 +8,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 
 _ON = 1e-9  # of the reach: a triangle is on a face
+_CLOSE = 1e-9  # of the whole area
 _MISSED = 1e-6  # of an area: what triangles may be beside faces, or over one another
 _ASLANT = np.array([0.36, 0.48, 0.8])  # a direction that few faces are at right angles to
 
@@ -50,6 +51,16 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
                 return -1.0
         covered += size
     return float(covered / whole.sum())
+
+
+def share_on(shape: Any, proof: Any) -> float:
+    """The part of a mesh that a proof is about, -1 where it is about no part of it, or about no mesh."""
+    return share_of(proof.corners, proof.normals, *shape.surface()) if hasattr(shape, "surface") else -1.0
+
+
+def part_of_surface(share: float) -> str:
+    """Which part of a mesh the places are on that a proof is about; empty for all of it."""
+    return "" if share > 1 - _CLOSE else f" on the {share:.1%} of the surface that was asked about"
 
 
 class _Flat:
