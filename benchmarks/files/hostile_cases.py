@@ -191,6 +191,7 @@ def of_plan(name: str, plan: Any, folder: Path) -> Case:
 def of_choice(name: str, chosen: rg.ChosenGrasp, folder: Path) -> Case:
     """A chosen grasp, as a file, whose proof a forger may have signed."""
     good = _saved(chosen, folder)
+    del good["digest"]  # of the whole: a file of before has none
     kind = type(chosen.certificate)
 
     def told(data: Any) -> str:

@@ -137,6 +137,9 @@ def test_every_key_is_needed_or_has_a_default(name: str) -> None:
     value = VALUES[name]()
     for key in value.to_dict():
         less = {k: v for k, v in value.to_dict().items() if k != key}
+        if name == "ChosenGrasp" and less.pop("digest", None) is None:
+            assert type(value).from_dict(less) == value  # data of before had none
+            continue
         if key in (
             "name",
             "max_force",

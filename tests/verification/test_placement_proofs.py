@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -138,6 +139,28 @@ def test_a_number_touched_in_a_file_is_seen() -> None:
         row[0] = row[0] + 1e-12 * (1 + abs(row[0]))
         with pytest.raises(rg.InvalidInput, match="digest"):
             rg.ChosenGrasp.from_dict(data)
+
+
+def test_all_that_is_touched_beside_the_proof_is_seen_too_and_data_of_before_have_no_digest() -> None:
+    data = json.loads(json.dumps(chosen().to_dict()))
+    for touch in (
+        lambda d: d.update(value=d["value"] * (1 + 1e-12)),
+        lambda d: d.update(bound=d["bound"] * (1 - 1e-12)),
+        lambda d: d.update(max_force=1e3),
+        lambda d: d["others"].pop(),
+        lambda d: d["others"][0]["places"].reverse(),
+        lambda d: d["others"][0].update(value=2 * d["others"][0]["value"]),
+        lambda d: d["grasp"]["contacts"][0].update(name="G1"),
+        lambda d: d["states"].reverse(),
+        lambda d: d["shape"]["vertices"][0].__setitem__(0, d["shape"]["vertices"][0][0] - 1e-9),
+        lambda d: d.update(digest=d["certificate"]["digest"]),
+    ):
+        wrong = deepcopy(data)
+        touch(wrong)
+        with pytest.raises(rg.InvalidInput, match="the digest of a chosen grasp does not fit"):
+            rg.ChosenGrasp.from_dict(wrong)
+    del data["digest"]
+    assert rg.ChosenGrasp.from_dict(data) == chosen()
 
 
 def test_claims_that_the_proof_does_not_cover_are_seen() -> None:

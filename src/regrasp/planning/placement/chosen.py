@@ -1,7 +1,9 @@
 """A grasp chosen from a shape."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from math import inf
 from typing import Any, Self
 
@@ -92,8 +94,11 @@ class ChosenGrasp(ArrayValue):
         return off / size if size else (inf if off else 0.0)
 
     def to_dict(self) -> dict[str, Any]:
-        """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one."""
-        return {
+        """The choice as plain data, which JSON can hold; ``from_dict`` gives back an equal one.
+
+        With a digest of all of it: what is touched no longer fits.
+        """
+        data = {
             "shape": shape_data(self.shape),
             "objective": self.objective,
             "grasp": self.grasp.to_dict(),
@@ -111,6 +116,7 @@ class ChosenGrasp(ArrayValue):
             "deviations": None if self.deviations is None else self.deviations.tolist(),
             "length": self.length,
         }
+        return {**data, "digest": _digest(data)}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -120,10 +126,13 @@ class ChosenGrasp(ArrayValue):
             data: what ``to_dict`` returned, or JSON made of it.
 
         Raises:
-            InvalidInput: For other keys and for entries that are not what they must be.
+            InvalidInput: For other keys, for entries that are not what they must be, and for a digest that
+                does not fit; data of versions that wrote none have none.
         """
         keys = ("shape", "objective", "grasp", "states", "value", "bound", "places", "others", "certificate")
-        given = entries(data, "a chosen grasp", keys, ("max_force", "min_normal", "deviations", "length"))
+        given = entries(
+            data, "a chosen grasp", keys, ("max_force", "min_normal", "deviations", "length", "digest")
+        )
         limit, deviations = given.get("max_force"), given.get("deviations")
         grasp = Grasp.from_dict(given["grasp"])
         others = [
@@ -133,7 +142,7 @@ class ChosenGrasp(ArrayValue):
         flat = isinstance(shape, Outline)
         if not isinstance(given["objective"], str):
             raise InvalidInput(f"objective must be a word, got {given['objective']!r}")
-        return cls(
+        found = cls(
             shape,
             given["objective"],
             grasp,
@@ -155,6 +164,9 @@ class ChosenGrasp(ArrayValue):
             None if deviations is None else array(deviations, "deviations", (None, 3)),
             None if given.get("length") is None else number(given["length"], "length", above=0),
         )
+        if "digest" in given and given.pop("digest") != _digest(given):
+            raise InvalidInput("the digest of a chosen grasp does not fit: something in it was changed")
+        return found
 
     def __str__(self) -> str:
         arcs = [f"{s:14.6g}" for s in self.places] if self.places.ndim == 1 else [""] * len(self.places)
@@ -182,6 +194,12 @@ class ChosenGrasp(ArrayValue):
             f"ChosenGrasp({self.objective} {self.value:.6g}, bound {self.bound:.6g}, gap {self.gap:.2g}, "
             f"fingers at {places})"
         )
+
+
+def _digest(data: Mapping[str, Any]) -> str:
+    """Of plain data as JSON has them, the proof's own in the place of the proof."""
+    short = {**data, "certificate": data["certificate"]["digest"]}
+    return sha256(json.dumps(short, sort_keys=True).encode()).hexdigest()
 
 
 def _words(places: Array) -> str:
