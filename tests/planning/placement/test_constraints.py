@@ -1,4 +1,4 @@
-"""Constraints that bounds know nothing of: kept by what is chosen, and the bound stays one."""
+"""Limits that bounds know, and constraints that they do not: kept by what is chosen, and the bound is one."""
 
 from itertools import combinations
 from typing import Any
@@ -46,6 +46,52 @@ def test_no_sampled_placement_within_the_limits_is_better(objective: str, limits
         assert (state.forces * state.grasp.normals).sum(axis=1).min() >= limits.get("min_normal", 0) - 1e-9
     assert rg.verify(chosen).ok
     assert rg.ChosenGrasp.from_dict(chosen.to_dict()) == chosen
+
+
+@pytest.mark.parametrize("objective", ["sum_normal", "peak_normal", "peak", "effort"])
+@pytest.mark.parametrize("limits", [{"min_normal": 0.3}, {"max_force": 0.7, "min_normal": 0.3}])
+def test_gaps_close_within_limits_and_no_triple_is_better(objective: str, limits: dict[str, float]) -> None:
+    chosen = rg.choose_grasp(BRACKET, 3, TILTED, friction=0.4, objective=objective, **limits)
+    assert chosen.gap <= 1e-3
+    assert (chosen.certificate.max_force or 0.0, chosen.certificate.min_normal) == (
+        limits.get("max_force", 0.0),
+        0.3,
+    )
+    assert chosen.bound <= chosen.value <= sampled_best(3, 9, objective, **limits)
+    moved = [
+        [BRACKET.contact_at(s + d, friction=0.4) for s, d in zip(chosen.places, off, strict=True)]
+        for off in np.random.default_rng(0).normal(scale=0.03, size=(40, 3))
+    ]
+    values = []
+    for few in moved:
+        try:
+            values.append(max(rg.choose_state(rg.Grasp(few), w, objective, **limits).value for w in LOADS))
+        except rg.Infeasible:
+            continue
+    assert chosen.bound <= min(values) < 1.2 * chosen.value  # they compete
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+@pytest.mark.parametrize("objective", ["sum_normal", "effort"])
+def test_limits_have_the_units_of_forces(objective: str, unit: float) -> None:
+    scaled = rg.LoadSet.hull([rg.Wrench(w.force * unit, w.torque * unit * 10) for w in LOADS])
+    large = rg.Outline(np.array([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]]) * 10.0)
+    given = {"friction": 0.4, "objective": objective}
+    one = rg.choose_grasp(BRACKET, 3, TILTED, min_normal=0.3, max_force=0.7, **given)
+    other = rg.choose_grasp(large, 3, scaled, min_normal=0.3 * unit, max_force=0.7 * unit, **given)
+    power = 2 if objective == "effort" else 1
+    assert other.value == pytest.approx(one.value * unit**power, rel=1e-3)
+    assert rg.verify(other).ok
+
+
+def test_that_no_fingers_push_so_hard_is_proven() -> None:
+    """Without friction both must be on the lower side, and push with 1 N together."""
+    triangle, weight = rg.Outline([[0, 0], [2, 0], [1, 1.7]]), rg.Wrench([0, -1])
+    half = rg.choose_grasp(triangle, 2, weight, friction=0.0, min_normal=0.49)
+    assert half.value == pytest.approx(1.0)
+    with pytest.raises(rg.Infeasible, match=r"each finger pushing with 0\.51 N or more") as caught:
+        rg.choose_grasp(triangle, 2, weight, friction=0.0, min_normal=0.51)
+    assert rg.verify(caught.value.certificate).ok
 
 
 def test_a_touched_limit_is_seen() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 import regrasp as rg
 from refusals import refusal
-from regrasp.verification.placed.eroded import cone_edges, most_eroded, roughly_eroded
+from regrasp.verification.placed.forces.eroded import cone_edges, most_eroded, roughly_eroded
 
 pytestmark = pytest.mark.oracle
 

@@ -9,7 +9,7 @@ import regrasp as rg
 from proofs import everything, planar
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
-from regrasp.verification.placed.eroded import most_eroded
+from regrasp.verification.placed.forces.eroded import most_eroded
 from regrasp.verification.placed.roots import root_above, root_below
 from regrasp.verification.placed.straight import StraightEdges
 

@@ -9,7 +9,7 @@ import pytest
 import regrasp as rg
 from proofs import everything, limit, most_work, planar, planar_points, random_planar
 from regrasp.verification.placed.cubic import CubicEdges
-from regrasp.verification.placed.eroded import is_sector
+from regrasp.verification.placed.forces.eroded import is_sector
 
 pytestmark = pytest.mark.oracle
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
+from math import inf
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
-from regrasp.planning.placement.search import MOST_BOXES, Progress, Search
+from regrasp.planning.placement.search import ANY_FORCE, MOST_BOXES, Progress, Search
 from regrasp.planning.placement.space.choosing import check_space, choose_on_mesh
 from regrasp.planning.states.objectives import Objective
 
@@ -110,9 +111,9 @@ def choose_grasp(
             0 lets a finger be on a corner or edge with the normal of either side, as on any vertex
             of a polygon that turns too little for a corner.
         most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
-            200,000, or 20,000 with constraints that bounds know nothing of, where more seldom help, and
-            1,000,000 on a mesh, and fewer on one of many faces: such for which 1.5 billion corners and groups
-            of faces were looked at.
+            200,000, or 20,000 with ``keep`` or ``removable``, of which bounds know nothing, and 1,000,000 on
+            a mesh, and fewer on one of many faces: such for which 1.5 billion corners and groups of faces
+            were looked at.
         progress: called with the bound and the best value so far as the search goes on: of the four norms
             the norm of forces behind the objective [N], infinite while none is found; of the others the
             objective itself, NaN while none is, with a bound that comes near at the end of the search alone.
@@ -159,7 +160,7 @@ def choose_grasp(
             apart=DISTINCT * float(np.linalg.norm(points, axis=1).max()) if apart is None else apart,
             away=away, most=cap, progress=progress,
         )  # fmt: skip
-    most = CONSTRAINED_BOXES if constraints.any and goal not in LEVELS else MOST_BOXES
+    most = CONSTRAINED_BOXES if constraints.unbounded else MOST_BOXES
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
     offset = number(load_offset, "load_offset", least=0)
@@ -181,8 +182,9 @@ def choose_grasp(
     distance = DISTINCT * sides.size if apart is None else apart
     # a box so narrow moves no value by more, unless it is on a knife's edge
     narrow = (Level.narrow if level is None else level.narrow) * tolerance
-    search = Search(sides, fingers, mu, inner, law, distance, narrow)
-    asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.any)
+    limits = (inf if limit is None else limit, constraints.min_normal) if level is None else ANY_FORCE
+    search = Search(sides, fingers, mu, inner, law, distance, narrow, limits)
+    asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.unbounded)
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
         best, beyond = run_level(search, level, around * tolerance, most, progress)
@@ -195,8 +197,8 @@ def choose_grasp(
         return chosen_at_level(search, asked, level, best, beyond)
     # half of the tolerance is for loads around a round set and for friction kept back
     half = 0.5 * tolerance / law.power
-    if constraints.any:
-        run_constrained(search, asked, constraints, half, most, progress)
+    if constraints.unbounded:
+        run_constrained(search, constraints, half, most, progress)
     else:
         search.run(half, most, progress)
         if not search.closed and not search.interrupted and mu > 0:

@@ -119,3 +119,12 @@ def _put_back(whole: Queue, part: Queue, nodes: np.ndarray, start: int) -> np.nd
         whole.found[:] = part.found
     left = part.heap[: part.state[1]]
     return np.where(left >= start, left + (at - start), left)
+
+
+def memory(room: int, k: int) -> tuple[np.ndarray, ...]:
+    """Arrays for so many boxes, as the compiled search takes them."""
+    return (
+        np.zeros((room, k, 2), np.int64), np.zeros((room, k, 2)), np.zeros(room), np.zeros((room, 3)),
+        np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2), np.int64),
+        np.zeros((room, k, 8)), np.zeros((room, 3)), np.full(room, -1), np.zeros((1, 3)),
+    )  # fmt: skip

@@ -171,16 +171,20 @@ def _none_holds(search: Search, asked: Asked) -> Infeasible:
             f"forces inside the cones; no placement needs less than {proof.bound:.6g} N",
             proof,
         )
+    if search.bound == inf:
+        largest, least = search.limits
+        limited = f" and forces of at most {largest:g} N" if largest < inf else ""
+        limited += f", each finger pushing with {least:g} N or more" if least else ""
+        far = "" if largest < inf else f", not by forces of {proof.bound:.3g} N either"
+        return Infeasible(
+            f"no {search.fingers} fingers anywhere on this outline hold the loads, with friction "
+            f"{search.friction:g}{limited}{far}",
+            proof,
+        )
     if asked.constrained:
         return Infeasible(
             f"no placement was found that holds the loads and keeps the constraints; without them none needs "
             f"less than {proof.bound:.6g} N, and that there is none with them is not proven",
-            proof,
-        )
-    if search.bound == inf:
-        return Infeasible(
-            f"no {search.fingers} fingers anywhere on this outline hold the loads with friction "
-            f"{search.friction:g}, not by forces of {proof.bound:.3g} N either",
             proof,
         )
     return Infeasible(

@@ -9,7 +9,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.laws import Law
-from regrasp.planning.placement.parts import Queue, search_in_parts
+from regrasp.planning.placement.parts import Queue, memory, search_in_parts
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.sides import RingSides, Sides
 
@@ -24,22 +24,25 @@ _PRECISE = 1e-7
 _SAFE = 1e-9  # of a bound, given up to rounding
 
 Progress = Callable[[float, float], object]
+Limits = tuple[float, float]
+ANY_FORCE = (inf, 0.0)
 
 
 class Search:
     """A search for the best places of fingers on sides: boxes, the placements tried, and how it ended.
 
     apart: least distance of fingers [m]. narrow: arcs shorter than this fraction of the size are not split.
+    limits: largest force and least normal force of every finger [N].
     """
 
     def __init__(
-        self, sides: Sides, fingers: int, friction: float, loads: Array, law: Law, apart: float, narrow: float
-    ) -> None:
+        self, sides: Sides, fingers: int, friction: float, loads: Array, law: Law, apart: float,
+        narrow: float, limits: Limits = ANY_FORCE,
+    ) -> None:  # fmt: skip
         self.sides, self.fingers, self.friction, self.law, self.apart = sides, fingers, friction, law, apart
-        self.unit = float(np.abs(loads / [1, 1, sides.size]).max()) or 1.0
+        self.unit = max(float(np.abs(loads / [1, 1, sides.size]).max()), limits[1]) or 1.0
         self.under(loads)
-        self._table = np.ascontiguousarray(sides.table())
-        self._boxes = _memory(_FIRST_BOXES, fingers)
+        self._table, self._boxes = np.ascontiguousarray(sides.table()), memory(_FIRST_BOXES, fingers)
         arcs, ends = self._boxes[:2]
         arcs[0, :, 1] = len(self._table) - 1
         ends[0] = sides.ends[0, 0], sides.ends[-1, 1]
@@ -48,7 +51,7 @@ class Search:
         self._found = np.full(1 + 2 * fingers, inf)
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
         self.closed = self.interrupted = False
-        self.narrow = narrow
+        self.narrow, self.limits = narrow, limits
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
         self._only = False
         self._kept: list[tuple[float, np.ndarray, Array]] = []
@@ -202,15 +205,17 @@ class Search:
     def anew(self, friction: float | None = None) -> "Search":
         """A search for the same from the beginning, perhaps with other ``friction``."""
         mu = self.friction if friction is None else friction
-        return Search(self.sides, self.fingers, mu, self.loads, self.law, self.apart, self.narrow)
+        return Search(
+            self.sides, self.fingers, mu, self.loads, self.law, self.apart, self.narrow, self.limits
+        )
 
     def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None) -> float:
-        """The norm of forces of fingers on these sides at these u, for the worst load [N]."""
+        """The norm of forces of a placement for the worst load [N]; of another law without any limits."""
         k = len(u)
         from regrasp.closed_form.compiled.places.placement_search import search, spare
 
         friction = kept_friction(self.friction, 2 * RESERVE)
-        boxes = _memory(1 + k + 1, k)
+        boxes = memory(1 + k + 1, k)
         boxes[0][0] = places[:, None]
         boxes[1][0] = u[:, None]
         found = np.full(1 + 2 * k, inf)
@@ -222,16 +227,18 @@ class Search:
         return float(found[0]) * self.unit
 
     def _law(self, mu: float, usable: float, law: Law) -> tuple[float, ...]:
-        """As the compiled search takes it."""
+        """As the compiled search takes it; forces of another law than that of the search have no limits."""
         size, norm = law.codes()
-        return (mu, usable, size, norm, _PRECISE, self.limit / self.unit, self.margin / self.unit)
+        limits = self.limits if law is self.law else ANY_FORCE
+        limit, least = (self.limit, self.margin) if law.size == "margin" else limits
+        return (mu, usable, size, norm, _PRECISE, limit / self.unit, least / self.unit)
 
     def _grow(self, most: int) -> bool:
         have = len(self._heap)
         room = min(2 * have, most)
         if room <= have:
             return False
-        larger = _memory(room, self.fingers)
+        larger = memory(room, self.fingers)
         for old, new in zip(self._boxes[:-1], larger[:-1], strict=True):
             new[:have] = old
         self._boxes = larger
@@ -260,7 +267,7 @@ class Search:
         """What a box proves that holds a load for no forces, at least [N]."""
         from regrasp.closed_form.compiled.places.wrench_gauge import FAR
 
-        sizes = np.abs(self._wanted).sum(axis=1)
+        sizes = np.abs(self._wanted).sum(axis=1) + self.limits[1] / self.unit
         return FAR * float(sizes[sizes > 0].min(initial=inf)) * self.unit * (1 - _SAFE)
 
     @property
@@ -302,6 +309,8 @@ class Search:
         n = self.count
         arcs, ends, _, twists, _, kinds, children, _, seconds, other, _ = (v[:n] for v in self._boxes)
         sides = np.column_stack([self.sides.edges, self.sides.ends])
+        if self.limits != ANY_FORCE and self.law.norm == "squares":  # there twists are forces
+            twists = twists * self.unit
         work = -(twists / [1, 1, self.sides.size]) @ self.loads.T
         number = np.where(kinds == 3, -1, work.argmax(axis=1))
         split = kinds == 2
@@ -329,6 +338,7 @@ class Search:
             control=edges if smooth else None,
             rings=_frozen(self.sides.rings) if isinstance(self.sides, RingSides) else None,
             tied=_frozen(np.array(list(self.tied.values()))) if self.tied else None,
+            max_force=None if self.limits[0] == inf else self.limits[0], min_normal=self.limits[1],
             **{name: _frozen(values) for name, values in given.items()},
         )  # fmt: skip
 
@@ -337,12 +347,3 @@ def _frozen(values: np.ndarray) -> np.ndarray:
     copy = values.copy()
     copy.setflags(write=False)
     return copy
-
-
-def _memory(room: int, k: int) -> tuple[np.ndarray, ...]:
-    """Arrays for so many boxes, as the compiled search takes them."""
-    return (
-        np.zeros((room, k, 2), np.int64), np.zeros((room, k, 2)), np.zeros(room), np.zeros((room, 3)),
-        np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2), np.int64),
-        np.zeros((room, k, 8)), np.zeros((room, 3)), np.full(room, -1), np.zeros((1, 3)),
-    )  # fmt: skip

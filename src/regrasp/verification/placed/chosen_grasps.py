@@ -10,6 +10,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.arc_lengths import points_at
+from regrasp.verification.placed.forces.limited import others_limits
 from regrasp.verification.placed.meshes.areas import part_of_surface, share_on
 from regrasp.verification.placed.meshes.surfaces import SurfaceProof, check_surface_proof, touches
 from regrasp.verification.placed.placements import check_proof
@@ -45,8 +46,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     proof = chosen.certificate
     if chosen.objective not in _MEANINGS:
         return Verification((f"objective {chosen.objective!r} has no bound",), inf, 0.0, -inf)
-    size, norm = _MEANINGS[chosen.objective]
-    if (proof.size, proof.norm) != (size, norm) and not _is_without_margin(chosen, proof):
+    if (proof.size, proof.norm) != _MEANINGS[chosen.objective] and not _is_without_margin(chosen, proof):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
     for i, state in enumerate(chosen.states, 1):
         if state.grasp != chosen.grasp:
@@ -58,8 +58,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
         angles.append(least_angle(state.grasp, state.forces))
         broken += violations
         broken += _check_value(chosen, state, i)
-    if not chosen.states:
-        broken.append("no state shows the value")
+    broken += [] if chosen.states else ["no state shows the value"]
     broken += _check_others(chosen)
     in_space = hasattr(proof, "normals")
     if not in_space and chosen.objective != "wrench" and proof.tied is not None:
@@ -72,6 +71,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
         broken += _check_bound(chosen, proof)
         share = share_on(chosen.shape, proof) if in_space else 0.0
         broken += _check_spots(chosen, cast(Any, proof), share) if in_space else _check_places(chosen, proof)
+    broken += [] if in_space else others_limits(chosen, proof, chosen.objective in _LEVELS)
     asked = "" if broken else part_of_surface(share) if in_space else _part(proof, chosen.shape)
     return Verification(
         tuple(broken), max(residuals), min(angles), min(slacks), excluded=_leaves(proof), bound=chosen.bound,

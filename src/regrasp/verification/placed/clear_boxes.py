@@ -1,10 +1,11 @@
 """Which boxes of a proof doubles show to be excluded, by more than all of their rounding together."""
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.forces.limited import roughly_excluded
 from regrasp.verification.placed.protocol import Proof
 
 _ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
@@ -17,6 +18,9 @@ class Edges(Protocol):
 
     def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
         """(m,) the most work on stretches along twists y (m, 3), but for rounding."""
+
+    def roughly_parts(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> list[tuple[Array, Array]]:
+        """Of points whose hulls contain stretches a and c of ``limited`` (m,), but for rounding."""
 
 
 def clear_boxes(proof: Proof, boundary: Edges) -> np.ndarray:
@@ -52,8 +56,17 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
     room = _ROUNDING * ((np.abs(y) + np.abs(z)) @ [1.0, 1.0, reach]) * (1 + proof.friction)
     if proof.size == "margin":
         room *= 4 * proof.bound
-    most = _most(proof, boundary, boxes, y, z) + room[:, None]
     told = np.minimum(room, lost) > _SMALL
+    if proof.max_force is not None or proof.min_normal > 0:
+        stretches = _stretches(proof, boxes)
+        parts = boundary.roughly_parts(*stretches.at, np.repeat(y, stretches.of_each, axis=0))
+        if proof.norm == "squares":  # a and c are forces there
+            room *= 1 + room / _ROUNDING / max(proof.bound, proof.min_normal)
+        found = roughly_excluded(
+            proof, work, room + _ROUNDING, lambda most: stretches.largest([most(*part) for part in parts])
+        )
+        return np.asarray(told & found)
+    most = _most(proof, boundary, boxes, y, z) + room[:, None]
     if proof.size == "margin":
         return np.asarray(told & (work > most.sum(axis=1)))
     if proof.norm == "sum":
@@ -75,24 +88,43 @@ def _seconds(proof: Proof, boxes: np.ndarray) -> tuple[Array, Array]:
 
 def _most(proof: Proof, boundary: Edges, boxes: np.ndarray, y: Array, z: Array) -> Array:
     """(b, k) the most work on each arc, for all its sides at once, along two twists."""
-    k = proof.fingers
-    first, last = np.asarray(proof.arcs)[boxes].reshape(-1, 2).T
-    ends = np.asarray(proof.ends)[boxes].reshape(-1, 2)
-    count = last - first + 1
-    starts = np.concatenate([[0], np.cumsum(count)[:-1]])
-    side = np.arange(count.sum()) + np.repeat(first - starts, count)
-    sides = np.asarray(proof.sides)
-    edge, least, largest = sides[side].T
-    least[starts], largest[starts + count - 1] = ends.T
-    along, also = (np.repeat(np.repeat(twist, k, axis=0), count, axis=0) for twist in (y, z))
-    edge_of, lo, hi = edge.astype(int), least - edge, largest - edge
-    values = boundary.roughly(edge_of, lo, hi, along)
+    stretches = _stretches(proof, boxes)
+    edges, lo, hi = stretches.at
+    along, also = (np.repeat(twist, stretches.of_each, axis=0) for twist in (y, z))
+    values = boundary.roughly(edges, lo, hi, along)
     both = also.any(axis=1)
-    each = edge_of[both]
+    each = edges[both]
     low, high = (
         boundary.roughly(each, u, u, along[both]) + boundary.roughly(each, u, u, also[both])
         for u in (lo[both], hi[both])
     )
     values[both] = np.maximum(low, high)
-    result: Array = np.maximum.reduceat(values, starts).reshape(-1, k)
-    return result
+    return stretches.largest([values])
+
+
+class _Stretches(NamedTuple):
+    """Stretches of sides that the arcs of boxes are made of, one arc after the other.
+
+    at: edges, fractions from which and to which. of_each: (b,) how many of a box. starts: first of each arc.
+    """
+
+    at: tuple[np.ndarray, Array, Array]
+    of_each: np.ndarray
+    starts: np.ndarray
+
+    def largest(self, values: list[Array]) -> Array:
+        """(b, k) the largest of some values of all stretches of an arc."""
+        result: Array = np.maximum.reduceat(np.max(values, axis=0), self.starts)
+        return result.reshape(len(self.of_each), -1)
+
+
+def _stretches(proof: Proof, boxes: np.ndarray) -> _Stretches:
+    first, last = np.asarray(proof.arcs)[boxes].reshape(-1, 2).T
+    ends = np.asarray(proof.ends)[boxes].reshape(-1, 2)
+    count = last - first + 1
+    starts = np.concatenate([[0], np.cumsum(count)[:-1]])
+    side = np.arange(count.sum()) + np.repeat(first - starts, count)
+    edge, least, largest = np.asarray(proof.sides)[side].T
+    least[starts], largest[starts + count - 1] = ends.T
+    of_each = count.reshape(len(boxes), -1).sum(axis=1)
+    return _Stretches((edge.astype(int), least - edge, largest - edge), of_each, starts)

@@ -15,8 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from regrasp.mechanics.checks import Array
-from regrasp.verification.placed.eroded import cone_edges, is_sector, most_eroded, roughly_eroded
+from regrasp.mechanics.checks import Array, Flags
+from regrasp.verification.placed.forces.eroded import cone_edges, is_sector, most_eroded, roughly_eroded
 from regrasp.verification.placed.protocol import Point, Proof, velocity
 from regrasp.verification.placed.roots import root_above, root_below
 
@@ -61,9 +61,7 @@ class CubicEdges:
 
     def most_along(self, edge: int, lo: Fraction, hi: Fraction, along: list[Point]) -> Fraction:
         """The same of the most v . f along any of some v."""
-        found = self._tangents(edge, lo, hi)
-        first = next(d for d in found if all(_cross(d, e) >= 0 for e in found))
-        last = next(d for d in found if all(_cross(d, e) <= 0 for e in found))
+        first, last = self._outermost(edge, lo, hi)
         a, b = cone_edges(first, self.mu), cone_edges(last, self.mu)
         limit = Fraction(self.limit) if self.eroded else Fraction(1)
         if self.eroded and is_sector(a[0], b[1]):
@@ -72,6 +70,22 @@ class CubicEdges:
             return limit * max(_on_sector(a[0], b[1], v) for v in along)
         return self.slant * max(max(_on_sector(a[0], b[0], v), _on_sector(a[1], b[1], v)) for v in along)
 
+    def parts(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> list[Point]:
+        """Of velocities at the points of the hull the most along any normal, and the most across one."""
+        first, last = self._outermost(edge, lo, hi)
+        left, right = ((-d[1], d[0]) for d in (first, last))
+        back = (-first[0], -first[1]), (-last[0], -last[1])
+        return [
+            (_most_on_arc(left, right, v), max(_most_on_arc(*arc, v) for arc in ((first, last), back)))
+            for v in (velocity(y, p) for p in self.hull(edge, lo, hi))
+        ]
+
+    def _outermost(self, edge: int, lo: Fraction, hi: Fraction) -> tuple[Point, Point]:
+        """The tangents of a stretch that all others are between, the clockwise one first."""
+        found = self._tangents(edge, lo, hi)
+        first = next(d for d in found if all(_cross(d, e) >= 0 for e in found))
+        return first, next(d for d in found if all(_cross(d, e) <= 0 for e in found))
+
     def _tangents(self, edge: int, lo: Fraction, hi: Fraction) -> list[Point]:
         control = self.control[edge]
         legs = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(control)]
@@ -79,15 +93,7 @@ class CubicEdges:
 
     def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
         """(m,) the same, of twists (m, 3), in doubles; infinite where rounding may be more."""
-        legs = np.moveaxis(self._legs[edges], 1, 0)
-        d = np.stack([_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
-        size = np.hypot(d[..., 0], d[..., 1])
-        plain = (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all(axis=0)
-        unit = d / size[..., None]
-        middle = unit.sum(axis=0)
-        angle = np.arctan2(_cross_of(middle, unit), (middle * unit).sum(axis=-1))
-        rows = np.arange(len(lo))
-        first, last = unit[angle.argmin(axis=0), rows], unit[angle.argmax(axis=0), rows]
+        plain, first, last = self._roughly_outermost(edges, lo, hi)
         (a, c), (e, b) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
         control = np.moveaxis(self._control[edges], 1, 0)
         most = np.full(len(lo), -np.inf if self.eroded else 0.0)
@@ -103,6 +109,33 @@ class CubicEdges:
                 value = slant * np.maximum(_roughly_on_sector(a, e, v), _roughly_on_sector(c, b, v))
             most = np.maximum(most, value)
         return np.where(plain, most, np.inf)
+
+    def roughly_parts(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> list[tuple[Array, Array]]:
+        """Of the points of hulls the ``parts`` along twists (m, 3), in doubles."""
+        plain, first, last = self._roughly_outermost(edges, lo, hi)
+        left, right = (np.stack([-t[:, 1], t[:, 0]], axis=1) for t in (first, last))
+        control = np.moveaxis(self._control[edges], 1, 0)
+        found = []
+        for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
+            p = _at(control, at)
+            v = np.stack([y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]], axis=1)
+            ahead = _roughly_on_sector(left, right, v)
+            aside = np.maximum(_roughly_on_sector(first, last, v), _roughly_on_sector(-first, -last, v))
+            found.append((np.where(plain, ahead, np.inf), np.where(plain, aside, np.inf)))
+        return found
+
+    def _roughly_outermost(self, edges: np.ndarray, lo: Array, hi: Array) -> tuple[Flags, Array, Array]:
+        """Whether tangents of stretches are far from 0, and the outermost of them, of length 1."""
+        legs = np.moveaxis(self._legs[edges], 1, 0)
+        d = np.stack([_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
+        size = np.hypot(d[..., 0], d[..., 1])
+        plain = (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all(axis=0)
+        unit = d / size[..., None]
+        middle = unit.sum(axis=0)
+        angle = np.arctan2(_cross_of(middle, unit), (middle * unit).sum(axis=-1))
+        rows = np.arange(len(lo))
+        first, last = unit[angle.argmin(axis=0), rows], unit[angle.argmax(axis=0), rows]
+        return plain, first, last
 
 
 def _polar(points: list[Point], at: tuple[Fraction, ...]) -> Point:
@@ -131,6 +164,17 @@ def _cross(a: Point, b: Point) -> Fraction:
 def _along(a: Point, v: Point) -> Fraction:
     """The part of v along a, rounded up, or 0 if that is more."""
     return max(_dot(a, v), Fraction(0)) / root_below(_dot(a, a))
+
+
+def _most_on_arc(a: Point, b: Point, v: Point) -> Fraction:
+    """The most of v . f over f of length 1 from a to b, less than a quarter of a turn, 0 or less too."""
+    if _cross(a, v) > 0 and _cross(v, b) > 0 and _dot(a, v) > 0:
+        return root_above(_dot(v, v))
+    found = []
+    for d in (a, b):
+        most, size2 = _dot(d, v), _dot(d, d)
+        found.append(most / (root_below(size2) if most > 0 else root_above(size2)))
+    return max(found)
 
 
 def _on_sector(a: Point, b: Point, v: Point) -> Fraction:

@@ -14,7 +14,8 @@ sigma of an arc is at an end of one of its sides (``straight``); on curves there
 Two twists, each with a load, bound a box together by the largest of each arc of the sum of their sigma, where
 N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
-box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``). What is withstood is bounded by all loads
+box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``), and where forces have limits in ways of
+their own (``limited``). What is withstood is bounded by all loads
 together, and a box also by twists of some loads that move with the fingers (``whole_sets``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
@@ -27,6 +28,8 @@ import numpy as np
 
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
+from regrasp.verification.placed.forces.limited import is_excluded as is_excluded_within
+from regrasp.verification.placed.forces.limited import is_least, wrong_limits
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
@@ -69,6 +72,8 @@ def _shapes(proof: Proof) -> list[str]:
             or proof.size == "margin"
         ):
             return ["proof: twists that move go with boxes, a largest force and straight sides"]
+    if wrong := wrong_limits(proof):
+        return wrong
     if proof.rings is not None:
         first = np.asarray(proof.rings)
         apart = np.diff(np.append(first, len(proof.vertices))) >= 3
@@ -103,6 +108,7 @@ class _Checked:
         self.proof = proof
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
         self.clear: np.ndarray  # boxes that doubles decide
+        self.limited = proof.max_force is not None or proof.min_normal > 0
         pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
         self.second = {box: (load, twist) for (box, load), twist in pairs}
         self.moving: dict[int, list[tuple[int, list[float]]]] = {}
@@ -206,6 +212,13 @@ class _Checked:
         bound = Fraction(self.proof.bound)
         if bound <= 0 or self.clear[box]:
             return []
+        if self.limited:
+            parts = [
+                [part for at in self._stretches(arc) for part in self.boundary.parts(*at, *twists)]
+                for arc in arcs
+            ]
+            excluded = is_least(self.proof) or is_excluded_within(self.proof, Fraction(work), parts)
+            return [] if excluded else [f"proof: the twist of box {box} does not exclude it"]
         most = [self._most(arc, twists) for arc in arcs]
         if self.proof.size == "margin":  # forces below the limit do no more than these together
             done = sum(most, start=Fraction(0))
@@ -255,13 +268,17 @@ class _Checked:
 
     def _most(self, arc: Arc, twists: list[list[Fraction]]) -> Fraction:
         """An upper bound of sigma over an arc, or of the sum of that of two twists."""
-        sides = self.sides[arc[0] : arc[1] + 1]
-        sides[0] = sides[0][0], Fraction(arc[2]), sides[0][2]
-        sides[-1] = *sides[-1][:2], Fraction(arc[3])
-        parts = [(edge, lo - edge, hi - edge) for edge, lo, hi in sides]
+        parts = self._stretches(arc)
         if len(twists) > 1:  # the sum is convex along a side
             parts = [(edge, u, u) for edge, *ends in parts for u in ends]
         return max(sum((self.boundary.most(*at, y) for y in twists), start=Fraction(0)) for at in parts)
+
+    def _stretches(self, arc: Arc) -> list[tuple[int, Fraction, Fraction]]:
+        """Edges, each with fractions from which to which an arc is on it."""
+        sides = self.sides[arc[0] : arc[1] + 1]
+        sides[0] = sides[0][0], Fraction(arc[2]), sides[0][2]
+        sides[-1] = *sides[-1][:2], Fraction(arc[3])
+        return [(edge, lo - edge, hi - edge) for edge, lo, hi in sides]
 
     def _near(self, arcs: list[Arc]) -> bool:
         """Whether two fingers on one side each are nearer than they must be, wherever they are."""

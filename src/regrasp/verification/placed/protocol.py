@@ -107,6 +107,14 @@ class Proof(Protocol):
     def motions(self) -> Array | None:
         """(q, 3 + 2 fingers) of each load, the twist at the beginning of all arcs, then what fingers add."""
 
+    @property
+    def max_force(self) -> float | None:
+        """Of every finger [N]; None for none."""
+
+    @property
+    def min_normal(self) -> float:
+        """With which every finger pushes at the least [N]."""
+
 
 def velocity(y: list[Fraction], point: Point) -> Point:
     """Of a point, along a twist."""

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.verification.placed.eroded import cone_edges, most_eroded, roughly_eroded
+from regrasp.verification.placed.forces.eroded import cone_edges, most_eroded, roughly_eroded
 from regrasp.verification.placed.protocol import Point, Proof, after_each, velocity
 from regrasp.verification.placed.roots import root_above, root_below
 
@@ -56,6 +56,16 @@ class StraightEdges:
         """An upper bound of sigma on a stretch, 0 or more."""
         return self.most_along(edge, lo, hi, [velocity(y, p) for p in self.hull(edge, lo, hi)])
 
+    def parts(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> list[Point]:
+        """Velocities at the ends of a stretch: the part along the normal, and the size of that across."""
+        dx, dy = self.along[edge]
+        found = []
+        for vx, vy in (velocity(y, p) for p in self.hull(edge, lo, hi)):
+            ahead, aside = dx * vy - dy * vx, abs(dx * vx + dy * vy)
+            back = ahead / root_above(dx * dx + dy * dy)
+            found.append((max(ahead * self.per[edge], back), aside * self.per[edge]))
+        return found
+
     def most_along(self, edge: int, lo: Fraction, hi: Fraction, along: list[Point]) -> Fraction:
         """The same of the most v . f along any of some v."""
         return max(self._sigma(edge, v) for v in along)
@@ -92,3 +102,13 @@ class StraightEdges:
                     value = np.where(aside < self._friction * ahead, np.hypot(vx, vy), value / slant)
             most = np.maximum(most, value)
         return most
+
+    def roughly_parts(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> list[tuple[Array, Array]]:
+        """Of the ends of stretches (m,) the ``parts`` along twists (m, 3), in doubles."""
+        tx, ty = self._unit[edges].T
+        found = []
+        for t in (lo, hi):
+            p = self._start[edges] + t[:, None] * self._along[edges]
+            vx, vy = y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]
+            found.append((tx * vy - ty * vx, np.abs(tx * vx + ty * vy)))
+        return found

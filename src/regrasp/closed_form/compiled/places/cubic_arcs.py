@@ -85,7 +85,7 @@ def farthest(sides, i, a, b, j, c, d):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def _most_on_arc(ax, ay, bx, by, vx, vy):  # type: ignore[no-untyped-def]
+def most_on_arc(ax, ay, bx, by, vx, vy):  # type: ignore[no-untyped-def]
     """The unit vector of most work from one to another that is less than half a turn counter-clockwise."""
     first, second = ax * vx + ay * vy, bx * vx + by * vy
     if ax * vy - ay * vx >= 0.0 and vx * by - vy * bx >= 0.0 and first + second > 0.0:
@@ -100,7 +100,7 @@ def _most_on_arc(ax, ay, bx, by, vx, vy):  # type: ignore[no-untyped-def]
 def _most_on_sector(ax, ay, bx, by, vx, vy):  # type: ignore[no-untyped-def]
     """The same from one to another that is less than three quarters of a turn away."""
     if ax * by - ay * bx > 0.0 or ax * bx + ay * by > 0.0:
-        return _most_on_arc(ax, ay, bx, by, vx, vy)
+        return most_on_arc(ax, ay, bx, by, vx, vy)
     if ax * vy - ay * vx >= 0.0 or vx * by - vy * bx >= 0.0:
         length = sqrt(vx * vx + vy * vy)
         per = 1.0 / length if length > 0.0 else 0.0
@@ -135,9 +135,9 @@ def support_of_cubics(sides, first, last, lo, hi, mu, size, y, out):  # type: ig
                 value, fx, fy = _most_on_sector(ax, ay, bx, by, vx, vy)
             else:
                 cx, cy = sine * hx - cosine * hy, sine * hy + cosine * hx
-                value, fx, fy = _most_on_arc(ax, ay, cx, cy, vx, vy)
+                value, fx, fy = most_on_arc(ax, ay, cx, cy, vx, vy)
                 dx, dy = -sine * lx - cosine * ly, -sine * ly + cosine * lx
-                other, ox, oy = _most_on_arc(dx, dy, bx, by, vx, vy)
+                other, ox, oy = most_on_arc(dx, dy, bx, by, vx, vy)
                 if other > value:
                     value, fx, fy = other, ox, oy
                 value, fx, fy = slant * value, slant * fx, slant * fy

@@ -15,11 +15,19 @@ from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.places import (
     cubic_arcs,
     eroded,
+    least_norm,
+    limited,
     placement_boxes,
     two_twists,
     wrench_gauge,
 )
 from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL
+from regrasp.closed_form.compiled.places.least_norm import (
+    bound_within,
+    gauge_within,
+    is_limited,
+    room_for_limits,
+)
 from regrasp.closed_form.compiled.places.placement_boxes import (
     alike,
     cut,
@@ -87,7 +95,12 @@ def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, 
         seen[i, 6] = -1.0
     for number in range(len(loads)):
         load = number if number > first else (number - 1 if number > 0 else first)
-        value, reached = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work[:11])
+        if is_limited(law):
+            value, reached = gauge_within(
+                sides, arcs, ends, law, loads[load], level, precision, best, work[:11], work[19]
+            )
+        else:
+            value, reached = gauge(sides, arcs, ends, law, loads[load], level, precision, best, work[:11])
         if placed and value < level and value < reached * (1.0 - max(precision, _APART)):
             value = reached
         for c in range(3):
@@ -101,10 +114,10 @@ def _judge(sides, arcs, ends, loads, law, precision, level, first, twist, work, 
         for i in range(k):
             total, moment, most = 0.0, 0.0, 0.0
             wanted = worse or seen[i, 6] < 0.0
-            for j in range(3):
+            for j in range(4):
                 weight = x[j] * forces[j, i, 0]
                 total += max(weight, 0.0)
-            for j in range(3):
+            for j in range(4):
                 weight = x[j] * forces[j, i, 0]
                 if weight <= 1e-9 * total or weight <= 0.0:
                     continue
@@ -128,7 +141,7 @@ def _join(sides, loads, bounding, boxes, node, work):  # type: ignore[no-untyped
     arcs, ends, bounds, twists, critical, _, _, _, seconds, other, _ = boxes
     best = work[12]
     found, load, second = bound_by_two(
-        sides, arcs[node], ends[node], bounding, loads, work[11], best, work[13:]
+        sides, arcs[node], ends[node], bounding, loads, work[11], best, work[13:19]
     )
     if found > bounds[node]:
         bounds[node], critical[node], other[node] = found, load, second
@@ -150,14 +163,14 @@ def _assess(sides, loads, law, level, boxes, node, work):  # type: ignore[no-unt
         bounds[node], critical[node], other[node] = found, load, -1
         for c in range(3):
             twists[node, c] = twist[0, c]
-    if found < level:
+    if found < level and not is_limited(bounding):
         _join(sides, loads, bounding, boxes, node, work)
 
 
 def spare(k: int, loads: int) -> tuple[Any, ...]:
     """Memory that a search of k fingers under so many loads works in."""
     return (
-        (*workspace(k), *room_for_two(loads, k)),
+        (*workspace(k), *room_for_two(loads, k), room_for_limits(k)),
         np.zeros((k, 2)),
         np.zeros((k, 8)),
         np.zeros((k, 2), np.int64),
@@ -212,6 +225,7 @@ def _loop(digest: str) -> Any:
                 stuck = put(sides, places, least, at_arcs, at_ends)
             if not stuck:
                 flat, single = norm == LARGEST and sides.shape[1] <= CONTROL, True
+                flat = flat and not is_limited(bounding)
                 for i in range(k):
                     single = single and arcs[node, i, 0] == arcs[node, i, 1]
                 flat = flat and single
@@ -276,7 +290,12 @@ def _loop(digest: str) -> Any:
                     kinds[child] = NEAR
                     continue
                 b = loads[critical[node]]
-                known = bound_by(sides, arcs[child], ends[child], bounding, b, twists[node], work[:11])
+                if is_limited(bounding):
+                    known = bound_within(
+                        sides, arcs[child], ends[child], bounding, b, twists[node], level, work[:11], work[19]
+                    )
+                else:
+                    known = bound_by(sides, arcs[child], ends[child], bounding, b, twists[node], work[:11])
                 if known >= level:
                     bounds[child], other[child] = known, -1
                 else:
@@ -295,4 +314,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-search = _loop(digest((cubic_arcs, eroded, placement_boxes, two_twists, wrench_gauge)))
+search = _loop(digest((cubic_arcs, eroded, least_norm, limited, placement_boxes, two_twists, wrench_gauge)))

@@ -143,9 +143,9 @@ def _solve(g, b, y, x):  # type: ignore[no-untyped-def]
 
 
 def workspace(k: int) -> tuple[Any, ...]:
-    """Memory for boxes of k fingers: rows g, their weights x, their forces, scratch, and a twist."""
+    """Memory for boxes of k fingers: rows g, weights x and forces of four, scratch, and a twist."""
     return (
-        np.zeros((3, 3)), np.zeros(3), np.zeros((4, k, 3)),
+        np.zeros((3, 3)), np.zeros(4), np.zeros((5, k, 3)),
         np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(7), np.zeros(3),
         np.zeros(3), np.zeros(3),
     )  # fmt: skip

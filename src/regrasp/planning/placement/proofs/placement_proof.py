@@ -49,6 +49,8 @@ class PlacementProof(BoxProof):
             box has all of them in turn. None for none.
         motions: (q, 3 + 2 fingers) of each load, its twist with all fingers at the beginning of their arcs,
             then by how much each finger adds to the one and to the other velocity on its way to the end.
+        max_force: of every finger, which the proof counts on [N]; None for none.
+        min_normal: with which every finger pushes at the least, which it counts on, too [N].
     """
 
     vertices: Array
@@ -74,6 +76,8 @@ class PlacementProof(BoxProof):
     tied: Array | None = None
     movers: np.ndarray | None = None
     motions: Array | None = None
+    max_force: float | None = None
+    min_normal: float = 0.0
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
@@ -105,4 +109,6 @@ class PlacementProof(BoxProof):
             None if given.get("tied") is None else array(given["tied"], "tied", (None, None)),
             None if given.get("movers") is None else integers(given["movers"], "movers", (None, 2)),
             None if given.get("motions") is None else array(given["motions"], "motions", (None, 3 + 2 * k)),
+            None if given.get("max_force") is None else number(given["max_force"], "max_force", above=0),
+            number(given.get("min_normal", 0.0), "min_normal", least=0),
         )
