@@ -69,7 +69,7 @@ def test_the_source_archive_is_below_a_megabyte_and_builds(tmp_path: Path) -> No
     with tarfile.open(packed) as archive:
         archive.extractall(tmp_path, filter="data")
     source = next(tmp_path.glob("regrasp-*/"))
-    beside = {"README.md", "LICENSE", "CITATION.cff", "examples"}
+    beside = {"README.md", "LICENSE", "CITATION.cff"}
     assert {path.name for path in source.iterdir()} >= beside
     subprocess.run((*command, "-t", "wheel"), cwd=source, check=True, capture_output=True)
     (wheel,) = tmp_path.glob("*.whl")
