@@ -192,6 +192,11 @@ def _check_proof(proof: Any, where: str) -> None:
 def _check_regions(regions: Any) -> None:
     _check(regions, "", grasp=_PLANAR, max_force=_DOUBLE, places=_TABLE, arcs=_TABLE, half_width=_DOUBLE)
     _check(regions, "", corners=_STATES, spans=_or_none(_TABLE), cells=_or_none(_TABLE))
+    is_proof = (lambda v: is_there(v, "bound", "places", "starts", "at")), "a proof of the widest"
+    _check(regions, "", widest=_or_none(is_proof))
+    if (proof := regions.widest) is not None:
+        _check(proof, "widest", bound=_DOUBLE, places=_TABLE, starts=_TABLE, at=_TABLE, loads=_TABLE)
+        _check(proof, "widest", twists=_TABLE)
     holes = {"hole_polygons": _answers(_RINGS)} if is_there(read(regions, "shape"), "hole_polygons") else {}
     _check_shape(regions, points=_answers(_POINT, 0.0), **holes)
 

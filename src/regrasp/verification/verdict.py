@@ -34,6 +34,7 @@ class Verification(ArrayValue):
         asked: what every hold of the regrasps that a cut excludes had to keep, of an ``OutlineCut`` at which
             orientations, too; or which part of its outline a proof about places is of, in words; empty for
             nothing.
+        widest: no arcs around the places of contact regions are all longer [m]; None of others.
         withstood: what every instant withstands besides the load, asked for or on the plan's record, in
             words; empty for nothing.
     """
@@ -50,6 +51,7 @@ class Verification(ArrayValue):
     components: str = ""
     asked: str = ""
     withstood: str = ""
+    widest: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -82,6 +84,8 @@ class Verification(ArrayValue):
             f"verified in exact arithmetic: in equilibrium within {float(RESOLUTION):.1g} of the forces, "
             f"every force inside its cone{by}"
         ]
+        if self.widest is not None:
+            lines.append(f"no arcs around these places are all longer than {self.widest:.6g}")
         if self.withstood:
             lines.append(f"every instant withstands {self.withstood}")
         if self.load_gap is not None:

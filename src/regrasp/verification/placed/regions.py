@@ -21,6 +21,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, dot, exact, least_angle, root
 from regrasp.verification.placed.curved_regions import beside, chords, covered, point_at
 from regrasp.verification.placed.protocol import Shape
+from regrasp.verification.placed.widest import Widest, widest_wrong
 from regrasp.verification.verdict import Verification
 
 _TO_THE_END = 1 - 2e-6  # of the way to the end of a side, which counts as all of it
@@ -66,6 +67,10 @@ class Regions(Protocol):
         """(c, k, 2) parts of spans, for which corners stand one after the other; None for all in one."""
 
     @property
+    def widest(self) -> Widest | None:
+        """The proof that no arcs around the places are all longer than its bound; None for none."""
+
+    @property
     def max_force(self) -> float:
         """Limit on every force [N]."""
 
@@ -85,7 +90,10 @@ def verify_regions(regions: Regions) -> Verification:
         angles.append(least_angle(state.grasp, state.forces))
         violations += [f"corner state {i}: {words}" for words in above(state.forces, regions.max_force)]
         broken += violations
-    return Verification(tuple(broken), max(residuals), min(angles), min(slacks))
+    proof = regions.widest
+    return Verification(
+        tuple(broken), max(residuals), min(angles), min(slacks), widest=None if proof is None else proof.bound
+    )
 
 
 def above(forces: Array, limit: float) -> list[str]:
@@ -108,13 +116,16 @@ def above_own(grasp: Grasp, limit: float) -> list[str]:
 def _check_corners(regions: Regions) -> list[str]:
     """That every load has a state at every combination of ends, and that arcs are on straight sides."""
     control = regions.shape.cubics()
+    if control is not None and regions.widest is not None:
+        return ["that arcs are the widest is proven on straight sides alone"]
     if control is not None:
         return _check_curved(regions, control)
-    vertices, along = straight_edges(regions.shape)
+    rings = rings_of(regions.shape)
+    vertices, along = np.concatenate(rings), np.concatenate([np.roll(r, -1, axis=0) - r for r in rings])
     lengths = np.hypot(*along.T)
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     slack = float(RESOLUTION) * float(starts[-1])
-    ends, normals = [], []
+    ends, normals, edges = [], [], []
     places, half = np.asarray(regions.places), regions.half_width
     if np.shape(regions.arcs) != (len(regions.grasp), 2) or places.shape != (len(regions.grasp),):
         return ["an arc and a place for each finger are needed"]
@@ -140,13 +151,15 @@ def _check_corners(regions: Regions) -> list[str]:
             return [f"arc {i} is less than the half width {half:.12g} about its place"]
         ends.append([vertices[edge] + (s - starts[edge]) * unit for s in (off, off + hi - lo)])
         normals.append(normal)
-    return _missing(regions, regions.corners, ends, normals, regions.grasp.frictions, slack)
+        edges.append(edge)
+    proof = regions.widest
+    broken = _missing(regions, regions.corners, ends, normals, regions.grasp.frictions, slack)
+    return broken if proof is None or broken else widest_wrong(proof, regions, rings, edges)
 
 
-def straight_edges(shape: Any) -> tuple[Array, Array]:
-    """(n, 2) where the edges of a polygon begin, then those of its holes, clockwise; (n, 2) their vectors."""
-    rings = [np.asarray(shape.polygon()), *(hole[::-1] for hole in getattr(shape, "hole_polygons", tuple)())]
-    return np.concatenate(rings), np.concatenate([np.roll(r, -1, axis=0) - r for r in rings])
+def rings_of(shape: Any) -> list[Array]:
+    """(n, 2) vertices of a polygon and of each of its holes, clockwise: the material is on the left."""
+    return [np.asarray(shape.polygon()), *(hole[::-1] for hole in getattr(shape, "hole_polygons", tuple)())]
 
 
 def _check_curved(regions: Regions, control: Array) -> list[str]:

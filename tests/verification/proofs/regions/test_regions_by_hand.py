@@ -30,6 +30,7 @@ class Regions:
     corners: tuple[rg.GraspState, ...]
     max_force: float = 9.0
     cells: Any = None
+    widest: Any = None
 
 
 SIDES = bent([[-2, -1], [2, -1], [2, 1], [-2, 1]])

@@ -43,6 +43,7 @@ def made(arcs=((1, 3), (7, 9)), places=(2, 8), turn=(0, 0), grasp=None, **change
         "places": np.add(places, 12.0 * np.array(turn)),
         "arcs": np.add(arcs, 12.0 * np.array(turn)[:, None]),
         "spans": None,
+        "widest": None,
         "cells": None,
         "half_width": 0.0,
         "max_force": 99.0,

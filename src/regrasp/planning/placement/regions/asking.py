@@ -1,7 +1,5 @@
 """How far the fingers of a grasp may miss their places: regions within which every choice holds."""
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import overload
 
 from regrasp.errors import InvalidInput, shown
@@ -21,7 +19,7 @@ from regrasp.planning.placement.regions.on_faces import regions_on_faces
 from regrasp.planning.placement.regions.straight import on_sides
 from regrasp.planning.placement.space.choosing import check_space
 
-_POWERS: Mapping[str, tuple[int, ...]] = MappingProxyType({"together": (), "least": (8, 60), "product": (0,)})
+WIDEST = ("together", "least", "product")
 
 
 @overload
@@ -70,7 +68,8 @@ def contact_regions(
         max_force: limit on every force, beside those of the contacts, of which the least counts for all [N];
             three times the least that the grasp needs if there is none.
         widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
-            ``product`` of all arcs; the last two on polygons, by trading one end of an arc for others while
+            ``product`` of all arcs; the last two on polygons. How wide a least arc can be is proven
+            (``ContactRegions.widest``); the product is found by trading one end of an arc for others while
             that helps, which nothing proves the largest.
 
     Raises:
@@ -89,8 +88,8 @@ def contact_regions(
     if max_force is not None:
         limits.append(number(max_force, "max_force", above=0))
     given = min(limits, default=None)
-    if not isinstance(widest, str) or widest not in _POWERS:
-        raise InvalidInput(f"widest must be one of {', '.join(_POWERS)}; got {shown(widest)}")
+    if not isinstance(widest, str) or widest not in WIDEST:
+        raise InvalidInput(f"widest must be one of {', '.join(WIDEST)}; got {shown(widest)}")
     straight = isinstance(shape, Outline) and isinstance(shape.boundary, PolygonBoundary)
     if widest != "together" and not straight:
         raise InvalidInput(f"widest {widest!r} is for polygons; on other shapes regions are wide together")
@@ -100,4 +99,4 @@ def contact_regions(
     _, loads = inner_and_outer(load, 1e-3)
     if not isinstance(shape.boundary, PolygonBoundary):
         return on_curve(CurvedPlaces(shape, grasp, loads), given)
-    return on_sides(shape, grasp, loads, given, _POWERS[widest])
+    return on_sides(shape, grasp, loads, given, widest)

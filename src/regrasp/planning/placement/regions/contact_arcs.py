@@ -10,6 +10,7 @@ from regrasp.mechanics.plain import listed
 from regrasp.mechanics.state import GraspState
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.regions.sealed import Sealed
+from regrasp.planning.placement.regions.widest_proof import WidestProof
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,6 +32,8 @@ class ContactRegions(Sealed):
             cell.
         spans: (k, 2) of arcs on a curve, number of the cubic and fraction of it passed; None on a polygon.
         cells: (c, k, 2) boxes of parts of the arcs, as ``spans``, which cover all of them; None on a polygon.
+        widest: the proof that around the same places no least arc is longer than its ``bound``, where that is
+            what was asked for on a polygon; None elsewhere.
     """
 
     shape: Outline
@@ -43,6 +46,7 @@ class ContactRegions(Sealed):
     corners: tuple[GraspState, ...]
     spans: Array | None = None
     cells: Array | None = None
+    widest: WidestProof | None = None
 
     @property
     def widths(self) -> Array:
@@ -57,6 +61,7 @@ class ContactRegions(Sealed):
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
         grasp, spans, cells = Grasp.from_dict(given["grasp"]), given.get("spans"), given.get("cells")
+        widest = given.get("widest")
         k = len(grasp)
         if grasp.dimension != 2:
             raise InvalidInput("regions on an outline have a grasp in the plane")
@@ -71,4 +76,5 @@ class ContactRegions(Sealed):
             tuple(GraspState.from_dict(state) for state in listed(given["corners"], "corners")),
             None if spans is None else array(spans, "spans", (k, 2)),
             None if cells is None else array(cells, "cells", (None, k, 2)),
+            None if widest is None else WidestProof.from_dict(widest, k),
         )

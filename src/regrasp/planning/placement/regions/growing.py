@@ -36,19 +36,13 @@ def moved_out(
     return float(moved(fraction)[i, end])
 
 
-def traded(
-    holds: Callable[[Array], bool], box: Array, u: Array, room: Array, lengths: Array, power: int
-) -> Array:
-    """A better box: one end is drawn in, and the others move out, while that helps.
-
-    power: 0 for the product of all widths, else for a mean of them that is near the least if it is high.
-    """
+def traded(holds: Callable[[Array], bool], box: Array, u: Array, room: Array, lengths: Array) -> Array:
+    """A box with a larger product of widths: one end is drawn in, others move out, while that helps."""
     ends = list(product(range(len(u)), range(2)))
 
     def score(of: Array) -> float:
         wide = np.maximum((of[:, 1] - of[:, 0]) * lengths, 1e-12 * lengths.max())
-        mean = np.log((wide.min() / wide) ** power @ np.ones(len(wide))) / (power or 1)
-        return float(np.log(wide.min()) - mean if power else np.log(wide).sum())
+        return float(np.log(wide).sum())
 
     best, step = score(box), 1.0
     while step > _SHORTEST:

@@ -14,7 +14,9 @@ from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
+from regrasp.planning.placement.regions.cuts import Cuts
 from regrasp.planning.placement.regions.growing import farthest, moved_out, traded
+from regrasp.planning.placement.regions.least_arc import LeastArc
 from regrasp.planning.placement.regions.needs import LESS, limit_of
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides, moved
@@ -23,9 +25,7 @@ from regrasp.planning.states.choosing import choose_state
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
 
 
-def on_sides(
-    shape: Outline, grasp: Grasp, loads: Array, given: float | None, powers: tuple[int, ...]
-) -> ContactRegions:
+def on_sides(shape: Outline, grasp: Grasp, loads: Array, given: float | None, widest: str) -> ContactRegions:
     """What ``contact_regions`` finds on a polygon."""
     straight = all(isinstance(hole, PolygonBoundary) for hole in shape.holes)
     sides = sides_of(shape, 0.0, in_holes=straight)  # into holes that are curves nobody asks fingers
@@ -40,9 +40,16 @@ def on_sides(
     ends = np.stack([u, u], axis=1)
     room = sides.ends[places]  # (k, 2)
     ways: Array = np.array([-1.0, 1.0])
+    cuts = Cuts(sides, places, float(grasp.frictions[0]), loads, limit * (1 + LESS))
 
     def holds(box: Array) -> bool:
-        return all(search.norm_at(places, np.array(c)) <= limit for c in product(*box))
+        if cuts.known(box) is not None:
+            return False
+        for corner in map(np.array, product(*box)):
+            if search.norm_at(places, corner) > limit:
+                cuts.add(corner)
+                return False
+        return True
 
     def off(width: float) -> Array:
         result: Array = np.clip(u[:, None] + ways * width / lengths[:, None], room[:, :1], room[:, 1:])
@@ -52,9 +59,17 @@ def on_sides(
     box = off(half * (1 - LESS))
     for i, end in product(range(k), range(2)):
         box[i, end] = moved_out(holds, box, i, end, room[i, end])
-    for power in powers:
-        box = traded(holds, box, u, room, lengths, power)
-    if powers:
+    proof = None
+    if widest == "least":
+        found = LeastArc(cuts, u)
+        proof = found.run(box[:, 0])
+        way = found.box(found.starts, found.width) - ends
+        box = ends + farthest(lambda part: holds(ends + part * way), 1.0) * way
+        for i, end in product(range(k), range(2)):
+            box[i, end] = moved_out(holds, box, i, end, room[i, end])
+    if widest == "product":
+        box = traded(holds, box, u, room, lengths)
+    if widest != "together":
         free = box != room  # ends that are not the end of their side
         half = float(
             (np.abs(box - u[:, None]) * lengths[:, None]).min(where=free, initial=half + lengths.max())
@@ -80,6 +95,7 @@ def on_sides(
     return ContactRegions(
         shape, grasp, read_only(starts + u * lengths), read_only(starts[:, None] + box * lengths[:, None]),
         half * (1 - LESS) ** 2, read_only(alone * (1 - LESS)), limit * (1 + LESS), tuple(corners),
+        widest=proof,
     )  # fmt: skip
 
 
