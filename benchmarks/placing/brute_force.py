@@ -199,7 +199,7 @@ def in_space(cap: float) -> None:
                 for word, is_so in (
                     ("bound beaten", sampled < chosen.bound * (1 - ROUNDING)),
                     ("bound above value", chosen.bound > chosen.value),
-                    ("not what it says", abs(again / chosen.value - 1) > 10 * ROUNDING),
+                    ("not what it says", abs(again / chosen.value - 1) > INNER),
                     ("not verified", not rg.verify(chosen).ok),
                 )
                 if is_so

@@ -63,30 +63,69 @@ def test_one_load_on_given_edges_is_exact_at_once() -> None:
     assert chosen.certificate.leaves < 200
 
 
-@pytest.mark.parametrize("objective", [*OBJECTIVES, "force"])
-def test_units_turns_and_the_first_vertex_change_nothing(objective: str) -> None:
-    vertices = star(6, 7).polygon()
-    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
-    loads = np.array([[0.3, -1, 0.1], [-0.2, -1, -0.1], [0, 0.5, 0.0]])
-    widest = objective == "force"
-    asked = {"friction": 0.5, "objective": objective}
-    limit = 6.0 if widest else None
-    base = rg.choose_grasp(rg.Outline(vertices), 2, _hull(loads), max_force=limit, **asked)
-    turned = np.column_stack([loads[:, :2] @ turn.T, loads[:, 2]])
-    power = 2 if objective == "effort" else 1
-    for scale, unit in ((1.0, 1.0), (1e-4, 1e3), (1e5, 1e-5)):
-        moved = np.roll(vertices[::-1], 3, axis=0) @ turn.T * scale + [3 * scale, -scale]
-        given = rg.choose_grasp(
-            rg.Outline(moved),
-            2,
-            _hull(turned * [unit, unit, unit * scale]),
-            max_force=unit * limit if limit else None,
-            **asked,
+UNIT_OF_FORCE = {"effort": 2, "friction_use": 0, "angle": 0, "answered": 0, "wrench": 0}
+LARGE = ("angle", "force", "answered", "wrench", "wrench_ball")
+
+
+@pytest.mark.parametrize(
+    ("objective", "more"),
+    [
+        *((name, "") for name in (*OBJECTIVES, "friction_use", *LARGE)),
+        *(("peak", name) for name in ("max_force", "min_normal", "keep", "removable")),
+        *(
+            ("sum_normal", name)
+            for name in ("min_distance", "from_corners", "arcs", "tip_radius", "in_holes")
+        ),
+    ],
+)
+def test_units_turns_and_the_first_vertex_change_nothing(objective: str, more: str) -> None:
+    """Lengths and forces a million times as large or small, a turn, and the vertices in another order."""
+    vertices, constrained = star(6, 7).polygon(), more in ("max_force", "min_normal", "keep", "removable")
+    loads = np.array([[0.3, -1, 0.1], [-0.2, -1, -0.1], [0, 0.5, 0.0]])[: 1 if constrained else 3]
+
+    def chosen(scale: float, unit: float, turn: np.ndarray, order: np.ndarray) -> rg.ChosenGrasp:
+        moved = (vertices @ turn.T * scale + [3 * scale, -scale])[order]
+        hole = np.array([[0.1, 0.1], [0.4, 0.1], [0.2, 0.4]]) @ turn.T * scale + [3 * scale, -scale]
+        outline = rg.Outline(moved, holes=[hole] if more == "in_holes" else [])
+        held = np.column_stack([loads[:, :2] @ turn.T * unit, loads[:, 2] * unit * scale])
+        first = float(outline.nearest(vertices[0] @ turn.T * scale + [3 * scale, -scale]))
+        asked: dict[str, object] = {
+            "max_force": {"max_force": 1.0 * unit},
+            "min_normal": {"min_normal": 0.1 * unit},
+            "keep": {"keep": lambda p, q, angle: np.hypot(*(p - q).T) < 1.8 * scale},
+            "removable": {"removable": True},
+            "min_distance": {"min_distance": 1.2 * scale},
+            "from_corners": {"from_corners": 0.1 * scale},
+            "arcs": {"arcs": [(first + 0.5 * scale, first + 4.5 * scale)]},
+            "tip_radius": {"tip_radius": 0.2 * scale},
+            "in_holes": {"in_holes": True},
+        }.get(more, {})
+        if constrained:
+            asked["most_boxes"] = 64
+        if objective in (*LARGE, "friction_use"):
+            asked["max_force"] = 6.0 * unit
+        load: rg.Wrench | rg.LoadSet = _hull(held)
+        if objective in ("answered", "wrench"):
+            load, asked["disturbance"] = rg.Wrench.from_vector(held[0]), _hull(0.2 * held)
+        if objective == "wrench_ball":
+            load, asked["length"] = rg.Wrench([0, 0]), 0.7 * scale
+        asked["tolerance"] = 0.03 if objective == "wrench" else 1e-3
+        return rg.choose_grasp(
+            outline, 3 if more == "removable" else 2, load, friction=0.5, objective=objective, **asked
         )
-        value, bound = given.value / unit**power, given.bound / unit**power
-        assert value == pytest.approx(base.value, rel=1e-3)
-        assert (base.value <= bound * (1 + 1e-9)) if widest else (bound <= base.value * (1 + 1e-9))
-        assert (value <= base.bound * (1 + 1e-9)) if widest else (base.bound <= value * (1 + 1e-9))
+
+    every = np.arange(len(vertices))
+    base = chosen(1.0, 1.0, np.eye(2), every)
+    sign = -1 if objective in LARGE else 1
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    moved = [(1e-6, 1e6, turn, np.roll(every[::-1], 3)), (1e6, 1e-6, np.eye(2), np.roll(every, 2))]
+    for scale, unit, way, order in moved[: 1 if constrained or objective == "wrench" else 2]:
+        given = chosen(scale, unit, way, order)
+        per = unit ** UNIT_OF_FORCE.get(objective, 1)
+        value, bound = given.value / per, given.bound / per
+        assert value == pytest.approx(base.value, rel=0.03 if objective == "wrench" else 1e-3, abs=1e-6)
+        assert sign * bound <= sign * base.value + 1e-9 * abs(base.value)
+        assert sign * base.bound <= sign * value + 1e-9 * abs(value)
 
 
 def _hull(vectors: np.ndarray) -> rg.LoadSet:
