@@ -34,6 +34,7 @@ LARGEST = 1e100
 """What forces, and whatever else is squared, may be at most where something is worked out from them."""
 _Numbers = TypeVar("_Numbers", float, Array)
 _FEW = 12
+_SHORT = 12  # a range of so many is said whole
 _NO_NUMBERS = (str, bytes, bytearray, bool, np.bool_, np.str_, np.datetime64, np.timedelta64)
 
 
@@ -194,10 +195,13 @@ def function(value: Any, what: str, kind: str, arguments: int = 1) -> None:
 
 def whole(value: Any, what: str, *, least: int, most: int | None = None) -> int:
     """A whole number, at least ``least`` and at most ``most`` where that is given; True and 2.0 are none."""
+    few = f"from {least} to {most}" if most is not None and most - least < _SHORT else ""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidInput(f"{what} must be a whole number of at least {least}, got {shown(value)}")
+        raise InvalidInput(
+            f"{what} must be a whole number {few or f'of at least {least}'}, got {shown(value)}"
+        )
     if most is not None and value > most:
-        raise InvalidInput(f"{what} must be a whole number of at most {most}, got {shown(value)}")
+        raise InvalidInput(f"{what} must be a whole number {few or f'of at most {most}'}, got {shown(value)}")
     return int(value)
 
 

@@ -52,3 +52,9 @@ def check_arcs(arcs: Array, length: float, what: str) -> None:
             f"{what} must be arc lengths of an outline of length {length:.6g}, from {-length:.6g} to "
             f"{2 * length:.6g}, got ({lo:.6g}, {hi:.6g}); are they in its unit?"
         )
+    longer = arcs[arcs[:, 1] - arcs[:, 0] > length * (1 + 1e-9)]
+    if len(longer):
+        lo, hi = longer[0].tolist()
+        raise InvalidInput(
+            f"{what} must go once around at most, {length:.6g}, got ({lo:.6g}, {hi:.6g}), {hi - lo:.6g} long"
+        )

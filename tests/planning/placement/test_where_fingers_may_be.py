@@ -6,6 +6,7 @@ import pytest
 import regrasp as rg
 from placements import BRACKET, DEVIATIONS, TILTED
 from refusals import refusal
+from regrasp.planning.placement.loads import inner_and_outer
 
 pytestmark = pytest.mark.oracle
 
@@ -47,6 +48,10 @@ def test_limits_and_disturbances_go_with_their_objectives() -> None:
         ({"objective": "answered", "max_force": 3.0, "disturbance": DEVIATIONS}, "one load"),
         ({"objective": "friction_use", "max_force": 3.0, "friction": 0.0}, "friction"),
         ({"objective": "angle", "max_force": 3.0, "load": rg.Wrench([0, 0])}, "other than zero"),
+        ({"objective": "angle", "max_force": 1e300}, "more than 1e+13 times the loads"),
+        ({"objective": "force", "max_force": 1.1e13}, "more than 1e+13 times the loads"),
+        ({"fingers": 1}, "fingers must be a whole number from 2 to 4, got 1"),
+        ({"fingers": 5}, "fingers must be a whole number from 2 to 4, got 5"),
     ):
         asked = {"shape": BRACKET, "fingers": 2, "load": TILTED, "friction": 0.4} | more
         assert words in str(refusal(lambda asked=asked: rg.choose_grasp(**asked)))
@@ -65,7 +70,12 @@ def test_fingers_stay_within_arcs() -> None:
         BRACKET, 2, TILTED, friction=0.6, arcs=[(1.0, 1.0 + BRACKET.length)], load_offset=1e-3
     )
     assert whole.value == pytest.approx(free.value, rel=1e-3)
-    for none in ([], [(0, 2.01 * BRACKET.length)], [(-1.01 * BRACKET.length, 0)]):
+    for none in (
+        [],
+        [(0, 2.01 * BRACKET.length)],
+        [(-1.01 * BRACKET.length, 0)],
+        [(1.0, 1.01 + BRACKET.length)],
+    ):
         assert "arcs" in str(
             refusal(lambda none=none: rg.choose_grasp(BRACKET, 2, TILTED, friction=0.6, arcs=none))
         )
@@ -109,3 +119,23 @@ def test_fingers_far_apart_are_found_where_those_at_the_middles_are_too_near() -
     points = np.array([contact.position for contact in chosen.grasp])
     assert np.hypot(*(points - np.roll(points, 1, axis=0)).T).min() >= 1.5 * (1 - 1e-12)
     assert rg.verify(chosen).ok
+
+
+def test_a_round_set_stands_for_no_more_than_a_thousand_loads() -> None:
+    """Of a tolerance of 1e-9 it was a hundred thousand loads, and a search without an end."""
+    turned = rg.LoadSet.turned(rg.Wrench([0, -2.0]))
+    inner, outer = inner_and_outer(turned, 1e-10)
+    assert len(inner) == len(outer) == 1000
+    assert np.allclose(np.hypot(*inner[:, :2].T), 2.0, rtol=1e-12)
+    middles = 0.5 * (outer + np.roll(outer, 1, axis=0))[:, :2]
+    assert np.hypot(*middles.T).min() >= 2.0 * (1 - 1e-12)
+    assert np.hypot(*outer[:, :2].T).max() <= 2.0 * (1 + 5e-6)
+
+
+@pytest.mark.parametrize("objective", ["angle", "force"])
+def test_large_limits_are_no_rounding(objective: str) -> None:
+    found = rg.choose_grasp(
+        BRACKET, 3, TILTED, friction=0.4, objective=objective, max_force=1e12, most_boxes=3000
+    )
+    assert rg.verify(found).ok
+    assert found.gap < 1e-2

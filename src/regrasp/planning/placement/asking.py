@@ -11,10 +11,11 @@ from regrasp.planning.placement.laws import LEVELS
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import AnsweredLevel, ForceLevel, FrictionLevel, Level
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
-from regrasp.planning.placement.loads import check_planar
+from regrasp.planning.placement.loads import check_planar, inner_and_outer
 
 SCALED = ("answered", "wrench")
 """Objectives that are a factor of a disturbance."""
+_FARTHEST = 1e13  # times the loads, forces beside which they are not rounding
 
 
 def level_of(
@@ -50,6 +51,13 @@ def level_of(
         loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
         if loads is not None and not loads.any() and goal != "force":
             raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")
+        asked = inner_and_outer(load, 0.1)[0] / [1, 1, length]
+        size = float(np.abs(asked).max())
+        if size and limit > _FARTHEST * size:
+            raise InvalidInput(
+                f"max_force {limit:g} is more than {_FARTHEST:g} times the loads, {size:.3g}, and rounding "
+                "would decide; give the most that a finger can do"
+            )
         if goal == "force":
             return ForceLevel(limit, friction)
         return FrictionLevel(limit, friction, angle=goal == "angle")

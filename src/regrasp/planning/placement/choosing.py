@@ -74,7 +74,8 @@ def choose_grasp(
             ``tolerance``, ``min_distance``, ``from_corners``, ``most_boxes`` and ``progress``.
         fingers: how many, 2 to 4; all alike.
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
-            forces for each load, has to hold; the value is that of the worst load [N, N m].
+            forces for each load, has to hold; the value is that of the worst load [N, N m]. Under none all
+            placements are worth 0, unless fingers squeeze with ``min_normal``.
         friction: coefficient of all fingers [-].
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
             ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor
@@ -93,8 +94,8 @@ def choose_grasp(
         length: by which torques are divided, for ``wrench_ball`` [m]; the farthest reach of the outline from
             its centre of mass if not given.
         arcs: the only stretches where fingers may be: pairs of arc lengths, counter-clockwise from the first
-            to the second [m], at most one length before the first vertex or past it; the whole outline if
-            not given.
+            to the second [m], once around at most, and one length before the first vertex or past it; the
+            whole outline if not given.
         tip_radius: of round fingertips, which do not reach into corners and slots where they would meet
             another part of the outline [m]; on a curve as seen at 2,000 points of it.
         in_holes: whether fingers may be in the holes of a polygon, too, whose arc lengths go on after the
@@ -103,7 +104,8 @@ def choose_grasp(
             of ``answered``, ``wrench`` and ``wrench_ball``. Without it the best
             placement may be one where loads balance on a knife's edge: the search tells no places apart that
             are closer than a fraction of ``tolerance``, and leaves a gap there.
-        tolerance: gap at which the search ends, as a fraction of the value [-].
+        tolerance: gap at which the search ends, as a fraction of the value [-]; under a round set of loads at
+            least 5e-6 is left, for no more than a thousand loads stand for it.
         min_distance: least distance between two fingers [m]; a millionth of the object's size if not given,
             for two fingers at one point are one.
         from_corners: least distance of a finger from a corner, along the boundary, or from a sharp edge of a

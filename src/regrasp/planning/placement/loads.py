@@ -9,6 +9,8 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 
+_MOST = 1000  # loads of a round set: every box looks at all of them
+
 
 def check_planar(load: Wrench | LoadSet) -> None:
     """Raise ``InvalidInput`` for what is no planar load or set of loads."""
@@ -22,7 +24,8 @@ def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Ar
     """Loads (m, 3) of the set, and loads (l, 3) whose hull contains it: the same for a point or a hull.
 
     A bound from loads of the set is one for the set, and a grasp that holds the outer ones holds the set. The
-    outer ones are farther from its middle by a fraction of about ``tolerance`` at most.
+    outer ones are farther from its middle by a fraction of about ``tolerance`` at most, or by 5e-6 of a round
+    set, which has a thousand loads at most.
     """
     if isinstance(load, Wrench):
         return load.vector[None], load.vector[None]
@@ -37,7 +40,7 @@ def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Ar
             "a set of loads whose forces and torques are both round has no polygon near it; give the hull of "
             "some of its loads"
         )
-    count = max(8, ceil(pi / sqrt(2 * tolerance))) if flat.shape[0] == 2 else 2
+    count = min(max(8, ceil(pi / sqrt(2 * tolerance))), _MOST) if flat.shape[0] == 2 else 2
     angles = 2 * pi * np.arange(count) / count
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1)[:, : flat.shape[0]]
     twists = around @ flat
