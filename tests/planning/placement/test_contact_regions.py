@@ -1,5 +1,6 @@
 """Regions around contacts: every choice within holds, and a little outside some choice does not."""
 
+import re
 from dataclasses import replace
 from itertools import product
 
@@ -189,3 +190,22 @@ def test_limits_of_contacts_are_kept() -> None:
     tight = rg.Grasp([*contacts[:2], contacts[2].changed(max_force=0.99 * least)])
     with pytest.raises(rg.Infeasible, match="above max_force"):
         rg.contact_regions(shape, tight, load)
+
+
+@pytest.mark.parametrize(
+    ("places", "friction", "load", "words"),
+    [
+        ((2.0, 6.0, 14.0), 0.0, rg.Wrench([0, -1]), "on a knife's edge"),  # the first is in the middle
+        ((2.5, 3.0), 0.0, rg.Wrench([0, -1]), "does not hold the loads, not Wrench(force=(0, -1)"),
+        ((1.0, 3.0), 0.3, rg.Wrench([0.5, -1], -1.0), "does not hold the loads, not Wrench(force=(0.5, -1)"),
+    ],
+)
+def test_what_is_not_held_and_what_is_held_on_an_edge_alone_are_told_apart(
+    places: tuple[float, ...], friction: float, load: rg.Wrench, words: str
+) -> None:
+    square = rg.Outline([[0, 0], [4, 0], [4, 4], [0, 4]])
+    grasp = rg.Grasp(square.contact_at(s, friction=friction) for s in places)
+    if "edge" in words:
+        assert rg.choose_state(grasp, load, "peak").value > 0
+    with pytest.raises(rg.Infeasible, match=re.escape(words)):
+        rg.contact_regions(square, grasp, load)

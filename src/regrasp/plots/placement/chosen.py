@@ -148,7 +148,7 @@ def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:
     words.append(f"all off by {radii[-1]} {units.length} at once")
     colours = [*contact_colours(regions.grasp).values(), GREY]
     lines = [Line2D([], [], color=c, linewidth=4, label=w) for c, w in zip(colours, words, strict=True)]
-    legend(ax, lines, ncols=2)
+    legend(ax, lines, ncols=1)  # two are wider than a column
 
 
 def _cone(ax: Axes, contact: Contact, length: float, colour: str) -> None:

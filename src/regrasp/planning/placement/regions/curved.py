@@ -150,7 +150,7 @@ def on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
     """What ``contact_regions`` finds on a smooth outline."""
     at, k = around.places, len(around.places)
     single = np.stack([at, at], axis=1)
-    limit = limit_of(around.need(around.spans(single)), given)
+    limit = limit_of(around.need(around.spans(single)), given, around.grasp, around.loads)
     far = 0.25 * around.shape.length
     ways: Array = np.array([-1.0, 1.0])
 

@@ -15,7 +15,7 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.regions.face_patches import FaceRegions
-from regrasp.planning.placement.regions.needs import LESS, limit_of
+from regrasp.planning.placement.regions.needs import LESS, ON_EDGE, limit_of
 from regrasp.planning.placement.sides import moved
 from regrasp.planning.placement.space.face_pieces import FacePlace, place_on
 from regrasp.planning.states.choosing import choose_state
@@ -33,11 +33,11 @@ def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None
     """What ``contact_regions`` finds on a mesh."""
     search = _Regions(mesh, grasp, loads)
     grasp = search.grasp
-    limit = search.limit = limit_of(search.need(), given)
+    limit = search.limit = limit_of(search.need(), given, grasp, loads)
     k, far = len(grasp), float(np.linalg.norm(mesh.size))
     none = np.zeros(k)
     if not search.holds(none):
-        raise Infeasible("the grasp holds the loads, but with too little of its friction left for regions")
+        raise Infeasible(ON_EDGE)
     radius = (1 - LESS) * _farthest(lambda r: search.holds(none + r), 0.0, far, _HALVINGS)
     radii, alone = none + radius, none.copy()
     for i in range(k):

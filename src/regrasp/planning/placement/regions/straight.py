@@ -17,11 +17,12 @@ from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.planning.placement.regions.cuts import Cuts
 from regrasp.planning.placement.regions.growing import farthest, moved_out, traded
 from regrasp.planning.placement.regions.least_arc import LeastArc
-from regrasp.planning.placement.regions.needs import LESS, limit_of
+from regrasp.planning.placement.regions.needs import LESS, ON_EDGE, limit_of
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides, moved
 from regrasp.planning.states.choosing import choose_state
 
+_EDGE = 1e-5  # of the size: fingers that may be off by no more, and corners without forces, are on an edge
 _ON_SIDE = 1e-6  # of the size: farther from every side a contact is not on the outline
 
 
@@ -32,7 +33,7 @@ def on_sides(shape: Outline, grasp: Grasp, loads: Array, given: float | None, wi
     places, u = _sides_under(sides, grasp)
     kept = float(grasp.frictions[0]) * (1 - LESS)
     search = Search(sides, len(grasp), kept, loads, LAWS["peak"], 0.0, 0.0)
-    limit = limit_of(search.norm_at(places, u), given)
+    limit = limit_of(search.norm_at(places, u), given, grasp, loads)
     to = (sides.contact(int(side), v, kept, "at") for side, v in zip(places, u, strict=True))
     grasp = Grasp(map(moved, grasp, to))
     k = len(places)
@@ -88,6 +89,8 @@ def on_sides(shape: Outline, grasp: Grasp, loads: Array, given: float | None, wi
         try:
             corners += [_plain(at, Wrench.from_vector(w), limit) for w in search.loads]
         except RegraspError as error:
+            if half <= _EDGE * sides.size:
+                raise Infeasible(ON_EDGE) from None
             raise Infeasible(
                 f"a corner of the regions was left without forces by rounding: {error}"
             ) from None
