@@ -91,12 +91,16 @@ def certified(outline: rg.Outline, fingers: int, rounds: int) -> dict[str, Any]:
 
 def found_within(values: Iterator[float], wanted: float, seconds: float) -> Found:
     """The best of values one after the other, until one is as good as wanted or time is over."""
-    best, begin = inf, perf_counter()
+    best, begin, over_time = inf, perf_counter(), []
     for value in values:
-        best = min(best, value)
-        if best <= wanted or perf_counter() - begin > seconds:
+        passed = perf_counter() - begin
+        if value < best:
+            best = value
+            over_time.append((passed, best))
+        if best <= wanted or passed > seconds:
             break
-    return {"value": best, "seconds": perf_counter() - begin, "reached": best <= wanted}
+    passed = perf_counter() - begin
+    return {"value": best, "seconds": passed, "reached": best <= wanted, "over_time": over_time}
 
 
 def at_random(norm: Callable[[np.ndarray], float], fingers: int) -> Iterator[float]:
@@ -115,13 +119,17 @@ def from_many_starts(norm: Callable[[np.ndarray], float], fingers: int) -> Itera
 
 def on_more_points(of_points: Callable[[int, float], float], wanted: float, seconds: float) -> Found:
     """The best on evenly spread points, which double until it is as good as wanted or time is over."""
-    best, begin, points, done = inf, perf_counter(), FIRST_POINTS, 0
+    best, begin, points, done, over_time = inf, perf_counter(), FIRST_POINTS, 0, []
     while best > wanted and points <= MOST_POINTS and (left := seconds - (perf_counter() - begin)) > 0:
         found = of_points(points, left)
         if found < inf:
             best, done = min(best, found), points
+            over_time.append((perf_counter() - begin, best))
         points *= 2
-    return {"value": best, "seconds": perf_counter() - begin, "reached": best <= wanted, "points": done}
+    return {
+        "value": best, "seconds": perf_counter() - begin, "reached": best <= wanted, "points": done,
+        "over_time": over_time,
+    }  # fmt: skip
 
 
 def all_of_sampled(norm: Callable[[np.ndarray], float], fingers: int, points: int, seconds: float) -> float:
