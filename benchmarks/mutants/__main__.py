@@ -41,7 +41,16 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "placed": (
         [
             f"verification/placed/{name}.py"
-            for name in ("chosen*", "touching", "arc_lengths", "re*", "whole_sets", "curved*", "protocol")
+            for name in (
+                "chosen*",
+                "claims/*",
+                "touching",
+                "arc_lengths",
+                "re*",
+                "whole_sets",
+                "curved*",
+                "protocol",
+            )
         ],
         [
             *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "c*", "what*")),

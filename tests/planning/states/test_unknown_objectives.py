@@ -155,8 +155,9 @@ OTHER_LISTS = {
     "planning/changes/path_search.py": "the same",
     "planning/changes/joining.py": "the same",
     "planning/placement/chosen.py": "goals of placements, laws of their own (placement/laws.py)",
-    "planning/placement/results.py": "the same",
     "verification/placed/chosen_grasps.py": "the same, written again",
+    "verification/placed/claims/contacts.py": "the same",
+    "verification/placed/claims/levels.py": "the same",
     "plots/over_time/magnitudes.py": "margins to draw, angle or force, and no other is taken",
     "bench/families/states.py": "the programs of a test set, each written as it is",
 }

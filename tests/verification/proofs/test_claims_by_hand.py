@@ -10,6 +10,7 @@ import pytest
 import regrasp as rg
 from proofs import planar, solid
 from regrasp.verification.placed import chosen_grasps as claims
+from regrasp.verification.placed.claims import contacts, levels
 from regrasp.verification.placed.meshes.areas import part_of_surface
 
 pytestmark = pytest.mark.contract
@@ -108,7 +109,7 @@ def test_bounds_below_zero_prove_zero_and_large_ones_are_compared(objective) -> 
 
 
 def test_bounds_are_no_worse_than_values_and_finite() -> None:
-    for objective in claims._MEANINGS:
+    for objective in claims.MEANINGS:
         way, words = (1, "below") if objective in LARGEST else (-1, "above")
         for step in (1e-15, 0.5, nan):
             found = claims._check_bound(chosen(objective, 1.0, 1.0 - way * step), proven(9.0))
@@ -152,7 +153,7 @@ def test_bounds_that_need_no_proof() -> None:
         ("force", 3 * sin(atan(0.5)) * (1 - 1e-9), 1e-15), ("wrench_ball", 6 * hypot(1, 0.5), 1e-15),
     ):  # fmt: skip
         for step, good in (off, True), (-off, False):
-            found = claims._check_trivial(chosen(objective, bound=bound + step), BOARD, 3.0)
+            found = levels.check_trivial(chosen(objective, bound=bound + step), BOARD, 3.0)
             assert found == ([] if good else ["the proof proves no bound"]), (objective, step)
     for axis, most in enumerate((6.0, 6.0, 30.0)):
         for way, center in (1, -2.0), (-1, 2.0), (1, 0.0), (1, 2.0):
@@ -163,7 +164,7 @@ def test_bounds_that_need_no_proof() -> None:
             for factor, good in (1 + 1e-12, True), (1 - 1e-12, False):
                 given = {"bound": needed * factor, "deviations": deviations}
                 for objective in ("answered", "wrench"):
-                    found = claims._check_trivial(chosen(objective, **given), proof, 3.0)
+                    found = levels.check_trivial(chosen(objective, **given), proof, 3.0)
                     assert (not found) == good, (axis, way, center)
 
 
@@ -180,7 +181,7 @@ def test_springs_hold_the_load_itself_first(scale, axis) -> None:
         states = [plain(load=plain(vector=w), grasp=grasp, forces=squeeze) for w in loads]
         states[-1].forces = push
         given = {"deviations": deviations, "certificate": plain(loads=center[None]), "states": tuple(states)}
-        return "; ".join(claims._check_answers(chosen(objective, 2.0, **given | changes)))
+        return "; ".join(levels.check_answers(chosen(objective, 2.0, **given | changes)))
 
     assert told(center, *shown) == ""
     assert "do not hold the load" in told(center, *shown, deviations=None)
@@ -220,7 +221,7 @@ def test_places_are_those_of_contacts(scale) -> None:
         for off, good in (JUST, True), (-JUST, True), (MORE, False), (-MORE, False):
             given = np.array(grasp.positions)
             given[at] += off * 4 * scale
-            found = claims._off_their_places(plain(grasp=grasp), given)
+            found = contacts._off_their_places(plain(grasp=grasp), given)
             assert (not found) == good, (at, off)
             assert good or found == [f"a contact is {abs(off) * 4 * scale:.3g} off its place"]
 
@@ -239,7 +240,7 @@ def test_the_ball_of_a_pair(length) -> None:
     radius = 3 * sqrt(2 / 3)
     for factor, good in (1 - 1e-12, True), (1 + 1e-12, False), (0.0, True), (-1e-300, False):
         given = {"grasp": grasp, "length": length, "max_force": 3.0}
-        found = claims._check_ball(chosen("wrench_ball", radius * factor, **given), 3.0)
+        found = levels.check_ball(chosen("wrench_ball", radius * factor, **given), 3.0)
         assert (not found) == good, factor
     for bound, at in (5.0, 5.0), (2.0, 2.0):
         for row, off, good in (0, JUST, True), (0, MORE, False), (1, MORE, False), (1, -1.0, True):
@@ -249,7 +250,7 @@ def test_the_ball_of_a_pair(length) -> None:
             given = {"grasp": grasp, "length": length, "max_force": 3.0}
             found = claims._check_bound(chosen("wrench_ball", 1.0, bound, **given), proof)
             assert (not found) == good, (bound, row, off)
-    assert claims._check_ball(chosen("wrench_ball", float(Fraction(1, 3)), grasp=grasp), 3.0) != []
+    assert levels.check_ball(chosen("wrench_ball", float(Fraction(1, 3)), grasp=grasp), 3.0) != []
 
 
 def test_what_is_shared_of_surfaces() -> None:

@@ -9,6 +9,7 @@ import pytest
 import regrasp as rg
 from proofs import planar
 from regrasp.verification.placed import chosen_grasps as claims
+from regrasp.verification.placed.claims import contacts, levels
 
 pytestmark = pytest.mark.contract
 
@@ -76,28 +77,28 @@ def test_bounds_without_proof_that_touch_their_limits() -> None:
         ("wrench_ball", 2 * 3.0 * hypot(1.0, 0.6), {"grasp": MIXED}),
         ("answered", 6.0, ahead),
     ):
-        assert claims._check_trivial(chosen(objective, bound=bound, **given), board, 3.0) == []
-        assert claims._check_trivial(chosen(objective, bound=bound * 0.999, **given), board, 3.0) != []
+        assert levels.check_trivial(chosen(objective, bound=bound, **given), board, 3.0) == []
+        assert levels.check_trivial(chosen(objective, bound=bound * 0.999, **given), board, 3.0) != []
 
 
 def test_loads_that_touch_their_limits() -> None:
     zero = SimpleNamespace(load=SimpleNamespace(vector=np.zeros(3)))
     none = chosen("answered", 0.0, deviations=np.zeros((1, 3)), states=(zero, zero))
-    assert claims._check_answers(none) == []
+    assert levels.check_answers(none) == []
     down = -np.ones(3)
     states = [SimpleNamespace(load=SimpleNamespace(vector=w)) for w in (down * (1 + 1e-10), 2 * down)]
     given = {"deviations": down[None], "certificate": SimpleNamespace(loads=down[None]), "states": states}
-    assert claims._check_answers(chosen("answered", **given)) == []
+    assert levels.check_answers(chosen("answered", **given)) == []
     other = chosen("answered", deviations=np.eye(3)[:2])
-    assert not claims._scaled_by_less(other, np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 0]]), 1.0)
-    assert claims._scaled_by_less(other, np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), 1.0)
-    assert not claims._scaled_by_less(chosen("answered", deviations=np.eye(3)), np.zeros((3, 3)), 1.0)
+    assert not levels._scaled_by_less(other, np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 0]]), 1.0)
+    assert levels._scaled_by_less(other, np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), 1.0)
+    assert not levels._scaled_by_less(chosen("answered", deviations=np.eye(3)), np.zeros((3, 3)), 1.0)
 
 
 def test_places_that_touch_their_limits() -> None:
     nowhere = SimpleNamespace(grasp=SimpleNamespace(positions=np.zeros((2, 2))))
-    assert claims._off_their_places(nowhere, np.zeros((2, 2))) == []
-    assert claims._off_their_places(nowhere, np.zeros((1, 2))) == ["each contact needs a place"]
+    assert contacts._off_their_places(nowhere, np.zeros((2, 2))) == []
+    assert contacts._off_their_places(nowhere, np.zeros((1, 2))) == ["each contact needs a place"]
     near = np.array([[-2.0, -2], [-2, 2], [2, 2], [2, -2]])
     rings = {"vertices": np.concatenate([SQUARE, near]), "rings": np.array([0, 4])}
     shape = SimpleNamespace(cubics=lambda: None, polygon=lambda: SQUARE, hole_polygons=lambda: (near[::-1],))
@@ -105,7 +106,7 @@ def test_places_that_touch_their_limits() -> None:
     def told(shape=shape, **changes):
         proof = planar(**rings | {"loads": [[0, 0, 0]], "nodes": [NODE]} | changes)
         given = {"shape": shape, "places": (24.0, 10.0), "certificate": proof}
-        return "; ".join(claims._check_places(chosen("answered", **given), proof))
+        return "; ".join(contacts.check_places(chosen("answered", **given), proof))
 
     assert told() == ""
     assert told(min_distance=6 + 5 * STEP) == ""
@@ -135,7 +136,7 @@ def test_loads_between_those_of_states_are_shown() -> None:
         states = tuple(
             SimpleNamespace(load=SimpleNamespace(vector=np.array(v, dtype=float))) for v in vectors
         )
-        return claims._all_shown(SimpleNamespace(states=states), np.array([load], dtype=float))
+        return contacts._all_shown(SimpleNamespace(states=states), np.array([load], dtype=float))
 
     ends = [0, -1e3, 0], [0, -3e3, 4e-3]
     for part, good in (0, True), (0.25, True), (1, True), (1 + 1e-6, False), (-1e-6, False):
@@ -155,7 +156,7 @@ def test_loads_between_those_of_states_are_shown() -> None:
 
 def test_spots_that_touch_their_limits(monkeypatch) -> None:
     grasp = rg.Grasp(rg.Contact([x, 0, 0], [-x, 0, 0], 0.5) for x in (-1, 1))
-    monkeypatch.setattr(claims, "touches", lambda *a: True)
+    monkeypatch.setattr(contacts, "touches", lambda *a: True)
     shape = SimpleNamespace(centre_of_mass=np.zeros(3))
     load = SimpleNamespace(load=SimpleNamespace(vector=np.zeros(6)))
     for share, apart, words in (
@@ -166,7 +167,7 @@ def test_spots_that_touch_their_limits(monkeypatch) -> None:
         given = {"fingers": 2, "friction": 0.5, "loads": np.zeros((1, 6))}
         proof = SimpleNamespace(**given, min_distance=apart)
         made = chosen("peak", grasp=grasp, shape=shape, states=(load,), places=grasp.positions)
-        assert "; ".join(claims._check_spots(made, proof, share)) == words
+        assert "; ".join(contacts.check_spots(made, proof, share)) == words
 
 
 def test_what_is_said_of_springs() -> None:

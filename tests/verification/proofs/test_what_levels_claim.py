@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.verification.placed.chosen_grasps import _all_shown, _check_bound, _scaled, _scaled_by_less
+from regrasp.verification.placed.chosen_grasps import _check_bound
+from regrasp.verification.placed.claims.contacts import _all_shown
+from regrasp.verification.placed.claims.levels import _scaled, _scaled_by_less
 from regrasp.verification.placed.touching import Touching
 
 pytestmark = pytest.mark.contract

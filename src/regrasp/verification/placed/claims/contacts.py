@@ -1,0 +1,98 @@
+"""Whether contacts are fingers that a proof is about, on the shape given, and states hold all its loads."""
+
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.arc_lengths import points_at
+from regrasp.verification.placed.claims.meanings import ANY_LOAD, CLOSE
+from regrasp.verification.placed.meshes.surfaces import SurfaceProof, touches
+from regrasp.verification.placed.protocol import Chosen, Proof
+from regrasp.verification.placed.touching import Touching
+
+
+def check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:
+    """That the contacts are fingers that the proof is about, which has a share of the mesh given."""
+    shape: Any = chosen.shape
+    if share < 0:
+        return ["the proof is about another mesh"]
+    if len(chosen.grasp) != proof.fingers:
+        return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]
+    broken = []
+    for contact in chosen.grasp:
+        if not touches(proof, contact):
+            broken.append(f"contact {contact.name} is on none of the faces that the proof is about")
+        if contact.friction > proof.friction:
+            broken.append(f"contact {contact.name} has more friction than the proof is about")
+    positions = chosen.grasp.positions
+    if _nearest(positions) < proof.min_distance - float(RESOLUTION) * np.abs(positions).max():
+        broken.append("two contacts are nearer than the least distance")
+    if not _all_shown(chosen, np.asarray(proof.loads)):
+        broken.append("a load of the proof has no state")
+    return broken + _off_their_places(chosen, np.asarray(chosen.places) - shape.centre_of_mass)
+
+
+def check_places(chosen: Chosen, proof: Proof) -> list[str]:
+    """That the contacts are fingers that the proof is about, on the shape given."""
+    if not hasattr(chosen.shape, "cubics"):
+        return ["the proof is about an outline"]
+    control = chosen.shape.cubics()
+    if (control is None) != (proof.control is None):
+        return ["the proof is about another kind of outline"]
+    edges, given = (proof.vertices, chosen.shape.polygon()) if control is None else (proof.control, control)
+    if proof.rings is not None:
+        rings = [given, *(hole[::-1] for hole in chosen.shape.hole_polygons())]
+        if np.asarray(proof.rings).tolist() != np.cumsum([0, *map(len, rings[:-1])]).tolist():
+            return ["the proof is about another outline"]
+        given = np.concatenate(rings)
+    if not np.array_equal(np.asarray(edges) - proof.centre_of_mass, given):
+        return ["the proof is about another outline"]
+    if len(chosen.grasp) != proof.fingers:
+        return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]
+    broken = []
+    touching = Touching(proof)
+    slack = float(RESOLUTION) * touching.reach
+    for contact in chosen.grasp:
+        if contact not in touching:
+            broken.append(f"contact {contact.name} is on none of the sides that the proof is about")
+        if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
+            broken.append(f"contact {contact.name} has more friction than the proof is about")
+    if _nearest(chosen.grasp.positions) < proof.min_distance - slack:
+        broken.append("two contacts are nearer than the least distance")
+    if chosen.objective not in ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
+        broken.append("a load of the proof has no state")
+    return broken + _off_their_places(chosen, points_at(chosen.places, given, control, proof.rings))
+
+
+def _off_their_places(chosen: Chosen, given: Array) -> list[str]:
+    """That the contacts are at the places that are said, whose points are ``given`` [m]."""
+    positions = chosen.grasp.positions
+    if given.shape != positions.shape:
+        return ["each contact needs a place"]
+    off = np.abs(given - positions).max()
+    return [] if off <= CLOSE * np.abs(positions).max() else [f"a contact is {off:.3g} off its place"]
+
+
+def _nearest(positions: Array) -> float:
+    away = np.linalg.norm(positions[:, None] - positions, axis=2)
+    return float(away[np.triu_indices(len(positions), 1)].min(initial=inf))
+
+
+def _all_shown(chosen: Chosen, loads: Array) -> bool:
+    """Whether states hold all loads: each is that of a state, or lies between those of two."""
+    shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, loads.shape[1])
+    size = np.abs(loads).max(axis=0)
+    scale = np.where(size > 0, size, size.max() or 1.0)  # forces and torques have units of their own
+    shown, loads = shown / scale, loads / scale
+    sides = shown[None] - shown[:, None]
+    squares = np.maximum((sides**2).sum(axis=2), np.finfo(float).tiny)
+    for load in loads:
+        away = load - shown
+        share = np.clip((away[:, None] * sides).sum(axis=2) / squares, 0.0, 1.0)
+        off = np.abs(away[:, None] - share[..., None] * sides).max(axis=2)
+        if not off.min(initial=inf) <= CLOSE:
+            return False
+    return True
