@@ -97,6 +97,11 @@ def _places() -> None:
 
     square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     rg.choose_grasp(square, 2, rg.Wrench([0.1, -1.0]), friction=0.6)
+    pushes = rg.LoadSet.hull([rg.Wrench([0.1, 0.0]), rg.Wrench([-0.1, 0.0])])
+    rg.choose_grasp(
+        square, 2, rg.Wrench([0.1, -1.0]), friction=0.6, objective="wrench", max_force=3.0,
+        disturbance=pushes, tolerance=0.2,
+    )  # fmt: skip
     rg.choose_grasp(rg.Mesh.box(1, 1, 1), 3, rg.Wrench([0, 0, -1.0]), friction=0.6, tolerance=0.1)
 
 

@@ -9,9 +9,12 @@ import pytest
 
 import regrasp as rg
 from placements import BRACKET, DEVIATIONS
+from regrasp.planning.placement.levels.known_duals import KnownDuals
 from regrasp.planning.placement.levels.tied import Ties
+from regrasp.planning.placement.levels.tied_boxes import Boxes, Corners
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
+from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
 
 pytestmark = pytest.mark.oracle
@@ -161,3 +164,77 @@ def test_an_interrupt_leaves_the_best_so_far_with_its_gap(
     assert calls >= call
     assert 0.02 < chosen.gap < 0.5
     assert rg.verify(chosen).ok
+
+
+def rounded(corner: float = 0.3, parts: int = 6) -> rg.Outline:
+    """A square of 2 with corners of some edges each."""
+    angle = np.linspace(0, np.pi / 2, parts + 1)
+    arc = 1 - corner + corner * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    turns = [np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]) for a in np.arange(4) * np.pi / 2]
+    return rg.Outline(np.concatenate([arc @ turn for turn in turns]))
+
+
+def test_groups_of_edges_are_excluded_at_once() -> None:
+    chosen = rg.choose_grasp(rounded(), 2, WEIGHT, tolerance=0.01, **ASKED)
+    proof = chosen.certificate
+    assert isinstance(proof, PlacementProof)
+    assert chosen.gap <= 0.01
+    assert rg.verify(chosen).ok
+    assert proof.tied is not None
+    several = np.flatnonzero((proof.number < -1) & (np.diff(proof.arcs, axis=2)[:, :, 0] > 0).any(axis=1))
+    assert len(several) > 0
+    assert (proof.number < -1).sum() > len(proof.tied)  # of which some exclude more than one box
+    for box in several[:4]:
+        finger = int(np.diff(proof.arcs[box], axis=1).argmax())
+        for place, step in (0, 1), (1, -1):
+            arcs, ends = proof.arcs.copy(), proof.ends.copy()
+            arcs[box, finger, place] += step
+            assert "not covered" in str(rg.verify(replace(proof, arcs=arcs)))
+            ends[box, finger, place] += step * 1e-9
+            assert "not covered" in str(rg.verify(replace(proof, ends=ends)))
+        tied = proof.tied.copy()
+        tied[-2 - proof.number[box]] *= -1
+        assert f"duals of box {box} do not" in str(rg.verify(replace(proof, tied=tied)))
+
+
+@pytest.mark.parametrize("shape", [rounded(), rg.Outline.ellipse(2, 1)], ids=["edges", "curve"])
+def test_duals_of_one_box_bound_placements_in_another(shape: rg.Outline) -> None:
+    rng = np.random.default_rng(4)
+    sides = sides_of(shape, 1e-3, None, 0.0, False)
+    deviations = np.array([[0.1, 0, 0], [-0.1, 0, 0], [0, 0, 0.05]])
+    ties = Ties(3, np.array([0, -0.3, 0]), deviations)
+    boxes, known = Boxes(sides, 0.5), KnownDuals(ties)
+
+    def box(span: int) -> tuple[np.ndarray, np.ndarray, Corners]:
+        first = np.sort(rng.integers(0, len(sides.ends) - span, 3))
+        arcs = np.stack([first, first + span - 1], axis=1)
+        ends = np.stack([sides.ends[arcs[:, 0], 0], sides.ends[arcs[:, 1], 1]], axis=1)
+        corners = boxes.corners(arcs, ends)
+        assert corners is not None
+        return arcs, ends, corners
+
+    for _ in range(8):
+        _, _, corners = box(1)
+        points, rays, _ = corners.at(corners.outermost)
+        found = ties.answer(points, rays)
+        if found is not None:
+            known.add(found.duals, corners.middle)
+    met = 0
+    for _ in range(20):
+        arcs, ends, corners = box(2)
+        bounds = [known.factor(corners, n)[0] for n in range(len(known.rows))]
+        places = arcs[range(3), rng.integers(0, 2, 3)]
+        inside = np.clip(sides.ends[places], ends[:, :1], ends[:, 1:])
+        u = rng.uniform(*inside.T)
+        at = boxes.corners(np.stack([places, places], axis=1), np.stack([u, u], axis=1))
+        assert at is not None
+        found = ties.answer(*at.at(np.zeros((1, 3), int))[:2])
+        if found is None or found.factor < 0:
+            continue
+        met += 1
+        assert found.factor <= min(bounds) * (1 + 1e-6)
+        for factor in 0.999 * min(bounds), 1.001 * min(bounds):
+            n = known.excluding(corners, factor)
+            assert (n >= 0) == (factor > min(bounds))
+            assert n < 0 or known.factor(corners, n)[0] <= factor
+    assert met > 3

@@ -119,15 +119,23 @@ def test_what_is_tied_is_formed() -> None:
     assert check_proof(proof) == ["proof: box 6 has no load"]
 
 
-def test_fingers_on_several_sides_at_once_are_not_tied() -> None:
+def test_fingers_on_several_sides_at_once() -> None:
+    """Box 3: one finger near -1, the others each near 0 or 1."""
     proof = beam()
-    proof.bound = below(limit_of_beam())
     proof.number[3], proof.children[3] = -2, 0
     keep = np.array([0, 1, 2, 3, 4, 8, 9, 10, 11])
     for name in "arcs", "ends", "number", "twists", "children":
         setattr(proof, name, getattr(proof, name)[keep])
     proof.children[4] = 5, 4
-    assert check_proof(proof) == ["proof: a finger of box 3 has more than one side"]
+    ends = [[x + side * EIGHTH for x in on for side in (-1, 1)] for on in ((-1,), (0, 1), (0, 1))]
+    most = max(lifted(*x) for x in product(*ends))
+    limit = ((4 + Fraction(3, 2)) + (8 + Fraction(9, 2))) / most
+    assert limit < limit_of_beam()
+    verdicts(proof, limit)
+    proof.bound = below(limit)
+    for changes in ("ends", (3, 1, 1), 2.0**-50), ("ends", (3, 0, 0), -(2.0**-50)), ("arcs", (3, 1, 1), -1):
+        (words,) = said_of_changes(proof, [changes], lambda p: "; ".join(check_proof(p)))
+        assert words.startswith("proof: ")
 
 
 # Two fingers face each other at (1, a) and (-1, b), friction 3 / 4, of 13 N at most. They hold 10 N between

@@ -80,17 +80,30 @@ def test_rows_of_all_loads_are_those_of_their_boxes() -> None:
     assert said(tied([[*UP, *UP, 0]], numbers=(0,), bound=0.49)) == ""
 
 
-def test_rows_of_all_loads_are_of_one_side_each() -> None:
-    sides = np.array([[0, 0, 0.5], [0, 0.5, 1.0]])
-    node = (everything(sides, 1), (0, 0), -2, UP)
-    proof = planar(SQUARE, [DOWN, DOWN], [node], size="force", norm="largest", sides=sides, bound=1e-9)
-    proof.tied = np.array([[*UP, *UP]])
-    assert said(proof) == "proof: a finger of box 0 has more than one side"
-    root, low, high = everything(sides, 2), (0, 0, 0.0, 0.5), (1, 1, 0.5, 1.0)
-    nodes = [(root, (1, 2), 0, UP), ([low, root[1]], (0, 0), -2, UP), ([high, root[1]], (0, 0), 0, UP)]
-    proof = planar(SQUARE, [DOWN, DOWN], nodes, size="force", norm="largest", sides=sides, bound=1e-9)
-    proof.tied = np.array([[*UP, *UP, 0.0]])
-    assert said(proof) == "proof: a finger of box 1 has more than one side"
+def test_every_edge_of_an_arc_counts() -> None:
+    """Along (-2, 1) a force of 1 does 3 / sqrt(2) on the floor, and sqrt(5) on the wall, inside its cone."""
+    floor, wall = [0, 0, 1.0], [1, 1.0, 2.0]
+    for sides, limit in ([floor], 2**0.5 / 3), ([wall], 5**-0.5), ([floor, wall], 5**-0.5):
+        given = {"size": "force", "norm": "largest", "friction": 1.0, "sides": np.array(sides)}
+        for fingers in 1, 2:
+            nodes = [(everything(given["sides"], fingers), (0, 0), -2, UP)]
+            proof = planar(SQUARE, [DOWN, DOWN], nodes, **given)
+            proof.tied = np.array([[-2, 1, 0, -2, 1, 0] + [0] * (fingers - 1)], dtype=float)
+            for factor, good in (1 - 1e-12, True), (1 - 1e-15, True), (1 + 1e-14, False), (2, False):
+                proof.bound = limit / fingers * factor
+                found = "" if good else "proof: the duals of box 0 do not exclude it"
+                assert said(proof) == found, (sides, fingers, factor)
+
+
+def test_boxes_of_many_corners_are_not_judged() -> None:
+    for count in 32, 33:
+        at = np.linspace(0, 1, count + 1)
+        sides = np.column_stack([np.zeros(count), at[:-1], at[1:]])
+        node = (everything(sides, 2), (0, 0), -2, UP)
+        proof = planar(SQUARE, [DOWN, DOWN], [node], size="force", norm="largest", sides=sides, bound=0.1)
+        proof.tied = np.array([[*UP, *UP, 0.0]])
+        many = "proof: box 0 has more than 4096 corners, too many for duals of all loads"
+        assert said(proof) == ("" if count == 32 else many)
 
 
 @pytest.mark.parametrize(
@@ -106,19 +119,34 @@ def test_rows_have_twists_of_loads_and_ties_of_all_but_one(columns, fingers, loa
         assert "tied for a largest force alone" in said(tied([[*UP, *UP, 0]], **changes))
 
 
+def eighth(lo: float, hi: float, i: int) -> list[np.ndarray]:
+    """Unit tangents d(a, a), d(a, b) and d(b, b) of a part of the curve from lo to hi."""
+    a, b = (lo + (hi - lo) * n / 8 for n in (i, i + 1))
+    (p, q, r), found = np.array(TURNS, dtype=float), []
+    for s, t in (a, a), (a, b), (b, b):
+        v = (1 - t) * ((1 - s) * p + s * q) + t * ((1 - s) * q + s * r)
+        found.append(v / np.hypot(*v))
+    return found
+
+
 def test_rows_of_all_loads_on_a_curve() -> None:
-    """Edge 1 turns from (1, 0) by (6, 5) to (3, 4); half of it is bounded by its own normals."""
+    """Edge 1 turns from (1, 0) by (4, 3) to (3, 4); eighths of a stretch are bounded by their own normals."""
     curve = np.cumsum([(4, 0), *TURNS], axis=0).astype(float)
     other = [curve[0], curve[0], curve[0], curve[0]]
-    for half, v, limit in (
-        ((1, 1.0, 1.5), (-4, 3), 25 * 61**0.5 / 38), ((1, 1.5, 2.0), (-3, 4), 24 * 61**0.5 / 39),
-        ((1, 1.0, 2.0), (-4, 3), 5.0), ((1, 1.5, 2.0), (-4, 3), 5.0),
-    ):  # fmt: skip
+    for *half, v in (
+        (1, 1.0, 1.5, (-4, 3)),
+        (1, 1.5, 2.0, (-3, 4)),
+        (1, 1.0, 2.0, (-4, 3)),
+        (1, 1.5, 2.0, (-4, 3)),
+    ):
         sides = np.array([half])
         node = (everything(sides, 1), (0, 0), -2, UP)
         control = np.array([other, curve])
         proof = planar(control[:, 0], [(4.0, -3, 0)], [node], sides=sides, control=control)
         proof.size, proof.norm, proof.friction, proof.tied = "force", "largest", 0.0, np.array([[*v, 0.0]])
+        normals = [(-y, x) for i in range(8) for x, y in eighth(half[1] - 1, half[2] - 1, i)]
+        most = max(x * v[0] + y * v[1] for x, y in normals)
+        limit = (3 * v[1] - 4 * v[0]) / most  # no v is between two normals of a part
         for factor, good in (1 - 1e-12, True), (1 + 1e-12, False):
             proof.bound = limit * factor
             assert (said(proof) == "") == good, (half, v)

@@ -50,12 +50,12 @@ class Search:
         self._state = np.array([1, 1, 0])
         self._found = np.full(1 + 2 * fingers, inf)
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
-        self.closed = self.interrupted = False
+        self.closed = self.interrupted = self._only = False
         self.narrow, self.limits = narrow, limits
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
-        self._only = False
         self._kept: list[tuple[float, np.ndarray, Array]] = []
-        self.tied: dict[int, Array] = {}  # boxes excluded by duals of all loads together
+        self.tied: dict[int, int] = {}  # boxes excluded by duals of all loads together, and the row of
+        self.duals: list[Array] = []
         self.moving: dict[int, tuple[np.ndarray, Array]] = {}  # or by loads' twists that move with fingers
 
     def under(self, loads: Array) -> None:
@@ -155,26 +155,29 @@ class Search:
         """(k, 2) first and last side of each arc of a box, and its ends."""
         return self._boxes[0][node], self._boxes[1][node]
 
-    def halved(self, node: int, finger: int, u: float, most: int) -> range:
-        """The boxes that one, of one side for each finger, is split into at ``u``; none without room."""
+    def halved(self, node: int, finger: int, u: float, most: int, after: int | None = None) -> range:
+        """The boxes that one is split into, at ``u`` on one side or ``after`` another; none without room."""
         if len(self._heap) < self.count + self.fingers + 1 and not self._grow(most):
             return range(0)
         arcs, ends, _, _, _, kinds, children, _, _, other, _ = self._boxes
         same = (arcs[node] == arcs[node, finger]).all(axis=1) & (ends[node] == ends[node, finger]).all(axis=1)
-        alike, first = np.flatnonzero(same), self.count
-        made = range(first, first + len(alike) + 1)
-        self._state[0], kinds[node], children[node] = made.stop, 2, (first, len(made))
+        alike, start = np.flatnonzero(same), self.count
+        made = range(start, start + len(alike) + 1)
+        self._state[0], kinds[node], children[node] = made.stop, 2, (start, len(made))
         for right, child in enumerate(made):
             arcs[child], ends[child], kinds[child], other[child] = arcs[node], ends[node], 0, -1
-            ends[child, alike[: len(alike) - right], 1] = u
-            ends[child, alike[len(alike) - right :], 0] = u
+            lefts, rights = alike[: len(alike) - right], alike[len(alike) - right :]
+            ends[child, lefts, 1] = ends[child, rights, 0] = u
+            if after is not None:
+                arcs[child, lefts, 1], arcs[child, rights, 0] = after, after + 1
+                ends[child, lefts, 1], ends[child, rights, 0] = self.sides.ends[[after, after + 1], [1, 0]]
         return made
 
-    def leave(self, node: int, duals: Array | None) -> None:
-        """Take a box for excluded, by duals of all loads; or, for none, as nearer than fingers may be."""
-        if duals is not None:  # first, lest an interrupt leaves a box excluded by nothing
-            self.tied[node] = duals
-        self._boxes[5][node] = 3 if duals is None else 1
+    def leave(self, node: int, row: int | None) -> None:
+        """Take a box for excluded, by a row of ``duals``; or, for none, as nearer than fingers may be."""
+        if row is not None:  # first, lest an interrupt leaves a box excluded by nothing
+            self.tied[node] = row
+        self._boxes[5][node] = 3 if row is None else 1
 
     def leave_to(self, node: int, loads: np.ndarray, twists: Array) -> None:
         """Take a box for excluded by twists of some loads that move with the fingers."""
@@ -308,15 +311,14 @@ class Search:
         """
         n = self.count
         arcs, ends, _, twists, _, kinds, children, _, seconds, other, _ = (v[:n] for v in self._boxes)
-        sides = np.column_stack([self.sides.edges, self.sides.ends])
         if self.limits != ANY_FORCE and self.law.norm == "squares":  # there twists are forces
             twists = twists * self.unit
         work = -(twists / [1, 1, self.sides.size]) @ self.loads.T
-        number = np.where(kinds == 3, -1, work.argmax(axis=1))
-        split = kinds == 2
-        given = {"sides": sides, "loads": self.loads, "arcs": arcs, "ends": ends}
+        number, split = np.where(kinds == 3, -1, work.argmax(axis=1)), kinds == 2
+        given = {"sides": np.column_stack([self.sides.edges, self.sides.ends]), "arcs": arcs, "ends": ends}
+        given["loads"] = self.loads
         given["children"] = np.where(split[:, None], children, 0)
-        number[list(self.tied)] = -2 - np.arange(len(self.tied))
+        number[list(self.tied)] = [-2 - row for row in self.tied.values()]
         given["number"] = np.where(split, 0, number)
         given["twists"] = np.where(split[:, None], 0.0, twists / [1, 1, self.sides.size])
         joined = np.flatnonzero((other >= 0) & (kinds != 2) & (number >= 0))
@@ -330,14 +332,13 @@ class Search:
             rows = [(box, load) for box, (loads, _) in self.moving.items() for load in loads.tolist()]
             given["movers"] = np.array(rows)
             given["motions"] = np.concatenate([twists for _, twists in self.moving.values()])
-        smooth = edges.ndim == 3
         return PlacementProof(
-            _frozen(edges[:, 0]) if smooth else edges, centre, fingers=self.fingers, friction=self.friction,
+            _frozen(edges[:, 0]) if edges.ndim == 3 else edges, centre, fingers=self.fingers,
             size="force" if self.law.size == "margin" and not self.margin else self.law.size,
-            margin=self.margin, norm=self.law.norm, min_distance=self.apart, bound=bound,
-            control=edges if smooth else None,
+            friction=self.friction, margin=self.margin, norm=self.law.norm, min_distance=self.apart,
+            bound=bound, control=edges if edges.ndim == 3 else None,
             rings=_frozen(self.sides.rings) if isinstance(self.sides, RingSides) else None,
-            tied=_frozen(np.array(list(self.tied.values()))) if self.tied else None,
+            tied=_frozen(np.array(self.duals)) if self.tied else None,
             max_force=None if self.limits[0] == inf else self.limits[0], min_normal=self.limits[1],
             **{name: _frozen(values) for name, values in given.items()},
         )  # fmt: skip

@@ -124,6 +124,20 @@ class CubicEdges:
             found.append((np.where(plain, ahead, np.inf), np.where(plain, aside, np.inf)))
         return found
 
+    def outlined(self, edge: int, lo: float, hi: float) -> tuple[Array, Array] | None:
+        """(4, 2) points whose hull contains a stretch, and (2, 2) clockwise and other edge of all its cones.
+
+        In doubles, the edges of length 1; None where rounding may be more.
+        """
+        a, b = np.array([lo]), np.array([hi])
+        plain, first, last = self._roughly_outermost(np.array([edge]), a, b)
+        if not plain[0]:
+            return None
+        control = self._control[edge][:, None]
+        points = [_at(control, at)[0] for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))]
+        (clockwise, _), (_, other) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
+        return np.array(points), np.concatenate([clockwise, other])
+
     def _roughly_outermost(self, edges: np.ndarray, lo: Array, hi: Array) -> tuple[Flags, Array, Array]:
         """Whether tangents of stretches are far from 0, and the outermost of them, of length 1."""
         legs = np.moveaxis(self._legs[edges], 1, 0)

@@ -15,25 +15,27 @@ Two twists, each with a load, bound a box together by the largest of each arc of
 N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
 box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``), and where forces have limits in ways of
-their own (``limited``). What is withstood is bounded by all loads
-together, and a box also by twists of some loads that move with the fingers (``whole_sets``).
+their own (``limited``). What is withstood is bounded by all loads together (``groups``), and a box also by
+twists of some loads that move with the fingers (``whole_sets``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
 
 from fractions import Fraction
-from math import inf
+from math import inf, prod
 from typing import Any
 
 import numpy as np
 
+from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.forces.limited import is_excluded as is_excluded_within
 from regrasp.verification.placed.forces.limited import is_least, wrong_limits
+from regrasp.verification.placed.groups import MOST, Groups, Stretch
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
-from regrasp.verification.placed.whole_sets import Most, is_excluded, ties_of, works
+from regrasp.verification.placed.whole_sets import Most, is_excluded, ties_of
 
 Arc = tuple[int, int, float, float]
 
@@ -107,6 +109,7 @@ class _Checked:
     def __init__(self, proof: Proof) -> None:
         self.proof = proof
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
+        self.groups = Groups(proof, self.boundary)
         self.clear: np.ndarray  # boxes that doubles decide
         self.limited = proof.max_force is not None or proof.min_normal > 0
         pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
@@ -196,7 +199,7 @@ class _Checked:
         if number == -1:
             return [] if self._near(arcs) else [f"proof: fingers of box {box} may be far enough apart"]
         if number < 0 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
-            return self._tied(box, self.proof.tied[-2 - number].tolist(), arcs)
+            return self._tied(box, self.proof.tied[-2 - number], arcs)
         if box in self.moving:
             return self._moved(box, arcs)
         told = [(number, self.proof.twists[box].tolist())]
@@ -233,15 +236,12 @@ class _Checked:
             return [f"proof: the twist of box {box} does not exclude it"]
         return []
 
-    def _tied(self, box: int, row: list[float], arcs: list[Arc]) -> list[str]:
-        """The same by all loads together, for one side of each finger."""
-        if any(a != b for a, b, *_ in arcs):
-            return [f"proof: a finger of box {box} has more than one side"]
-
-        hulls = [self._hull(*arc) for arc in arcs]
-        work, done = works(row, self.proof.loads.tolist(), hulls, self._along(arcs))
-        bound = Fraction(self.proof.bound)
-        if bound > 0 and (work < bound * done or work <= 0):
+    def _tied(self, box: int, row: Array, arcs: list[Arc]) -> list[str]:
+        """The same by all loads together."""
+        ways = prod(b - a + 1 for a, b, *_ in arcs)
+        if ways * self.groups.points ** len(arcs) > MOST:
+            return [f"proof: box {box} has more than {MOST} corners, too many for duals of all loads"]
+        if not self.groups.excludes(row, [self._stretches(arc) for arc in arcs]):
             return [f"proof: the duals of box {box} do not exclude it"]
         return []
 
@@ -273,8 +273,8 @@ class _Checked:
             parts = [(edge, u, u) for edge, *ends in parts for u in ends]
         return max(sum((self.boundary.most(*at, y) for y in twists), start=Fraction(0)) for at in parts)
 
-    def _stretches(self, arc: Arc) -> list[tuple[int, Fraction, Fraction]]:
-        """Edges, each with fractions from which to which an arc is on it."""
+    def _stretches(self, arc: Arc) -> list[Stretch]:
+        """Of each edge of an arc, from which to which fraction of it."""
         sides = self.sides[arc[0] : arc[1] + 1]
         sides[0] = sides[0][0], Fraction(arc[2]), sides[0][2]
         sides[-1] = *sides[-1][:2], Fraction(arc[3])

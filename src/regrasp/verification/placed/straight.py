@@ -52,6 +52,13 @@ class StraightEdges:
         (ax, ay), (dx, dy) = self.points[edge], self.along[edge]
         return [(ax + t * dx, ay + t * dy) for t in (lo, hi)]
 
+    def outlined(self, edge: int, lo: float, hi: float) -> tuple[Array, Array] | None:
+        """(2, 2) the ends of a stretch, and (2, 2) unit clockwise and other edge of its cone, in doubles."""
+        (tx, ty), mu = self._unit[edge], self._friction
+        edges = np.array([[-ty + mu * tx, tx + mu * ty], [-ty - mu * tx, tx - mu * ty]])
+        points = self._start[edge] + np.array([[lo], [hi]]) * self._along[edge]
+        return points, edges / np.sqrt(1 + mu * mu)
+
     def most(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> Fraction:
         """An upper bound of sigma on a stretch, 0 or more."""
         return self.most_along(edge, lo, hi, [velocity(y, p) for p in self.hull(edge, lo, hi)])

@@ -8,6 +8,8 @@ from numba import njit
 from regrasp.closed_form.compiled.compiling import VIEWS
 from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, bend, farthest, polar
 
+TOGETHER = 64
+"""Ways to choose a side for each finger up to which boxes stay whole where no arc is wide enough to split."""
 _TURN = 0.25  # of the size, that a turn by one radian on an arc of sides counts for
 
 
@@ -114,6 +116,12 @@ def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-
     """The finger to split, the last side of its left part, and where, if on one side; -1 for none."""
     chosen, most = -1, -1.0
     curved = sides.shape[1] > CONTROL
+    if narrow == np.inf:
+        ways = 1
+        for i in range(len(arcs)):
+            ways *= arcs[i, 1] - arcs[i, 0] + 1
+        if ways <= TOGETHER:
+            return -1
     for i in range(len(arcs)):
         first, last = arcs[i]
         if first < last:

@@ -4,13 +4,13 @@ Fingers of equal stiffness answer a deviation by forces -(v + omega x p), one sm
 That is: such changes do no work on any z with sum z_i = 0 and sum p_i x z_i = 0, of which all are made of
 pairs, z_i = p_i - p_j = -z_j, and triples, z_i = S J (p_j - p_l) and so around, S symmetric, J a quarter of a
 turn. These are linear in the places, so that what duals multiply a force by is affine in them, and the most
-work convex: corners of a box tell. The proof stands in the documentation, page "Where to put the fingers".
+work convex while fingers stay on their edges: corners tell, of each edge. The proof stands in the
+documentation, page "Where to put the fingers".
 """
 
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from math import inf
 
 import numpy as np
 from scipy import sparse
@@ -19,16 +19,16 @@ from regrasp.mechanics.checks import Array
 from regrasp.programs import Block, Cone, Program, Status
 from regrasp.programs.backends import asked
 
-_SAFE = 1e-9
 _ROUGH = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), 1e-7)  # any duals bound
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 @dataclass(frozen=True)
 class Withstood:
-    """factor: no places withstand more. duals: a twist for each load, then ties for each deviation.
+    """factor: what corners withstand together, but for what solvers are off by.
 
-    pressed: (C, k, L) how hard fingers push under each load at each corner of the box.
+    No bound of a box that has these corners is less. duals: a twist for each load, then ties for each
+    deviation. pressed: (C, k, L) how hard fingers push under each load at each corner.
     """
 
     factor: float
@@ -67,10 +67,10 @@ class Ties:
         return np.array(found)
 
     def answer(self, points: Array, rays: Array) -> Withstood | None:
-        """The bound of a box of places, of a placement what it withstands; None where no solver has one.
+        """What corners of a box withstand together, or a placement; None where no solver says.
 
-        points: (C, k, 2) places at the corners of the box. rays: (k, 2, 2) clockwise and other edge of all
-        forces of each finger, of length 1.
+        points: (C, k, 2) places at the corners. rays: (C, k, 2, 2) clockwise and other edge of all forces of
+        each finger there, of length 1.
         """
         (corners, k, _), m = points.shape, len(self.deviations)
         forms, loads = self.forms, m + 1
@@ -79,10 +79,10 @@ class Ties:
         equal = np.zeros((3 * loads + m * len(forms) + 1, n + corners + 1))
         balance = equal[: 3 * loads, :n].reshape(loads, 3, *unknowns.shape)
         tied = equal[3 * loads : -1, :n].reshape(m, len(forms), *unknowns.shape)
-        around = points[:, :, None, 0] * rays[:, :, 1] - points[:, :, None, 1] * rays[:, :, 0]
-        ties = np.einsum("tiajb,cjb,ira->tcir", forms, points, rays)
+        around = points[..., None, 0] * rays[..., 1] - points[..., None, 1] * rays[..., 0]
+        ties = np.einsum("tiajb,cjb,cira->tcir", forms, points, rays)
         for d in range(loads):
-            balance[d, :2, :, :, d] = rays.transpose(2, 0, 1)[:, None]
+            balance[d, :2, :, :, d] = rays.transpose(3, 0, 1, 2)
             balance[d, 2, :, :, d] = around
             if d:
                 tied[d - 1, :, :, :, d], tied[d - 1, :, :, :, 0] = ties, -ties
@@ -90,7 +90,7 @@ class Ties:
         equal[-1, n:-1] = 1.0  # shares of the corners, which limit forces there
         forces = np.arange(n // 2)
         disc = 3 * forces.reshape(corners, k, loads)
-        edges = np.broadcast_to(rays[:, None], (corners, k, loads, 2, 2))
+        edges = np.broadcast_to(rays[:, :, None], (corners, k, loads, 2, 2))
         row = [disc.ravel(), *((disc + 1 + t)[..., None].repeat(2, 3).ravel() for t in range(2))]
         column = [n + forces // (k * loads), unknowns.ravel(), unknowns.ravel()]
         value = [np.ones(n // 2), *(edges[..., t].ravel() for t in range(2))]
@@ -115,31 +115,19 @@ class Ties:
         if found.status not in (Status.SOLVED, Status.STOPPED):
             return None
         duals = -found.duals[: len(equal) - 1]
-        return Withstood(self.factor(points, rays, duals), duals, found.value[unknowns].sum(axis=3))
+        return Withstood(float(found.value[-1]), duals, found.value[unknowns].sum(axis=3))
 
-    def factor(self, points: Array, rays: Array, duals: Array) -> float:
-        """More than these places withstand no places of the box do, by duals of another program, too."""
-        m = len(self.deviations)
+    def motions(self, duals: Array) -> tuple[Array, Array]:
+        """(L, k, k, 2, 2) and (L, 2): finger i moves by still + sum_j move_ij p_j under each load."""
+        k, m = self.fingers, len(self.deviations)
         twists, ties = duals[: 3 * m + 3].reshape(-1, 3), duals[3 * m + 3 :].reshape(m, -1)
-        p = points[:, :, None]
-        along = np.stack([
-            twists[:, 0] - twists[:, 2] * p[..., 1], twists[:, 1] + twists[:, 2] * p[..., 0]
-        ], axis=-1)  # fmt: skip
-        tied = np.einsum("mt,tiajb,cjb->cima", ties, self.forms, points)
-        along[:, :, 1:] += tied
-        along[:, :, 0] -= tied.sum(axis=2)
-        most = _most(rays, along).sum(axis=(1, 2)).max()
-        work, gained = float(-(twists @ self.center).sum()), float(-(twists[1:] * self.deviations).sum())
-        if gained <= 0:
-            return inf
-        return float(most - work + _SAFE * (most + abs(work))) / gained
+        tied = np.einsum("mt,tiajb->mijab", ties, self.forms)
+        move = np.concatenate([-tied.sum(axis=0, keepdims=True), tied])
+        own = np.arange(k)
+        move[:, own, own] += twists[:, 2, None, None, None] * _TURN
+        return np.ascontiguousarray(move), twists[:, :2].copy()
 
-
-def _most(rays: Array, along: Array) -> Array:
-    """(C, k, L) the most of a force of at most 1 between its rays along (C, k, L, 2)."""
-    first, last = rays[:, None, 0], rays[:, None, 1]
-    x, y = along[..., 0], along[..., 1]
-    between = (first[..., 0] * y >= first[..., 1] * x) & (x * last[..., 1] >= y * last[..., 0])
-    a, b = (along * first).sum(axis=-1), (along * last).sum(axis=-1)
-    result: Array = np.where(between & (a + b > 0), np.hypot(x, y), np.maximum(np.maximum(a, b), 0.0))
-    return result
+    def worked(self, duals: Array) -> tuple[float, float]:
+        """The work of the load on all twists, less than none, and of the deviations on theirs."""
+        twists = duals[: 3 * len(self.deviations) + 3].reshape(-1, 3)
+        return float(-(twists @ self.center).sum()), float(-(twists[1:] * self.deviations).sum())
