@@ -47,21 +47,32 @@ def absolute(text: str, address: str) -> str:
 class Packed(BuildHookInterface):
     """The finished source archive once more by libdeflate, which finds shorter matches: 4 % less.
 
-    Deflate sees no more than 32 kB back, so README is moved next to the metadata that repeats it, and all
-    ``__init__.py`` next to one another: 0.5 % less.
+    Deflate sees no more than 32 kB back. So what repeats lies side by side, 1 % less: README and the metadata
+    that quotes it, all ``__init__.py``, and folders whose files have lines in common.
     """
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
         """Write it anew, the same files inside."""
         import deflate
 
-        archive, ordered = Path(artifact_path), io.BytesIO()
-        with tarfile.open(archive) as given, tarfile.open(fileobj=ordered, mode="w") as packed:
-            for member in sorted(given.getmembers(), key=_place):
-                packed.addfile(member, given.extractfile(member))
-        archive.write_bytes(deflate.gzip_compress(ordered.getvalue(), 12))
+        archive, packed = Path(artifact_path), io.BytesIO()
+        with tarfile.open(archive) as given, tarfile.open(fileobj=packed, mode="w") as tar:
+            files = [(m, file.read()) for m in given if (file := given.extractfile(m)) is not None]
+            place = places({PurePosixPath(m.name): data for m, data in files})
+            for member, data in sorted(files, key=lambda file: place[PurePosixPath(file[0].name)]):
+                tar.addfile(member, io.BytesIO(data))
+        archive.write_bytes(deflate.gzip_compress(packed.getvalue(), 12))
 
 
-def _place(member: tarfile.TarInfo) -> int:
-    name = PurePosixPath(member.name).name
-    return 2 if name in ("README.md", "PKG-INFO") else int(name == "__init__.py")
+def places(files: dict[PurePosixPath, bytes]) -> dict[PurePosixPath, tuple[int, str, int]]:
+    """What files are sorted by: folder after folder, each next to one with which it has much in common."""
+    lines: dict[PurePosixPath, set[bytes]] = {}
+    for path, data in files.items():
+        lines.setdefault(path.parent, set()).update(data.split(b"\n"))
+    size = {folder: 1000 + sum(map(len, own)) for folder, own in lines.items()}
+    order = [min(lines)]
+    while left := sorted(set(lines) - set(order)):
+        last = lines[order[-1]]
+        order.append(max(left, key=lambda f: sum(map(len, last & lines[f])) / size[f] ** 0.5))
+    special = {"__init__.py": 1, "README.md": 2, "PKG-INFO": 2}
+    return {p: (special.get(p.name, 0), p.suffix, order.index(p.parent)) for p in files}
