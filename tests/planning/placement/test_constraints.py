@@ -137,6 +137,18 @@ def test_fingers_that_must_be_opposite_are_found_though_no_box_leads_there() -> 
     assert bool(opposite(*chosen.grasp.positions[:, None], 0.0)[0])
 
 
+def test_a_third_finger_makes_nothing_worse_where_few_may_hold_together() -> None:
+    """No three of 48 points are so near in x: they are two good places and one more beside them."""
+
+    def above(first: np.ndarray, second: np.ndarray, angle: float) -> np.ndarray:
+        return np.abs((first - second)[:, 0]) < 0.02
+
+    given = {"friction": 0.4, "objective": "peak", "keep": above, "most_boxes": 256}
+    two, three = (rg.choose_grasp(BRACKET, k, TILTED, **given) for k in (2, 3))
+    assert three.bound <= three.value <= two.value
+    assert np.ptp(three.grasp.positions[:, 0]) < 0.02
+
+
 def test_who_stays_when_a_finger_leaves_holds_by_forces_that_are_no_rounding() -> None:
     """Of two loads each pair of the first choice held one, and the other by a million times its force."""
     shape = rg.Outline(
