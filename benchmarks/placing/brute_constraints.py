@@ -219,7 +219,7 @@ def _lies(drawn: Drawn, chosen: rg.ChosenGrasp, sampled_one: float, sign: int) -
         if drawn.objective in NORMS
         else best(Places(p[None], n[None]), drawn.task)[0] * sign
     )
-    if abs(again - value) > ROUNDING * size:
+    if abs(again - value) > ROUNDING * max(size, 0.1):
         yield "not what it says"
 
 

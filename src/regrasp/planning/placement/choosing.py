@@ -34,7 +34,7 @@ from regrasp.planning.states.objectives import Objective
 FROM_CORNERS = 1e-3
 """Default distance of fingers from corners, as a fraction of the length of the outline."""
 _SPARED = 1e-6  # of the friction, where placements on edges of cones are passed over
-_KEPT = 10  # placements, however those were found
+_KEPT, _FEW = 10, 1000  # placements, however those were found; boxes at the least
 DISTINCT = 1e-6
 """Default distance of fingers, as a fraction of the object's farthest reach from its centre of mass."""
 
@@ -203,8 +203,8 @@ def choose_grasp(
         run_constrained(search, constraints, half, most, progress)
     else:
         search.run(half, most, progress)
-        if not search.closed and not search.interrupted and mu > 0:
-            _spare_friction(search, half, most)
+        if not search.closed and mu > 0:
+            _spare_friction(search, half, 0 if search.interrupted else most // 10)
     return chosen_by_norm(search, asked)
 
 
@@ -215,7 +215,7 @@ def _spare_friction(search: Search, tolerance: float, most: int) -> None:
     """
     less = search.anew((1 - _SPARED) * search.friction)
     with suppress(KeyboardInterrupt):
-        less.run(tolerance, max(most // 10, 1000), None)
+        less.run(tolerance, max(most, _FEW), None)
     search.take(search.placements()[:_KEPT] + less.placements())
 
 
