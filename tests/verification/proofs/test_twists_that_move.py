@@ -66,9 +66,9 @@ def test_what_finger_adds_to_what() -> None:
         ({"movers": ((0, 0), (0, 2))}, "there is no load"),
         ({"movers": ((0, 0), (0, -1))}, "there is no load"),
         ({"movers": ((0, 0),)}, "motions must have shape"),
-        ({"norm": "sum"}, "a largest force and straight sides"),
+        ({"norm": "sum"}, "a largest force and no margin"),
         ({"sides": ((0, 0, 1.0), (1, 1, 2.0))}, "more than one side"),
-        ({"size": "margin", "margin": 0.1}, "a largest force and straight sides"),
+        ({"size": "margin", "margin": 0.1}, "a largest force and no margin"),
     ],
 )
 def test_what_they_cannot_be(changes, words) -> None:

@@ -23,6 +23,7 @@ from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
 from regrasp.planning.placement.levels.level import FrictionLevel, Level
 from regrasp.planning.placement.levels.moving_search import closed_by_moving
+from regrasp.planning.placement.levels.turning_search import closed_by_turning
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
@@ -190,10 +191,10 @@ def choose_grasp(
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
         best, beyond = run_level(search, level, around * tolerance, most, progress)
-        on_sides = isinstance(level, FrictionLevel) and not isinstance(sides, CurvedSides)
-        more = on_sides and not search.interrupted
+        more = isinstance(level, FrictionLevel) and not search.interrupted
         if best is not None and more and beyond > level.beyond(best, 1.1 * around * tolerance):
-            search, beyond = closed_by_moving(search, level, best, beyond, around * tolerance, most, progress)
+            closed = closed_by_turning if isinstance(sides, CurvedSides) else closed_by_moving
+            search, beyond = closed(search, level, best, beyond, around * tolerance, most, progress)
         if isinstance(level, WithstoodLevel) and best is not None and not search.interrupted:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)
         return chosen_at_level(search, asked, level, best, beyond)

@@ -16,7 +16,7 @@ N is the largest: N is at least the sum of their work over the sum of these.
 Of forces that keep a distance from the edges of their cones and a limit the most work is convex, too, and a
 box is excluded by (-w) . y > sum_i largest v_i . f_i (``eroded``), and where forces have limits in ways of
 their own (``limited``). What is withstood is bounded by all loads together (``groups``), and a box also by
-twists of some loads that move with the fingers (``whole_sets``).
+twists of some loads that move with the fingers (``whole_sets``, on curves ``curves.turning``).
 Everything is decided in rationals; roots are rounded to the safe side.
 """
 
@@ -29,6 +29,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
+from regrasp.verification.placed.curves.turning import is_excluded_in_turn, terms_of
 from regrasp.verification.placed.forces.limited import is_excluded as is_excluded_within
 from regrasp.verification.placed.forces.limited import is_least, wrong_limits
 from regrasp.verification.placed.groups import MOST, Groups, Stretch
@@ -67,13 +68,12 @@ def _shapes(proof: Proof) -> list[str]:
             return ["proof: second twists go with their boxes, a largest force and straight sides"]
     if proof.movers is not None:
         q = len(proof.movers)
-        wanted += [("movers", proof.movers, (q, 2)), ("motions", proof.motions, (q, 3 + 2 * k))]
-        if (
-            proof.motions is None
-            or (proof.norm, proof.control) != ("largest", None)
-            or proof.size == "margin"
-        ):
-            return ["proof: twists that move go with boxes, a largest force and straight sides"]
+        columns = 3 + 2 * k if proof.control is None else (3 + k) * terms_of(k)
+        wanted += [("movers", proof.movers, (q, 2)), ("motions", proof.motions, (q, columns))]
+        if proof.motions is None or proof.norm != "largest" or proof.size == "margin":
+            return ["proof: twists that move go with boxes, a largest force and no margin"]
+        if proof.control is not None and proof.size != "force":
+            return ["proof: twists that turn with fingers on curves are for the length of a force"]
     if wrong := wrong_limits(proof):
         return wrong
     if proof.rings is not None:
@@ -252,7 +252,13 @@ class _Checked:
             return [f"proof: a finger of box {box} has more than one side, or there is no load"]
         motions = [(loads[n], motion) for n, motion in self.moving[box]]
         bound, hulls = Fraction(self.proof.bound), [self._hull(*arc) for arc in arcs]
-        if bound <= 0 or is_excluded(motions, bound, hulls, self._along(arcs)):
+        if bound <= 0:
+            return []
+        if self.proof.control is None:
+            excluded = is_excluded(motions, bound, hulls, self._along(arcs))
+        else:
+            excluded = is_excluded_in_turn(motions, bound, hulls, self.proof.friction)
+        if excluded:
             return []
         return [f"proof: the twists of box {box} do not exclude it"]
 

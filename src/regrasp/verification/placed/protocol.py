@@ -105,7 +105,10 @@ class Proof(Protocol):
 
     @property
     def motions(self) -> Array | None:
-        """(q, 3 + 2 fingers) of each load, the twist at the beginning of all arcs, then what fingers add."""
+        """(q, c) of each load, the twist at the beginning of all arcs, then what fingers add.
+
+        On curves terms of polynomials in the places, of the twist and of what bounds each finger's work.
+        """
 
     @property
     def max_force(self) -> float | None:

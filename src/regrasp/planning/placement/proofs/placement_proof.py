@@ -48,7 +48,10 @@ class PlacementProof(BoxProof):
         movers: (q, 2) boxes that twists exclude which move with the fingers, and a load of one of these; each
             box has all of them in turn. None for none.
         motions: (q, 3 + 2 fingers) of each load, its twist with all fingers at the beginning of their arcs,
-            then by how much each finger adds to the one and to the other velocity on its way to the end.
+            then by how much each finger adds to the one and to the other velocity on its way to the end. Of a
+            smooth boundary (q, (3 + fingers) m) the m terms of polynomials of degree 2 in how far along its
+            part each finger is, from 0 to 1: of both velocities, the angular one, and a bound of what each
+            finger does along them; 1 first, then each place, then each product of two.
         max_force: of every finger, which the proof counts on [N]; None for none.
         min_normal: with which every finger pushes at the least, which it counts on, too [N].
     """
@@ -108,7 +111,7 @@ class PlacementProof(BoxProof):
             None if given.get("seconds") is None else array(given["seconds"], "seconds", (None, 3)),
             None if given.get("tied") is None else array(given["tied"], "tied", (None, None)),
             None if given.get("movers") is None else integers(given["movers"], "movers", (None, 2)),
-            None if given.get("motions") is None else array(given["motions"], "motions", (None, 3 + 2 * k)),
+            None if given.get("motions") is None else array(given["motions"], "motions", (None, None)),
             None if given.get("max_force") is None else number(given["max_force"], "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
         )

@@ -1,0 +1,127 @@
+"""The search of boxes on curves that fixed twists do not exclude, by twists that turn with the fingers."""
+
+from collections import deque
+from contextlib import suppress
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.levels.climbing import improved, settled
+from regrasp.planning.placement.levels.level import SURE, Level
+from regrasp.planning.placement.levels.turning import TurningTwists
+from regrasp.planning.placement.search import Progress, Search
+
+_COARSE = 0.2  # of the size: arcs of less are left to these twists
+_NARROW = 1e-6  # of the size, of arcs that are not split
+_STRICT = 1e-9
+_TRIES, _STEP = 300, 1e-3  # of a simplex of placements, its size as a part of the boundary
+
+
+def closed_by_turning(
+    search: Search, level: Level, best: float, beyond: float, tolerance: float, most: int,
+    progress: Progress | None,
+) -> tuple[Search, float]:  # fmt: skip
+    """A search that excludes more, and a level that no placement is beyond.
+
+    search: that ended with ``best`` and ``beyond``, of forces on curves; it is returned where no more is
+    excluded.
+    """
+    found = search.anew()
+    found.narrow = _COARSE
+    turning = _Turning(found, level, best, tolerance)
+    with suppress(KeyboardInterrupt):
+        turning.settle(search.placements())
+        while found.goes_on(turning.limit, 0.0, most, only=True):
+            if progress is not None:
+                progress(level.value(beyond), level.value(turning.best))
+        aim = settled(found, level, turning.run(most, progress), turning.limit)
+        if found.closed and aim < beyond:
+            found.take(sorted(search.placements() + found.placements(), key=lambda placed: placed[0]))
+            return found, aim
+    search.take(sorted(search.placements() + found.placements(), key=lambda placed: placed[0]))
+    level.put(search, beyond)
+    return search, beyond
+
+
+class _Turning:
+    """Boxes of one side for each finger, the widest first."""
+
+    def __init__(self, search: Search, level: Level, best: float, tolerance: float) -> None:
+        self.search, self.level, self.best, self.tolerance = search, level, best, tolerance
+        self.limit = level.max_force * (1 + _STRICT)
+        self.twists = TurningTwists(search.fingers)
+        self.aim = level.beyond(best, tolerance)
+
+    def settle(self, placements: list[tuple[float, np.ndarray, Array]]) -> None:
+        """Begin from the best of some placements, and from what is best near to it."""
+        if placements:
+            _, places, u = placements[0]
+            self._better(*self._nearby(places, u))
+        self.level.put(self.search, self.aim)
+
+    def run(self, most: int, progress: Progress | None) -> float:
+        """Exclude or split boxes; the level at which they are."""
+        search, waiting = self.search, deque(self.search.left.tolist())
+        programs = most // 3**search.fingers
+        while waiting and programs > 0:
+            node = waiting.popleft()
+            arcs, ends = search.box(node)
+            if (arcs[:, 0] != arcs[:, 1]).any():
+                break
+            self._better(arcs[:, 0].copy(), ends.mean(axis=1))
+            if search.excludes(np.array([node]), self.limit):
+                continue
+            programs -= 1
+            if self._excluded(node, arcs[:, 0], ends):
+                continue
+            lengths = np.diff(ends, axis=1)[:, 0] * search.sides.lengths[search.sides.edges[arcs[:, 0]]]
+            i = int(lengths.argmax())
+            if lengths[i] > _NARROW * search.sides.size:
+                waiting += search.halved(node, i, float(ends[i].mean()), most)
+            if progress is not None:
+                progress(self.level.value(self.aim), self.level.value(self.best))
+        return self.aim
+
+    def _better(self, places: np.ndarray, u: Array) -> None:
+        """Go on from a placement that is better, and from those that are better still."""
+        search, level = self.search, self.level
+        level.put(search, self.aim)
+        while search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
+            self.best, places, u = improved(search, level, self.aim, places, u)
+            search.forget(self.best, places, u)
+            self.aim = level.beyond(self.best, self.tolerance)
+            level.put(search, self.aim)
+            places, u = self._nearby(places, u)
+
+    def _nearby(self, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array]:
+        """A placement of less norm at the level aimed at, by the simplex of Nelder and Mead."""
+        from scipy.optimize import minimize
+
+        search, far = self.search, 1e6 * self.level.max_force
+        self.level.put(search, self.aim)
+
+        def moved(ways: Array) -> tuple[np.ndarray, Array]:
+            on = [search.sides.moved(int(j), *at) for j, *at in zip(places, u.tolist(), ways, strict=True)]
+            return np.array([j for j, _ in on]), np.array([v for _, v in on])
+
+        def norm(ways: Array) -> float:
+            at = moved(ways)
+            return min(search.norm_at(*at), far) if search.are_apart(*at) else far
+
+        simplex = _STEP * np.vstack([np.zeros(len(u)), np.eye(len(u))])
+        options = {"initial_simplex": simplex, "maxfev": _TRIES, "xatol": 1e-9, "fatol": 1e-9}
+        return moved(minimize(norm, simplex[0], method="Nelder-Mead", options=options).x)
+
+    def _excluded(self, node: int, places: np.ndarray, ends: Array) -> bool:
+        search = self.search
+        size = search.sides.size
+        each = zip(places, ends.tolist(), strict=True)
+        parts = np.array([search.sides.part(int(j), lo, hi)[0] for j, (lo, hi) in each]) / size
+        wanted = -search.loads / [1, 1, size] / self.level.max_force
+        found = self.twists.excluding(parts, search.friction, wanted)
+        if found is None:
+            return False
+        loads, polynomials = found
+        polynomials[:, 2] /= size
+        search.leave_to(node, loads, polynomials.reshape(len(loads), -1))
+        return True

@@ -1,0 +1,1 @@
+"""What is proven about placements on curves by polynomials in the places."""

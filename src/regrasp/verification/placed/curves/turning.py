@@ -1,0 +1,135 @@
+"""Whether twists that turn with the fingers exclude a box of parts of cubics, in whole numbers.
+
+Let t_i run from 0 to 1 as finger i goes along its part p_i(t_i), with tangent T_i and normal N_i = J T_i, J a
+quarter of a turn. A motion of a load w has polynomials of degree 2 in all t: velocity v, angular velocity
+omega, and s_i for each finger. A force of size 1 in the cone is in the hull of 0, the edges n -+ mu t over
+r = sqrt(1 + mu^2), and r n. So where, with q_i at or below the length of T_i,
+
+    s_i >= 0,    s_i q_i r >= u . (N_i -+ mu T_i),    s_i q_i >= r u . N_i,    u = v + omega J p_i,
+
+finger i does no more than s_i along the motion, and no placement holds all loads by forces of a limit where
+
+    sum_l [ -w_l . y_l - limit sum_i s_il ] > 0.
+
+All are polynomials in t. One is above zero for t from 0 to 1 where all its coefficients in t^a (1 - t)^b are;
+products are convolutions of these. Doubles are whole numbers times a power of two, and so are their products.
+"""
+
+from fractions import Fraction
+from itertools import combinations_with_replacement, pairwise
+from math import isqrt
+from typing import Any
+
+import numpy as np
+
+from regrasp.verification.placed.protocol import Point
+from regrasp.verification.placed.roots import root_above, root_below
+
+_MORE = 2**64  # by which lengths are finer than points
+_POWERS = ((1, 2, 1), (0, 1, 1), (0, 0, 1))  # of 1, t and t^2
+
+Numbers = np.ndarray[Any, Any]
+"""Whole numbers of any size."""
+
+
+def terms_of(fingers: int) -> int:
+    """How many a polynomial of degree 2 has: one, each place, each product of two places in turn."""
+    return (fingers + 1) * (fingers + 2) // 2
+
+
+def is_excluded_in_turn(
+    motions: list[tuple[list[float], list[float]]], bound: Fraction, hulls: list[list[Point]], friction: float
+) -> bool:
+    """Whether motions of some loads exclude a box for forces below a bound.
+
+    motions: of each load, the load; and terms of v_x, v_y, omega and each s_i. hulls: the control points of
+    each finger's part, about the centre of mass.
+    """
+    k = len(hulls)
+    values = _whole([Fraction(c) for _, motion in motions for c in motion])
+    basis = np.array(_basis(k), dtype=object)
+    polynomials = values.reshape(len(motions), 3 + k, -1) @ basis.reshape(len(basis), -1)
+    limit, *numbers = _whole([bound, *(Fraction(c) for load, _ in motions for c in load)])
+    loads = np.array(numbers, dtype=object).reshape(-1, 3)
+    left: Any = 0
+    for load, motion in zip(loads, polynomials, strict=True):
+        left = left - load @ motion[:3] - limit * motion[3:].sum(axis=0)
+    if not (left > 0).all() or not (polynomials[:, 3:] >= 0).all():
+        return False
+    square = 1 + Fraction(friction) ** 2
+    mu, below, above, one = _whole([Fraction(friction), root_below(square), root_above(square), Fraction(1)])
+    for i, hull in enumerate(hulls):
+        points = _whole([c for p in hull for c in p] + [Fraction(1)]) * _MORE
+        unit, points = points[-1], points[:-1].reshape(4, 2)
+        tangent = [(int(b[0] - a[0]), int(b[1] - a[1])) for a, b in pairwise(points)]
+        speed = _slowest(tangent)
+        ways = [[(-y, x) for x, y in tangent], tangent]
+        for motion in polynomials:
+            own = [
+                np.moveaxis(c.reshape((3,) * k), i, 0).reshape(3, -1) for c in (*motion[:3], motion[3 + i])
+            ]
+            ahead, aside = (_work(own[:3], unit, points, way) for way in ways)
+            most = _raised(_product(own[3], [speed[0], 2 * speed[1], speed[2]])) * unit
+            sharp = most * below - ahead * one
+            if not all((room >= 0).all() for room in (sharp - mu * aside, sharp + mu * aside)):
+                return False
+            if not (most * one >= ahead * above).all():
+                return False
+    return True
+
+
+def _whole(values: list[Fraction]) -> Numbers:
+    """The numbers times one power of two that makes all of them whole."""
+    unit = max(value.denominator for value in values)
+    return np.array([value.numerator * (unit // value.denominator) for value in values], dtype=object)
+
+
+def _basis(k: int) -> list[Numbers]:
+    """Coefficients of each term, of degree 2 in each place."""
+    terms = [(), *((i,) for i in range(k)), *combinations_with_replacement(range(k), 2)]
+    made = []
+    for term in terms:
+        found: Numbers = np.array(1, dtype=object)
+        for i in range(k):
+            found = np.multiply.outer(found, np.array(_POWERS[term.count(i)], dtype=object))
+        made.append(found)
+    return made
+
+
+def _work(own: list[Numbers], unit: int, points: Numbers, way: list[tuple[int, int]]) -> Numbers:
+    """Coefficients of u . N or u . T times the unit, of degree 7 in the finger's own place."""
+    scaled = [(x * c, y * c) for (x, y), c in zip(way, (1, 2, 1), strict=True)]
+    arm = [(-y * c, x * c) for (x, y), c in zip(points, (1, 3, 3, 1), strict=True)]
+    around = [0] * 6
+    for a, (x, y) in enumerate(arm):
+        for b, (n, m) in enumerate(scaled):
+            around[a + b] += x * n + y * m
+    moved = _product(own[0], [x for x, _ in scaled]) + _product(own[1], [y for _, y in scaled])
+    return _raised(moved) * unit + _product(own[2], around)
+
+
+def _product(a: Numbers, b: list[int]) -> Numbers:
+    """Of coefficients (n, ...) and those of a polynomial in the first place."""
+    made = np.zeros((len(a) + len(b) - 1, a.shape[1]), dtype=object)
+    for i, factor in enumerate(b):
+        made[i : i + len(a)] += a * factor
+    return made
+
+
+def _raised(a: Numbers) -> Numbers:
+    """The same polynomial, of degree 3 more: times (t + 1 - t)^3."""
+    return _product(a, [1, 3, 3, 1])
+
+
+def _slowest(tangent: list[tuple[int, int]]) -> list[int]:
+    """Bernstein coefficients of a q of which q^2 is at or below |T|^2, by coefficients of degree 4.
+
+    Those of |T|^2 are T_0.T_0, T_0.T_1, (T_0.T_2 + 2 T_1.T_1) / 3, T_1.T_2 and T_2.T_2.
+    """
+    (ax, ay), (bx, by), (cx, cy) = tangent
+    first, last = isqrt(ax * ax + ay * ay), isqrt(cx * cx + cy * cy)
+    early, late = ax * bx + ay * by, bx * cx + by * cy
+    square = 2 * (bx * bx + by * by) + ax * cx + ay * cy - first * last
+    if min(first, last, early, late, square) <= 0:
+        return [0, 0, 0]
+    return [first, min(early // first, late // last, isqrt(square // 2)), last]
