@@ -48,7 +48,7 @@ class Packed(BuildHookInterface):
     """The finished source archive once more by libdeflate, which finds shorter matches: 4 % less.
 
     Deflate sees no more than 32 kB back. So what repeats lies side by side, 1 % less: README and the metadata
-    that quotes it, all ``__init__.py``, and folders whose files have lines in common.
+    that quotes it, all ``__init__.py``, folders whose files have lines in common, and such files in them.
     """
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
@@ -64,15 +64,29 @@ class Packed(BuildHookInterface):
         archive.write_bytes(deflate.gzip_compress(packed.getvalue(), 12))
 
 
-def places(files: dict[PurePosixPath, bytes]) -> dict[PurePosixPath, tuple[int, str, int]]:
-    """What files are sorted by: folder after folder, each next to one with which it has much in common."""
+def places(files: dict[PurePosixPath, bytes]) -> dict[PurePosixPath, int]:
+    """What files are sorted by: folder after folder, and file after file, each next to one like it."""
     lines: dict[PurePosixPath, set[bytes]] = {}
-    for path, data in files.items():
-        lines.setdefault(path.parent, set()).update(data.split(b"\n"))
-    size = {folder: 1000 + sum(map(len, own)) for folder, own in lines.items()}
-    order = [min(lines)]
-    while left := sorted(set(lines) - set(order)):
-        last = lines[order[-1]]
-        order.append(max(left, key=lambda f: sum(map(len, last & lines[f])) / size[f] ** 0.5))
+    own = {path: set(data.split(b"\n")) for path, data in files.items()}
+    for path in files:
+        lines.setdefault(path.parent, set()).update(own[path])
+    folder = {path: i for i, path in enumerate(alike(lines, set()))}
     special = {"__init__.py": 1, "README.md": 2, "PKG-INFO": 2}
-    return {p: (special.get(p.name, 0), p.suffix, order.index(p.parent)) for p in files}
+    groups: dict[tuple[int, str, int], dict[PurePosixPath, set[bytes]]] = {}
+    for path in files:
+        key = special.get(path.name, 0), path.suffix, folder[path.parent]
+        groups.setdefault(key, {})[path] = own[path]
+    order: list[PurePosixPath] = []
+    for _, group in sorted(groups.items()):
+        order += alike(group, own[order[-1]] if order else set())
+    return {path: i for i, path in enumerate(order)}
+
+
+def alike(lines: dict[PurePosixPath, set[bytes]], last: set[bytes]) -> list[PurePosixPath]:
+    """All of them, each after one with which it has many lines in common, the first after ``last``."""
+    size = {path: 1000 + sum(map(len, own)) for path, own in lines.items()}
+    order: list[PurePosixPath] = []
+    while left := sorted(set(lines) - set(order)):
+        order.append(max(left, key=lambda p: sum(map(len, last & lines[p])) / size[p] ** 0.5))
+        last = lines[order[-1]]
+    return order
