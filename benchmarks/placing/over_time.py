@@ -37,10 +37,9 @@ def main() -> None:
         seconds, bound, value = np.array(found["over_time"]).T
         look = {"where": "post", "markersize": 4}
         for rival, (colour, marker) in RIVALS.items():
-            over_time = np.array(rows[rival]["over_time"]).reshape(-1, 2)
-            times = np.append(np.maximum(over_time[:, 0], SHORTEST), rows[rival]["seconds"])
-            best = above(np.append(over_time[:, 1], over_time[-1:, 1]), found)
-            ax.step(times[: len(best)], best, color=colour, marker=marker, lw=1, label=rival, **look)
+            end = (rows[rival]["seconds"], rows[rival]["value"])
+            times, best = np.array([*rows[rival].get("over_time", []), end]).T
+            ax.step(times, above(best, found), color=colour, marker=marker, lw=1, label=rival, **look)
         ax.step(seconds, above(value, found), color=VALUE, marker="o", label="certified: best so far", **look)
         ax.step(seconds, above(bound, found), "--", color=BOUND, marker="s", label="its bound", **look)
         ax.set_title(name, fontsize=8)
