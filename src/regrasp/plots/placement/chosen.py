@@ -1,10 +1,8 @@
 """A chosen grasp on its outline, and regions around contacts."""
 
-from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
@@ -15,7 +13,6 @@ from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.plots.grasps.outline import plot_outline
-from regrasp.plots.look.png import png
 from regrasp.plots.look.space_axes import equal_scale
 from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
 from regrasp.plots.look.units import SI, Units
@@ -63,15 +60,6 @@ def _on_outline(ax: Axes, chosen: ChosenGrasp, shape: Outline) -> Axes:
     for contact in chosen.grasp:
         _cone(ax, contact, _CONE * size, colours[contact.name or ""])
     return ax
-
-
-def chosen_grasp_png(chosen: ChosenGrasp) -> bytes:
-    """``plot_chosen_grasp`` as a PNG image.
-
-    Args:
-        chosen: what ``regrasp.choose_grasp`` found.
-    """
-    return png(cast(Figure, plot_chosen_grasp(chosen).figure))
 
 
 def plot_contact_regions(
