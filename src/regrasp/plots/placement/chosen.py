@@ -1,6 +1,5 @@
 """A chosen grasp on its outline, and regions around contacts."""
 
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D

@@ -139,7 +139,7 @@ def _others(
     for norm, other in sorted(tried, key=lambda one: one[0]):
         if len(kept) > _ATTEMPTS or len(found) == _OTHERS or norm == inf:
             break
-        if min(_farthest(other, one) for one in kept) < least:
+        if min(_apart(other, one) for one in kept) < least:
             continue
         kept.append(other)
         try:
@@ -151,7 +151,7 @@ def _others(
     return tuple(sorted(found, key=lambda other: other.value))
 
 
-def _farthest(spots: Array, other: Array) -> float:
+def _apart(spots: Array, other: Array) -> float:
     """The farthest finger of one placement from all of another, either way [m]."""
     away = np.linalg.norm(spots[:, None, :3] - other[None, :, :3], axis=2)
     return float(max(away.min(axis=0).max(), away.min(axis=1).max()))
