@@ -13,8 +13,9 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.patches import patch_gauge, patch_support
+from regrasp.closed_form.compiled.patches import patch_gauge, patch_joint, patch_support
 from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, reached, workspace
+from regrasp.closed_form.compiled.patches.patch_joint import LOADS, ROWS, bound_together
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.closed_form.compiled.places.placement_search import (
     CLOSED,
@@ -27,10 +28,12 @@ from regrasp.closed_form.compiled.places.placement_search import (
     pop,
     push,
 )
+from regrasp.closed_form.compiled.places.wrench_gauge import LARGEST
 from regrasp.compilation import kept
 
 _CORNERS = 3  # rows of a triangle
 _MANY = 1000  # rows of a patch that take time
+_OFTEN = 16  # boxes of which one at least is excluded by all loads together
 _AGREE = 1e-6  # of a norm, by which what forces reach and a bound agree
 
 
@@ -203,7 +206,7 @@ def _loop(digest: str) -> Any:
     @kept("the search for places on surfaces", error_model="numpy", _nrt=False)
     def search(  # type: ignore[no-untyped-def]
         surface, radius, loads, trials, law, usable, tolerance, least, narrow, boxes, heap, state,
-        found, tried, budget, spare,
+        found, tried, budget, spare, together, room,
     ):  # fmt: skip
         """Goes on with a search; see the module. Returns why it ends.
 
@@ -212,12 +215,14 @@ def _loop(digest: str) -> Any:
         around groups (``patch_support``). radius: (K,) of each patch. trials: loads, and more that placements
         tried must hold, too. law: mu, size, norm, precision; usable: mu for placements tried.
         boxes: patches (N, k), bounds (N,), twists (N, 6), loads' numbers (N,), kinds (N,), first children and
-        their number (N, 2), placements to try (N, k, 6), fingers to split (N,). state: numbers of boxes, of
-        those in the heap, of placements tried, of patches, of rows, and of what was looked at. found:
-        (1 + 6 k) the least value and its spots.
+        their number (N, 2), placements to try (N, k, 6), fingers to split (N,), rows of ``together`` that
+        bound them (N,), -1 for none. state: numbers of boxes, of those in the heap, of placements tried, of
+        patches, of rows, of what was looked at, of rows of ``together``, of boxes whose loads were taken
+        together, and of those excluded so. found: (1 + 6 k) the least value and its spots. together:
+        (T, L, 6) twists of all loads; room: for them.
         """
         _ = digest
-        patches, bounds, twists, critical, kinds, children, places, fingers = boxes
+        patches, bounds, twists, critical, kinds, children, places, fingers, joined = boxes
         first, count, wide, seen, twist, work = spare[0], spare[1], spare[2], spare[4], spare[7], spare[8]
         rows, spans, tree, _ = surface
         k, looked = patches.shape[1], 0
@@ -237,8 +242,10 @@ def _loop(digest: str) -> Any:
                 return PAUSED
             if state[0] + k + 1 > len(bounds) or state[3] + 2 > len(spans) or state[4] + 6 > len(rows):
                 return FULL
+            if state[6] == len(together):
+                return FULL
             looked += 1
-            state[5] = work[15][0]
+            state[5] = work[15][0] + room[6][0]
             box = pop(heap, state[1], bounds)
             state[1] -= 1
             value = value_of(places[box], trials, trying, found[0], critical[box], least, spare)
@@ -252,6 +259,18 @@ def _loop(digest: str) -> Any:
                 for c in range(6 * k + 1):
                     found[c] = tried[row, c]
                 level = found[0] * (1.0 - tolerance)
+            if bounds[box] < level and norm == LARGEST and 1 < len(loads) <= LOADS:
+                _locate(spans, radius, patches[box], first, count, wide)
+                # while it pays: where it seldom excludes a box, few more are tried
+                if count.sum() <= ROWS and state[7] <= _OFTEN * (state[8] + _OFTEN):
+                    proven = bound_together(
+                        rows, first, count, loads, mu, size, level, precision, together[state[6]], room
+                    )
+                    state[7] += 1
+                    if proven > bounds[box]:
+                        bounds[box], joined[box] = proven, state[6]
+                        state[6] += 1
+                    state[8] += 1 if proven >= level else 0
             if bounds[box] >= level:
                 kinds[box] = EXCLUDED
                 continue
@@ -276,6 +295,7 @@ def _loop(digest: str) -> Any:
                     if i <= f < i + same:
                         patches[child, f] = tree[patch, 0 if f < i + left else 1]
                 bounds[child], critical[child], kinds[child] = bounds[box], critical[box], OPEN
+                joined[child] = joined[box]
                 for c in range(6):
                     twists[child, c] = twists[box, c]
                 _locate(spans, radius, patches[child], first, count, wide)
@@ -284,13 +304,14 @@ def _loop(digest: str) -> Any:
                     continue
                 w = loads[critical[box]]
                 known = bound_by(surface, patches[child], w, twists[box], mu, size, norm, work[:16])
-                bounds[child] = max(known, bounds[box])
-                if known < level:
+                if known > bounds[box]:
+                    bounds[child], joined[child] = known, -1
+                if bounds[child] < level:
                     proven, load = _judge(
                         surface, patches[child], loads, law, level, critical[box], twist, seen, work, False
                     )
-                    if proven > known and proven >= bounds[box]:
-                        bounds[child], critical[child] = proven, load
+                    if proven > bounds[child]:
+                        bounds[child], critical[child], joined[child] = proven, load, -1
                         for c in range(6):
                             twists[child, c] = twist[c]
                     fingers[child] = _plan(rows, first, count, wide, narrow, seen, places[child])
@@ -308,4 +329,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch this, too.
-search = _loop(digest((patch_gauge, patch_support, placement_search)))
+search = _loop(digest((patch_gauge, patch_joint, patch_support, placement_search)))

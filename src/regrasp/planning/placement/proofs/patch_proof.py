@@ -33,8 +33,10 @@ class PatchProof(BoxProof):
             halved: from that corner to the next; the first half keeps the corner, both the third one.
         boxes: (n, fingers) patches.
         children: (n, 2) the first box that one is split into, and how many; 0 of a box that is not.
-        number: (n,) of the load that bounds a box; -1 where its fingers are nearer than ``min_distance``.
+        number: (n,) of the load that bounds a box; -1 where its fingers are nearer than ``min_distance``,
+            -2 - r where row r of ``together`` bounds it.
         twists: (n, 6) velocity of the centre of mass, then angular velocity.
+        together: (r, L, 6) a twist for each load, which bound the largest force together; None for none.
     """
 
     corners: Array
@@ -52,10 +54,12 @@ class PatchProof(BoxProof):
     children: np.ndarray
     number: np.ndarray
     twists: Array
+    together: Array | None = None
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
         k = whole(given["fingers"], "fingers", least=1)
+        together = given.get("together")
         return cls(
             array(given["corners"], "corners", (None, 3, 3)),
             array(given["normals"], "normals", (None, 3)),
@@ -72,4 +76,5 @@ class PatchProof(BoxProof):
             integers(given["children"], "children", (None, 2)),
             integers(given["number"], "number", (None,)),
             array(given["twists"], "twists", (None, 6)),
+            None if together is None else array(together, "together", (None, None, 6)),
         )

@@ -66,7 +66,8 @@ class SurfaceSearch:
         self._balls = patches.balls / np.repeat([self.size, 1.0], [4, 5])
         self._boxes = _memory(_FIRST_BOXES, fingers)
         self._heap = np.zeros(_FIRST_BOXES, np.int64)
-        self._state = np.array([1, 1, 0, len(patches.spans), len(rows), 0])
+        self._state = np.array([1, 1, 0, len(patches.spans), len(rows), 0, 0, 0, 0])
+        self._together = np.zeros((_FIRST_BOXES, len(loads), 6))
         self._never = HELD * NEVER  # boxes are excluded from there, while nothing is found
         self._found = np.full(1 + 6 * fingers, self._never / (1 - tolerance))
         self._tried = np.zeros((_TRIED, 1 + 6 * fingers))
@@ -81,9 +82,11 @@ class SurfaceSearch:
 
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
+        from regrasp.closed_form.compiled.patches.patch_joint import LOADS, room_together
         from regrasp.closed_form.compiled.patches.patch_search import search, spare
         from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL
 
+        room = room_together(min(len(self._wanted), LOADS))
         each = max(_AT_A_TIME * _ROWS // max(_ROWS, len(self.patches.rows)), 1)  # lest an interrupt waits
         memory, slid, due = spare(self.fingers), inf, _FIRST_BOXES
         try:
@@ -92,6 +95,7 @@ class SurfaceSearch:
                     self._surface, self._radius, self._wanted, self._trials,
                     self._law, self._usable, tolerance, self.apart / self.size, narrow, self._boxes,
                     self._heap, self._state, self._found, self._tried, each, memory,
+                    self._together, room,
                 )  # fmt: skip
                 if self._found[0] < slid * (1 - _GAINED) or self.count >= due:
                     fine = ended == CLOSED or self.count >= due
@@ -171,6 +175,8 @@ class SurfaceSearch:
             for old, new in zip(self._boxes, larger, strict=True):
                 new[:have] = old
             self._boxes, self._heap = larger, _room(self._heap, room)
+        if self._state[6] == len(self._together):
+            self._together = _room(self._together, 2 * len(self._together))
         patches, rows = int(self._state[3]), int(self._state[4])
         if patches + 2 > len(self._spans) or rows + 6 > len(self._rows):
             self._rows = _room(self._rows, 2 * len(self._rows))
@@ -208,17 +214,21 @@ class SurfaceSearch:
     def arrays(self) -> dict[str, Array]:
         """What a proof is made of: patches, boxes, and what bounds them."""
         n, p = self.count, int(self._state[3])
-        patches, _, twists, critical, kinds, children, *_ = (values[:n] for values in self._boxes)
+        patches, _, twists, critical, kinds, children, _, _, joined = (values[:n] for values in self._boxes)
         spans = self._spans[: len(self.patches.spans)] // 3
         split = kinds == 2
+        rows = np.flatnonzero(~split & (kinds != 3) & (joined >= 0))
+        number = np.where(split, 0, np.where(kinds == 3, -1, critical))
+        number[rows] = -2 - np.arange(len(rows))
+        twists = np.where(split[:, None] | (number < -1)[:, None], 0.0, twists / self._unit)
         return {
             "spans": spans,
             "halves": self._tree[:p],
             "boxes": patches,
             "children": np.where(split[:, None], children, 0),
-            "number": np.where(split, 0, np.where(kinds == 3, -1, critical)),
-            "twists": np.where(split[:, None], 0.0, twists / self._unit),
-        }
+            "number": number,
+            "twists": twists,
+        } | ({"together": self._together[joined[rows]] / self._unit} if len(rows) else {})
 
 
 def _room(values: np.ndarray, room: int) -> np.ndarray:
@@ -232,5 +242,5 @@ def _memory(room: int, k: int) -> tuple[np.ndarray, ...]:
     return (
         np.zeros((room, k), np.int64), np.zeros(room), np.zeros((room, 6)), np.zeros(room, np.int64),
         np.zeros(room, np.int64), np.zeros((room, 2), np.int64), np.zeros((room, k, 6)),
-        np.zeros(room, np.int64),
+        np.zeros(room, np.int64), np.full(room, -1),
     )  # fmt: skip

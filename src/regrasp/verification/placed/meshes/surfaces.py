@@ -20,10 +20,10 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.meshes.together import together_wrong
+from regrasp.verification.placed.meshes.work import ROUNDING, SMALL, sigma_above, sigmas
 from regrasp.verification.placed.roots import root_above
 
-_ROUNDING = 1e-12  # of the terms: far more than the roundings of sums and of halving edges
-_SMALL = 1e-140  # squares of less lose digits
 _AT_A_TIME = 4096
 
 
@@ -45,6 +45,7 @@ class SurfaceProof(Protocol):
     children: Any
     number: Any
     twists: Array
+    together: Array | None
 
 
 def check_surface_proof(proof: SurfaceProof) -> list[str]:
@@ -75,7 +76,7 @@ def _shapes(proof: SurfaceProof) -> list[str]:
     if not 0 <= proof.min_distance < inf or proof.bound < 0:
         return ["proof: min_distance and bound must be 0 or more"]
     lengths = np.linalg.norm(proof.normals, axis=1)
-    return [] if (np.abs(lengths - 1) < _ROUNDING).all() else ["proof: normals must be of length 1"]
+    return [] if (np.abs(lengths - 1) < ROUNDING).all() else ["proof: normals must be of length 1"]
 
 
 class _Patches:
@@ -167,8 +168,10 @@ def _exclusions_wrong(proof: SurfaceProof, patches: _Patches) -> list[str]:
     for box in near.tolist():
         if not _near(proof, patches, boxes[box]):
             return [f"proof: fingers of box {box} may be far enough apart"]
-    rest = leaves[number[leaves] != -1]
-    if (number[rest] < 0).any() or (number[rest] >= len(proof.loads)).any():
+    if broken := together_wrong(proof, patches.rows, leaves[number[leaves] < -1]):
+        return broken
+    rest = leaves[number[leaves] >= 0]
+    if (number[rest] >= len(proof.loads)).any():
         return ["proof: a box has no load"]
     if proof.bound == 0 or not len(rest):
         return []
@@ -191,30 +194,17 @@ def _clear(proof: SurfaceProof, patches: _Patches, rest: np.ndarray) -> np.ndarr
         for group in np.split(order, np.flatnonzero(np.diff(here)) + 1):
             points, normals = patches.rows(int(boxes[rest[group[0]], finger]))
             for some in np.split(group, range(_AT_A_TIME, len(group), _AT_A_TIME)):
-                most[some, finger] = _sigma(proof, y[some], points, normals)
+                most[some, finger] = sigmas(proof, y[some], points, normals).max(axis=1)
     speed = np.linalg.norm(y[:, :3], axis=1) + np.linalg.norm(y[:, 3:], axis=1) * reach
-    room = _ROUNDING * (1 + proof.friction) * speed
+    room = ROUNDING * (1 + proof.friction) * speed
     most += room[:, None]
     dual = most.max(axis=1) if proof.norm == "sum" else most.sum(axis=1)
     if proof.norm == "squares":
         dual = np.sqrt((most**2).sum(axis=1))
     terms = -w * y
-    work = terms.sum(axis=1) - _ROUNDING * np.abs(terms).sum(axis=1)
-    told = np.minimum(room, work) > _SMALL
-    return np.asarray(told & (work > proof.bound * dual * (1 + _ROUNDING)))
-
-
-def _sigma(proof: SurfaceProof, y: Array, points: Array, normals: Array) -> Array:
-    """(b,) largest sigma over corners (c, 3) of twists (b, 6), but for rounding."""
-    v = y[:, None, :3] + np.cross(y[:, None, 3:], points)
-    along = (v * normals).sum(axis=2)
-    across = np.linalg.norm(v - along[..., None] * normals, axis=2)
-    edge = along + proof.friction * across
-    if proof.size == "force":
-        inside = across <= proof.friction * along
-        edge = np.where(inside, np.linalg.norm(v, axis=2), edge / np.sqrt(1 + proof.friction**2))
-    result: Array = np.maximum(edge.max(axis=1), 0.0)
-    return result
+    work = terms.sum(axis=1) - ROUNDING * np.abs(terms).sum(axis=1)
+    told = np.minimum(room, work) > SMALL
+    return np.asarray(told & (work > proof.bound * dual * (1 + ROUNDING)))
 
 
 def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
@@ -222,22 +212,10 @@ def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
     y = [Fraction(c) for c in proof.twists[box].tolist()]
     w = proof.loads[int(proof.number[box])].tolist()
     work = -sum((Fraction(a) * b for a, b in zip(w, y, strict=True)), start=Fraction(0))
-    mu, most = Fraction(proof.friction), []
+    most = []
     for patch in proof.boxes[box].tolist():
-        largest = Fraction(0)
-        for p, n in zip(*(a.tolist() for a in patches.rows(patch)), strict=True):
-            (px, py, pz), (nx, ny, nz) = map(Fraction, p), map(Fraction, n)
-            v = (y[0] + y[4] * pz - y[5] * py, y[1] + y[5] * px - y[3] * pz, y[2] + y[3] * py - y[4] * px)
-            along, length2 = v[0] * nx + v[1] * ny + v[2] * nz, nx * nx + ny * ny + nz * nz
-            speed2 = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
-            across2 = speed2 * length2 - along * along
-            sigma = (along + mu * root_above(across2)) * _upper(length2)
-            if proof.size == "force":
-                if along > 0 and across2 <= (mu * along) ** 2:
-                    sigma = root_above(speed2)
-                else:
-                    sigma *= root_above(1 / (1 + mu * mu))
-            largest = max(largest, sigma)
+        rows = zip(*patches.rows(patch), strict=True)
+        largest = max(sigma_above(proof, y, p.tolist(), n.tolist()) for p, n in rows)
         most.append(largest)
     if proof.norm == "sum":
         dual = max(most)
@@ -248,11 +226,6 @@ def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
     return work > Fraction(proof.bound) * dual
 
 
-def _upper(square: Fraction) -> Fraction:
-    """At or above one over a root."""
-    return root_above(1 / square)
-
-
 def _near(proof: SurfaceProof, patches: _Patches, box: Array) -> bool:
     """Whether two fingers are nearer than they must be, wherever they are on their patches."""
     rows = [patches.rows(patch)[0] for patch in box.tolist()]
@@ -260,7 +233,7 @@ def _near(proof: SurfaceProof, patches: _Patches, box: Array) -> bool:
     for i, one in enumerate(rows):
         for other in rows[:i]:
             far = np.linalg.norm(one[:, None] - other[None], axis=2).max()
-            if far < proof.min_distance + _ROUNDING * reach:
+            if far < proof.min_distance + ROUNDING * reach:
                 return True
     return False
 

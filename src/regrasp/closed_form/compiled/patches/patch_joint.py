@@ -1,0 +1,134 @@
+"""A bound from all loads at once, each with a twist, where forces are limited one by one.
+
+A twist for each load alone bounds a box as if fingers could be elsewhere for each. For twists y_l of all
+wrenches w_l to make, any placement p, and T the largest size of a force under any of them,
+
+    sum_l w_l . y_l <= sum_l sum_i sigma(v_l(p_i)) T <= sum_i max_p [ sum_l sigma(v_l(p)) ] T
+
+and each bracket is convex in p, so it is largest at a corner of the patch, the same for all loads. The best
+twists are found as those of one load are (``patch_gauge``), in six unknowns for each load.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from regrasp.closed_form.compiled.compiling import VIEWS
+from regrasp.closed_form.compiled.patches.patch_support import sigma
+
+ROWS = 128
+"""Corners of all patches together, of which there may be so many."""
+LOADS = 12
+"""Loads that are taken together, at most: each costs six unknowns."""
+_MOST = 20  # columns made for each unknown
+_NEVER = 1e4  # what columns cost that no finger makes, where norms of wrenches are about 1
+_TILT = 1e-9  # of the wrenches, which keeps them off faces of the body that columns span
+
+
+@njit(**VIEWS)
+def _together(rows, first, count, mu, size, y, column, force):  # type: ignore[no-untyped-def]
+    """The sum over fingers of the most that all twists y (L, 6) do at one corner; its column (6 L,)."""
+    loads, dual = len(y), 0.0
+    for c in range(6 * loads):
+        column[c] = 0.0
+    for i in range(len(first)):
+        top, at = 0.0, -1
+        for r in range(first[i], first[i] + count[i]):
+            done = 0.0
+            for n in range(loads):
+                done += sigma(rows[r], y[n], mu, size, force)
+            if done > top:
+                top, at = done, r
+        dual += top
+        if at < 0:
+            continue
+        p = rows[at]
+        for n in range(loads):
+            if sigma(p, y[n], mu, size, force) > 0.0:
+                fx, fy, fz = force[0], force[1], force[2]
+                column[6 * n] += fx
+                column[6 * n + 1] += fy
+                column[6 * n + 2] += fz
+                column[6 * n + 3] += p[1] * fz - p[2] * fy
+                column[6 * n + 4] += p[2] * fx - p[0] * fz
+                column[6 * n + 5] += p[0] * fy - p[1] * fx
+    return dual
+
+
+@njit(**VIEWS)
+def bound_together(rows, first, count, wanted, mu, size, level, precision, best, room):  # type: ignore[no-untyped-def]
+    """A bound of the largest force that makes the worst of all wrenches, and twists (L, 6) that prove it.
+
+    It ends at ``level``, and where forces are less at places that differ by the load. first, count: (k,) rows
+    of each patch. room: of ``room_together``; its last number becomes what was looked at.
+    """
+    inverse, x, y, column, d, force, looked = room
+    loads = len(wanted)
+    size_of, n = 0.0, 6 * loads
+    for load in range(loads):
+        for c in range(6):
+            size_of += abs(wanted[load, c])
+    for r in range(n):
+        w = wanted[r // 6, r % 6]
+        for c in range(n):
+            inverse[r, c] = 0.0
+        push = w + (_TILT if w >= 0.0 else -_TILT) * size_of * (1.0 + 0.37 * r)
+        inverse[r, r] = _NEVER if push >= 0.0 else -_NEVER
+        x[r] = abs(push) * _NEVER
+    corners = 0
+    for i in range(len(first)):
+        corners += count[i]
+    proven = 0.0
+    most = _MOST * n
+    for _ in range(most):
+        value, total = 0.0, 0.0
+        for c in range(n):
+            y[c // 6, c % 6] = 0.0
+        for r in range(n):
+            total += x[r]
+            for c in range(n):
+                y[c // 6, c % 6] += inverse[r, c]
+        for c in range(n):
+            value += wanted[c // 6, c % 6] * y[c // 6, c % 6]
+        looked[0] += corners * loads + n * n // 14  # which take as long
+        dual = _together(rows, first, count, mu, size, y, column, force)
+        bound = 0.0
+        if value > 0.0:
+            bound = value / dual if dual > 0.0 else np.inf
+        if bound > proven:
+            proven = bound
+            for load in range(loads):
+                for c in range(6):
+                    best[load, c] = y[load, c]
+        if proven >= level or dual <= 1.0 + precision or total < level:
+            break
+        leaving, least = -1, np.inf
+        for r in range(n):
+            d[r] = 0.0
+            for c in range(n):
+                d[r] += inverse[r, c] * column[c]
+            if d[r] > 1e-11 and x[r] < least * d[r]:
+                leaving, least = r, x[r] / d[r]
+        if leaving < 0:
+            break
+        for r in range(n):
+            if r != leaving:
+                x[r] = max(x[r] - least * d[r], 0.0)
+        x[leaving] = least
+        for c in range(n):
+            inverse[leaving, c] /= d[leaving]
+        for r in range(n):
+            if r != leaving and d[r] != 0.0:
+                for c in range(n):
+                    inverse[r, c] -= d[r] * inverse[leaving, c]
+    return proven
+
+
+def room_together(loads: int) -> tuple[Any, ...]:
+    """Memory for it."""
+    n = 6 * loads
+    return (
+        np.zeros((n, n)), np.zeros(n), np.zeros((loads, 6)), np.zeros(n), np.zeros(n), np.zeros(3),
+        np.zeros(1, np.int64),
+    )  # fmt: skip
