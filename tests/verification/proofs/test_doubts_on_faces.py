@@ -7,7 +7,7 @@ import pytest
 
 import regrasp as rg
 from proofs import Patches, limit, solid
-from regrasp.verification.placed import surfaces
+from regrasp.verification.placed.meshes import surfaces
 
 pytestmark = pytest.mark.oracle
 

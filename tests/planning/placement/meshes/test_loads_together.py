@@ -11,6 +11,7 @@ import pytest
 
 import regrasp as rg
 from regrasp.mesh import parts
+from regrasp.verification.placed.meshes import together
 
 pytestmark = pytest.mark.oracle
 
@@ -84,10 +85,12 @@ def test_such_proofs_are_kept_in_files() -> None:
         rg.ChosenGrasp.from_dict(plain)
 
 
-def test_doubles_and_rationals_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    proof = chosen().certificate
-    monkeypatch.setattr("regrasp.verification.placed.meshes.together._is_clear", lambda *a: False)
+def test_rationals_decide_where_doubles_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    proof, asked = chosen().certificate, []
+    monkeypatch.setattr(together, "_is_clear", lambda *a: (asked.append(a), len(asked) > 4)[1])
     assert rg.verify(proof).ok
+    assert len(asked) > 4
     touched = np.array(proof.together)
     touched[0] *= -1
+    asked.clear()
     assert not rg.verify(replace(proof, together=touched)).ok

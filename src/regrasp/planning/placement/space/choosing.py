@@ -94,7 +94,7 @@ def choose_on_mesh(
         return ChosenGrasp(
             shape, objective, grasp, tuple(GraspState(s.grasp, s.load, s.forces) for s in states), worst,
             min(bound**power, worst), read_only(spots[:, :3] + shape.centre_of_mass),
-            _others(search, spots, objective, shape, _DIFFERENT * root), _proof(search, bound),
+            _others(search, few, spots, objective, shape, _DIFFERENT * root), _proof(search, bound),
         )  # fmt: skip
     raise _none_holds(search)
 
@@ -126,7 +126,7 @@ def _states(grasp: Grasp, loads: Array, objective: str) -> list[ChosenState]:
 
 
 def _others(
-    search: SurfaceSearch, spots: Array, objective: str, shape: Mesh, least: float
+    search: SurfaceSearch, few: SurfaceSearch, spots: Array, objective: str, shape: Mesh, least: float
 ) -> tuple[OtherGrasp, ...]:
     """The best placements tried that differ from the chosen one and from one another.
 
@@ -135,7 +135,8 @@ def _others(
     kept = [spots]
     found: list[OtherGrasp] = []
     # those that are not the best yet were judged by as many loads as it takes
-    tried = [(search.norm_at(other), other) for _, other in search.placements()[:_PASSED_OVER]]
+    passed = search.placements()[:_PASSED_OVER] + few.placements()[:_PASSED_OVER]
+    tried = [(search.norm_at(other), other) for _, other in passed]
     for norm, other in sorted(tried, key=lambda one: one[0]):
         if len(kept) > _ATTEMPTS or len(found) == _OTHERS or norm == inf:
             break
