@@ -78,6 +78,29 @@ def bound_by(surface, patches, w, y, mu, size, norm, work):  # type: ignore[no-u
 
 
 @njit(**VIEWS)
+def exchanged(inverse, x, d, column):  # type: ignore[no-untyped-def]
+    """Takes a column into the basis for the one whose amount x ends first, which it returns; -1 for none."""
+    leaving, least, n = -1, np.inf, len(x)
+    for r in range(n):
+        d[r] = 0.0
+        for c in range(n):
+            d[r] += inverse[r, c] * column[c]
+        if d[r] > 1e-11 and x[r] < least * d[r]:
+            leaving, least = r, x[r] / d[r]
+    if leaving < 0:
+        return leaving
+    for c in range(n):
+        inverse[leaving, c] /= d[leaving]
+    for r in range(n):
+        if r != leaving and d[r] != 0.0:
+            x[r] = max(x[r] - least * d[r], 0.0)
+            for c in range(n):
+                inverse[r, c] -= d[r] * inverse[leaving, c]
+    x[leaving] = least
+    return leaving
+
+
+@njit(**VIEWS)
 def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, work):  # type: ignore[no-untyped-def]
     """A bound of the norm of forces that make w, within ``precision`` or not below ``level``, and its twist.
 
@@ -131,25 +154,9 @@ def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, w
             total += x[r]
         if total <= enough or total - proven <= precision * total:
             break
-        leaving, least = -1, np.inf
-        for r in range(6):
-            d[r] = 0.0
-            for c in range(6):
-                d[r] += inverse[r, c] * column[c]
-            if d[r] > 1e-11 and x[r] < least * d[r]:
-                leaving, least = r, x[r] / d[r]
+        leaving = exchanged(inverse, x, d, column)
         if leaving < 0:
             break
-        for r in range(6):
-            if r != leaving:
-                x[r] = max(x[r] - least * d[r], 0.0)
-        x[leaving] = least
-        for c in range(6):
-            inverse[leaving, c] /= d[leaving]
-        for r in range(6):
-            if r != leaving:
-                for c in range(6):
-                    inverse[r, c] -= d[r] * inverse[leaving, c]
         for i in range(k):
             made[leaving, i], shares[leaving, i] = at[i], weight[i]
             for c in range(3):

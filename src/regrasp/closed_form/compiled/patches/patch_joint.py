@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
+from regrasp.closed_form.compiled.patches.patch_gauge import exchanged
 from regrasp.closed_form.compiled.patches.patch_support import sigma
 
 ROWS = 128
@@ -103,25 +104,8 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
                     best[load, c] = y[load, c]
         if proven >= level or dual <= 1.0 + precision or total < level:
             break
-        leaving, least = -1, np.inf
-        for r in range(n):
-            d[r] = 0.0
-            for c in range(n):
-                d[r] += inverse[r, c] * column[c]
-            if d[r] > 1e-11 and x[r] < least * d[r]:
-                leaving, least = r, x[r] / d[r]
-        if leaving < 0:
+        if exchanged(inverse, x, d, column) < 0:
             break
-        for r in range(n):
-            if r != leaving:
-                x[r] = max(x[r] - least * d[r], 0.0)
-        x[leaving] = least
-        for c in range(n):
-            inverse[leaving, c] /= d[leaving]
-        for r in range(n):
-            if r != leaving and d[r] != 0.0:
-                for c in range(n):
-                    inverse[r, c] -= d[r] * inverse[leaving, c]
     return proven
 
 
