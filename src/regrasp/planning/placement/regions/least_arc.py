@@ -21,6 +21,7 @@ from regrasp.planning.placement.regions.widest_proof import WidestProof
 TOLERANCE = 0.01
 MOST = 300  # boxes of starts
 _ROUNDING = 1e-9  # of the bound
+_PARTS = (1 - 1e-5, 1 - 1e-3, 0.99, 0.95)  # of arcs, about the places: at their ends rounding decides
 _HALVINGS, _TRIES = 20, 40
 
 
@@ -32,10 +33,10 @@ class _Cell:
 
 
 class LeastArc:
-    """A search for the widest least arc; u (k,) are the places."""
+    """A search for the widest least arc; u (k,) are the places; holds: of boxes that are taken."""
 
-    def __init__(self, cuts: Cuts, u: Array) -> None:
-        self.cuts, self.u = cuts, u
+    def __init__(self, cuts: Cuts, u: Array, holds: Callable[[Array], bool]) -> None:
+        self.cuts, self.u, self.holds = cuts, u, holds
         edges = cuts.sides.edges[cuts.on]
         self.lengths: Array = cuts.sides.lengths[edges]
         self.edges = edges.astype(float)
@@ -116,9 +117,14 @@ class LeastArc:
             width = self._between(partial(self.box, starts), starts)[0]
             if width <= self.width * (1 + 1e-4):
                 return False
-            if not self._fails(self.box(starts, width)):
-                self.starts, self.width = starts, width
-                return True
+            if self._fails(self.box(starts, width)):
+                continue
+            for part in _PARTS:
+                least, near = part * width, self.u + part * (starts - self.u)
+                if least > self.width and self.holds(self.box(near, least)):
+                    self.starts, self.width = near, least
+                    return True
+            return False
         return False
 
     def _slide(self, starts: Array) -> None:

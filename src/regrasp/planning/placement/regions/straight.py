@@ -62,10 +62,10 @@ def on_sides(shape: Outline, grasp: Grasp, loads: Array, given: float | None, wi
         box[i, end] = moved_out(holds, box, i, end, room[i, end])
     proof = None
     if widest == "least":
-        found = LeastArc(cuts, u)
+        found, wide = LeastArc(cuts, u, holds), float(((box[:, 1] - box[:, 0]) * lengths).min())
         proof = found.run(box[:, 0])
-        way = found.box(found.starts, found.width) - ends
-        box = ends + farthest(lambda part: holds(ends + part * way), 1.0) * way
+        if found.width > wide:
+            box = found.box(found.starts, found.width)
         for i, end in product(range(k), range(2)):
             box[i, end] = moved_out(holds, box, i, end, room[i, end])
     if widest == "product":
