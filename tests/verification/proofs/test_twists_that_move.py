@@ -7,7 +7,10 @@ import pytest
 
 import regrasp as rg
 from proofs import everything, planar
-from regrasp.planning.placement.levels.moving import MovingTwists
+from regrasp.closed_form.compiled.places.moving_twists import room_to_move
+from regrasp.planning.placement.laws import law_of
+from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sides import Sides
 from regrasp.verification.placed.placements import _Checked
 
 pytestmark = pytest.mark.oracle
@@ -52,12 +55,28 @@ def test_the_limit_is_that_of_work_over_most_work() -> None:
     assert said(moving([[0, 0.0625, -1, 0, 4], ABOUT[1]], bound=3.0)) != ""
 
 
-def test_what_finger_adds_to_what() -> None:
-    """Each finger's way adds to its own number alone, that of x first, at the end of its arc alone."""
-    twists = MovingTwists(2)
-    at = twists.at_corners @ np.arange(7.0)
-    for corner, y in zip(twists.corners, at, strict=True):
-        assert y == pytest.approx([0 + corner @ [3, 4], 1 + corner @ [5, 6], 2])
+def test_a_search_finds_them() -> None:
+    """The same finger and loads, friction of any size: a turn about the finger for each load, as above."""
+    for friction in 0.75, 0.01, 0.0:
+        sides = Sides(SQUARE, np.array([0]), np.array([[0.0, 1.0]]))
+        search = Search(sides, 1, friction, LOADS, law_of("friction_use")[1], 1e-6, 10.0)
+        assert not search.excludes(np.array([0]), 1e6)
+        assert search.moved(0, 1e6, room_to_move(2, 1)) is None
+        numbers, twists = search.moving[0]
+        assert sorted(numbers) == [0, 1]
+        assert (twists[:, 4] / twists[:, 2]).tolist() == pytest.approx([-4, -4], rel=0.05)
+        assert said(moving(twists, [(0, n) for n in numbers], friction=friction)) == ""
+
+
+def test_a_search_finds_a_placement_instead() -> None:
+    """Where both loads are one, the finger holds it in the middle, and within a little of it."""
+    sides = Sides(SQUARE, np.array([0]), np.array([[0.0, 1.0]]))
+    loads = np.array([[0, -1, -2.0], [0, -1, -2.0]])
+    search = Search(sides, 1, 0.75, loads, law_of("friction_use")[1], 1e-6, 10.0)
+    for limit, held in (1.01, [0.5]), (0.99, None):
+        u = search.moved(0, limit, room_to_move(2, 1))
+        assert u == held
+        assert (0 in search.moving) == (held is None)
 
 
 @pytest.mark.parametrize(
@@ -154,3 +173,27 @@ def test_an_interrupt_of_the_last_progress_ends_no_search_with_nothing() -> None
     again = rg.choose_grasp(rg.Outline(TRIANGLE), 2, rg.Wrench([0, -1]), **given)
     assert len(calls) == 2 * whole
     assert (again.value, again.bound) == (found.value, found.bound)
+
+
+@pytest.mark.parametrize("objective", ["friction_use", "force"])
+def test_a_search_that_is_cut_short_has_a_bound_that_stands(objective: str) -> None:
+    """Levels that were closed on the way are one, while what was asked is left open."""
+    told = [0.0]
+
+    def progress(*_: float) -> None:
+        told.append(0.0)
+        if told[0] == len(told):
+            raise KeyboardInterrupt
+
+    shape, loads = rg.Outline(TRIANGLE), rg.LoadSet.hull([rg.Wrench([x, 1], 0.1 * x) for x in (1, 0, -1)])
+    asked = {"friction": 0.4, "max_force": 4, "tolerance": 1e-4, "objective": objective, "progress": progress}
+    whole = rg.choose_grasp(shape, 3, loads, **asked)
+    every, gaps = len(told) - 1, []
+    for after in sorted({2, every // 3, 2 * every // 3, every - 1}):
+        told[:] = [after + 1.0]
+        chosen = rg.choose_grasp(shape, 3, loads, **asked)
+        assert rg.verify(chosen).ok
+        value, bound = (-1 if objective == "friction_use" else 1) * np.array([whole.value, chosen.bound])
+        assert value <= bound
+        gaps.append(chosen.gap)
+    assert objective == "friction_use" or 0.1 > gaps[0] > gaps[1] > whole.gap

@@ -55,6 +55,15 @@ class Queue:
         return len(self.boxes[2]) - int(self.state[0]) >= _PARTS * _stretch(self.fingers)
 
 
+def memory(room: int, k: int) -> Boxes:
+    """Arrays for so many boxes, as the compiled search takes them."""
+    return (
+        np.zeros((room, k, 2), np.int64), np.zeros((room, k, 2)), np.zeros(room), np.zeros((room, 3)),
+        np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2), np.int64),
+        np.zeros((room, k, 8)), np.zeros((room, 3)), np.full(room, -1), np.zeros((1, 3)),
+    )  # fmt: skip
+
+
 def search_in_parts(whole: Queue, search: PartSearch, each: int = _EACH) -> list[int]:
     """One round of ``each`` boxes a part; why each part ended. There is room for it (``has_room``)."""
     # an interrupt reaches the main thread alone, and the round is whole before it ends the search
@@ -119,12 +128,3 @@ def _put_back(whole: Queue, part: Queue, nodes: np.ndarray, start: int) -> np.nd
         whole.found[:] = part.found
     left = part.heap[: part.state[1]]
     return np.where(left >= start, left + (at - start), left)
-
-
-def memory(room: int, k: int) -> tuple[np.ndarray, ...]:
-    """Arrays for so many boxes, as the compiled search takes them."""
-    return (
-        np.zeros((room, k, 2), np.int64), np.zeros((room, k, 2)), np.zeros(room), np.zeros((room, 3)),
-        np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2), np.int64),
-        np.zeros((room, k, 8)), np.zeros((room, 3)), np.full(room, -1), np.zeros((1, 3)),
-    )  # fmt: skip

@@ -3,13 +3,15 @@
 from collections.abc import Callable
 from itertools import combinations
 from math import inf
+from typing import Any
 
 import numpy as np
 
-from regrasp.mechanics.checks import Array
+from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.laws import Law
 from regrasp.planning.placement.parts import Queue, memory, search_in_parts
+from regrasp.planning.placement.proofs.box_rows import rows_of
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.sides import RingSides, Sides
 
@@ -151,6 +153,14 @@ class Search:
                 return False
         return True
 
+    def reopen(self) -> None:
+        """Look again at what was excluded: another level is sought now, at which forces may be less."""
+        kinds, bounds = self._boxes[5], self._boxes[2]
+        again = np.flatnonzero(kinds[: self.count] == 1)
+        kinds[again], bounds[again] = 0, -1.0
+        self._heap[: len(again)], self._state[1], self.closed = again, len(again), False
+        self._found[:] = inf
+
     def box(self, node: int) -> tuple[np.ndarray, Array]:
         """(k, 2) first and last side of each arc of a box, and its ends."""
         return self._boxes[0][node], self._boxes[1][node]
@@ -173,16 +183,28 @@ class Search:
                 ends[child, lefts, 1], ends[child, rights, 0] = self.sides.ends[[after, after + 1], [1, 0]]
         return made
 
-    def leave(self, node: int, row: int | None) -> None:
-        """Take a box for excluded, by a row of ``duals``; or, for none, as nearer than fingers may be."""
+    def leave(self, node: int, row: int | None, moving: tuple[np.ndarray, Array] | None = None) -> None:
+        """Take a box for excluded, by a row of ``duals`` or loads' twists; else as nearer than may be."""
         if row is not None:  # first, lest an interrupt leaves a box excluded by nothing
             self.tied[node] = row
-        self._boxes[5][node] = 3 if row is None else 1
+        elif moving is not None:
+            self.moving[node] = moving
+        self._boxes[5][node] = 3 if row is None and moving is None else 1
 
-    def leave_to(self, node: int, loads: np.ndarray, twists: Array) -> None:
-        """Take a box for excluded by twists of some loads that move with the fingers."""
-        self.moving[node] = loads, twists
-        self._boxes[5][node] = 1
+    def moved(self, node: int, fixed: float, room: tuple[Any, ...]) -> Array | None:
+        """Exclude a box at a level [N] by twists that move with fingers, or say where a placement holds."""
+        from regrasp.closed_form.compiled.places.moving_twists import GONE, HELD, moved
+
+        u, twists = np.zeros(self.fingers), np.zeros((len(self.loads), 3 + 2 * self.fingers))
+        how = moved(
+            self._table, self._wanted, self._law(self.friction, self.friction, self.law), fixed / self.unit,
+            *self.box(node), u, twists, room,
+        )  # fmt: skip
+        if how == GONE:
+            few, twists[:, 2] = np.flatnonzero(twists.any(axis=1)), twists[:, 2] / self.sides.size
+            self.leave(node, None, (few, twists[few]))
+        lo, hi = self._boxes[1][node].T
+        return lo + u * (hi - lo) if how == HELD else None
 
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""
@@ -309,42 +331,19 @@ class Search:
 
         edges: (k, 2) vertices or (k, 4, 2) control points, and ``centre`` of mass, as they were given [m].
         """
-        n = self.count
-        arcs, ends, _, twists, _, kinds, children, _, seconds, other, _ = (v[:n] for v in self._boxes)
+        boxes = [values[: self.count] for values in self._boxes[:-1]]
         if self.limits != ANY_FORCE and self.law.norm == "squares":  # there twists are forces
-            twists = twists * self.unit
-        work = -(twists / [1, 1, self.sides.size]) @ self.loads.T
-        number, split = np.where(kinds == 3, -1, work.argmax(axis=1)), kinds == 2
-        given = {"sides": np.column_stack([self.sides.edges, self.sides.ends]), "arcs": arcs, "ends": ends}
-        given["loads"] = self.loads
-        given["children"] = np.where(split[:, None], children, 0)
-        number[list(self.tied)] = [-2 - row for row in self.tied.values()]
-        given["number"] = np.where(split, 0, number)
-        given["twists"] = np.where(split[:, None], 0.0, twists / [1, 1, self.sides.size])
-        joined = np.flatnonzero((other >= 0) & (kinds != 2) & (number >= 0))
-        if len(joined):
-            second = seconds[joined] / [1, 1, self.sides.size]
-            given["pairs"] = np.column_stack([joined, (-second @ self.loads.T).argmax(axis=1)])
-            given["seconds"] = second
-        given["number"][list(self.moving)] = 0
-        given["twists"][list(self.moving)] = 0.0
-        if self.moving:
-            rows = [(box, load) for box, (loads, _) in self.moving.items() for load in loads.tolist()]
-            given["movers"] = np.array(rows)
-            given["motions"] = np.concatenate([twists for _, twists in self.moving.values()])
+            boxes[3] = boxes[3] * self.unit
+        given = rows_of(boxes, self.loads, self.sides.size, self.tied, self.moving)
+        given["sides"] = np.column_stack([self.sides.edges, self.sides.ends])
+        smooth = edges.ndim == 3
         return PlacementProof(
-            _frozen(edges[:, 0]) if edges.ndim == 3 else edges, centre, fingers=self.fingers,
-            size="force" if self.law.size == "margin" and not self.margin else self.law.size,
+            read_only(edges[:, 0].copy()) if smooth else edges, centre, fingers=self.fingers, bound=bound,
             friction=self.friction, margin=self.margin, norm=self.law.norm, min_distance=self.apart,
-            bound=bound, control=edges if edges.ndim == 3 else None,
-            rings=_frozen(self.sides.rings) if isinstance(self.sides, RingSides) else None,
-            tied=_frozen(np.array(self.duals)) if self.tied else None,
+            size="force" if self.law.size == "margin" and not self.margin else self.law.size,
+            control=edges if smooth else None,
+            rings=read_only(self.sides.rings.copy()) if isinstance(self.sides, RingSides) else None,
+            tied=read_only(np.array(self.duals)) if self.tied else None,
             max_force=None if self.limits[0] == inf else self.limits[0], min_normal=self.limits[1],
-            **{name: _frozen(values) for name, values in given.items()},
+            **{name: read_only(values.copy()) for name, values in given.items()},
         )  # fmt: skip
-
-
-def _frozen(values: np.ndarray) -> np.ndarray:
-    copy = values.copy()
-    copy.setflags(write=False)
-    return copy

@@ -39,6 +39,9 @@ def clear_boxes(proof: Proof, boundary: Edges) -> np.ndarray:
     with np.errstate(all="ignore"):
         for some in np.split(boxes, parts):
             found[some] = _clear(proof, boundary, some)
+        if proof.movers is not None and proof.control is None:
+            found[np.unique(np.asarray(proof.movers)[:, 0])] = False
+            found |= told & _clear_of_movers(proof, boundary, told)
     return found
 
 
@@ -51,9 +54,7 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
         terms = np.column_stack([terms, more])
     lost = _ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
-    points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
-    reach = np.hypot(*np.abs(points).max(axis=0)) + np.hypot(*proof.centre_of_mass)
-    room = _ROUNDING * ((np.abs(y) + np.abs(z)) @ [1.0, 1.0, reach]) * (1 + proof.friction)
+    room = _room(proof, np.abs(y) + np.abs(z))
     if proof.size == "margin":
         room *= 4 * proof.bound
     told = np.minimum(room, lost) > _SMALL
@@ -74,6 +75,46 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
     else:
         dual = most.sum(axis=1) if proof.norm == "largest" else np.sqrt((most * most).sum(axis=1))
     return np.asarray(told & (work > proof.bound * dual * (1 + _ROUNDING)))
+
+
+def _room(proof: Proof, sizes: Array) -> Array:
+    """(b,) what rounding may add to the most work along twists of which these are the sizes (b, 3)."""
+    points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
+    reach = np.hypot(*np.abs(points).max(axis=0)) + np.hypot(*proof.centre_of_mass)
+    result: Array = _ROUNDING * (sizes @ [1.0, 1.0, reach]) * (1 + proof.friction)
+    return result
+
+
+def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndarray:
+    """(n,) whether twists that move with the fingers exclude each box of straight arcs."""
+    k, arcs = proof.fingers, np.asarray(proof.arcs)
+    box, load = np.asarray(proof.movers).T
+    good = (box >= 0) & (box < len(arcs)) & (load >= 0) & (load < len(proof.loads))
+    good[good] &= told[box[good]] & (arcs[box[good], :, 0] == arcs[box[good], :, 1]).all(axis=1)
+    corners = np.indices([2] * k).reshape(k, -1).T
+    left = np.zeros((len(arcs), len(corners)))
+    sure = np.zeros(len(arcs), bool)
+    sure[box[good]] = True
+    sure[box[~good & (box >= 0) & (box < len(arcs))]] = False
+    rows = np.flatnonzero(good)
+    for some in np.split(rows, range(_AT_ONCE, len(rows), _AT_ONCE)):
+        at, motions = box[some], np.asarray(proof.motions)[some]
+        adds, w = motions[:, 3:].reshape(-1, 2, k), -np.asarray(proof.loads)[load[some]]
+        sizes = np.abs(motions[:, :3])
+        sizes[:, :2] += np.abs(adds).sum(axis=2)
+        lost, room = _ROUNDING * (np.abs(w) * sizes).sum(axis=1), _room(proof, sizes)
+        sure[at[~(np.minimum(room, lost) > _SMALL)]] = False
+        edge = np.asarray(proof.sides)[arcs[at, :, 0], 0].astype(int)
+        for c, corner in enumerate(corners):
+            y = motions[:, :3].copy()
+            y[:, :2] += adds @ corner
+            u = (np.asarray(proof.ends)[at][:, range(k), corner] - edge).ravel()
+            most = (
+                boundary.roughly(edge.ravel(), u, u, np.repeat(y, k, axis=0)).reshape(-1, k) + room[:, None]
+            )
+            gain = (w * y).sum(axis=1) - lost - proof.bound * (1 + _ROUNDING) * most.sum(axis=1)
+            np.add.at(left[:, c], at, gain)
+    return np.asarray(sure & (left > 0).all(axis=1))
 
 
 def _seconds(proof: Proof, boxes: np.ndarray) -> tuple[Array, Array]:

@@ -110,7 +110,7 @@ class _Checked:
         self.proof = proof
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
         self.groups = Groups(proof, self.boundary)
-        self.clear: np.ndarray  # boxes that doubles decide
+        self.clear: np.ndarray = np.zeros(len(proof.children), bool)  # boxes that doubles decide
         self.limited = proof.max_force is not None or proof.min_normal > 0
         pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
         self.second = {box: (load, twist) for (box, load), twist in pairs}
@@ -201,7 +201,7 @@ class _Checked:
         if number < 0 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
             return self._tied(box, self.proof.tied[-2 - number], arcs)
         if box in self.moving:
-            return self._moved(box, arcs)
+            return [] if self.clear[box] else self._moved(box, arcs)
         told = [(number, self.proof.twists[box].tolist())]
         told += [self.second[box]] if box in self.second else []
         if not all(0 <= load < len(self.proof.loads) for load, _ in told):

@@ -189,9 +189,9 @@ def _loop(digest: str) -> Any:
         placements tried may use of it, size, norm, precision, and of ``ERODED`` the limit and the distance.
         fixed: a level, or infinite to follow the least value times 1 - tolerance. least: distance of fingers.
         narrow: arcs shorter than this are not split.
-        boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), twists (N, 3), loads' numbers (N,), kinds (N,),
-        first children and their number (N, 2), where forces press (N, k, 8), second twists (N, 3) and loads
-        (N,), -1 for none, scratch (1, 3). state: number of
+        boxes: arcs (N, k, 2), ends (N, k, 2), bounds (N,), below 0 of what is to be bounded anew, twists
+        (N, 3), loads' numbers (N,), kinds (N,), first children and their number (N, 2), where forces press
+        (N, k, 8), second twists (N, 3) and loads (N,), -1 for none, scratch (1, 3). state: number of
         boxes, of those in the heap, of placements tried. found: (1 + 2 k) the least value so far, sides and u
         of its fingers. tried: (T, 1 + 2 k) the last placements tried.
         """
@@ -215,6 +215,15 @@ def _loop(digest: str) -> Any:
             looked += 1
             node = pop(heap, state[1], bounds)
             state[1] -= 1
+            if bounds[node] < 0.0:  # of another level
+                bounds[node] = 0.0
+                _assess(sides, loads, law, level, boxes, node, work)
+                if bounds[node] >= level:
+                    kinds[node] = EXCLUDED
+                else:
+                    push(heap, state[1], bounds, node)
+                    state[1] += 1
+                continue
             most = found[0] if fixed == np.inf else fixed * (1.0 + 1e-6)
             # a placement from where its forces press
             to_try(arcs[node], ends[node], seen[node], places)

@@ -84,11 +84,11 @@ def support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-
 
 @njit(**VIEWS)
 def _support_of_box(sides, arcs, ends, law, y, g, force, out):  # type: ignore[no-untyped-def]
-    """H(y), and in ``g`` the point of W that reaches it; ``force`` (k, 3): normal force, side and u."""
+    """H(y), and in ``g`` the point of W that reaches it; ``force`` (k, 5): n . f, side, u and f."""
     total, size, norm = 0.0, law[1], law[2]
     g[0] = g[1] = g[2] = 0.0
     for i in range(len(arcs)):
-        force[i, 0] = 0.0
+        force[i, 0] = force[i, 3] = force[i, 4] = 0.0
         support_of_arc(sides, arcs[i, 0], arcs[i, 1], ends[i, 0], ends[i, 1], law, y, out)
         s = out[0]
         if (s <= 0.0 and size != ERODED) or (norm == SUM and s <= total):
@@ -98,18 +98,21 @@ def _support_of_box(sides, arcs, ends, law, y, g, force, out):  # type: ignore[n
             total = s
             g[0] = g[1] = g[2] = 0.0
             for j in range(i):
-                force[j, 0] = 0.0
+                force[j, 0] = force[j, 3] = force[j, 4] = 0.0
         else:
             total += weight * s
         for c in range(3):
             g[c] += weight * out[3 + c]
         force[i, 0], force[i, 1], force[i, 2] = weight * out[6], out[1], out[2]
+        force[i, 3], force[i, 4] = weight * out[3], weight * out[4]
     if norm == SQUARES and total > 0.0:
         total = sqrt(total)
         for c in range(3):
             g[c] /= total
         for i in range(len(arcs)):
             force[i, 0] /= total
+            force[i, 3] /= total
+            force[i, 4] /= total
     return total
 
 
@@ -145,7 +148,7 @@ def _solve(g, b, y, x):  # type: ignore[no-untyped-def]
 def workspace(k: int) -> tuple[Any, ...]:
     """Memory for boxes of k fingers: rows g, weights x and forces of four, scratch, and a twist."""
     return (
-        np.zeros((3, 3)), np.zeros(4), np.zeros((5, k, 3)),
+        np.zeros((3, 3)), np.zeros(4), np.zeros((5, k, 5)),
         np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(7), np.zeros(3),
         np.zeros(3), np.zeros(3),
     )  # fmt: skip
@@ -201,7 +204,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
     of the point; (m, 17) of sides of cubics with their control points, too. arcs: (k, 2) first and last side
     of each finger. ends: (k, 2) least and largest u. law: mu, size, norm; limit and distance of ``ERODED``.
     What ``work`` holds at the end are forces that reach the bound, but for ``precision``: finger i has
-    x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2.
+    x_j forces[j, i, 0] at forces[j, i, 2], j = 0, 1, 2, which is x_j forces[j, i, 3:] in x and y.
     """
     g, x, forces, y, d, new, spare, out, _, middle, target = work
     per = seen_from_middle(sides, arcs, ends, law, b, middle, target)
@@ -211,7 +214,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
     for c in range(3):
         x[c] = 0.0
         for i in range(len(arcs)):
-            forces[c, i, 0] = 0.0
+            forces[c, i, 0] = forces[c, i, 3] = forces[c, i, 4] = 0.0
     if most == 0.0:
         return 0.0, 0.0
     for c in range(3):
@@ -245,7 +248,8 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
             break
         for c in range(3):
             g[leaving, c] = new[c]
-            for i in range(len(arcs)):
+        for i in range(len(arcs)):
+            for c in range(5):
                 forces[leaving, i, c] = forces[3, i, c]
     upper = 0.0
     for j in range(3):

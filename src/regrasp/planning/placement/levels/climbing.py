@@ -1,5 +1,6 @@
 """Climbing to the best level: placements found raise it, and boxes are excluded until none is left."""
 
+from collections.abc import Sequence
 from math import inf, nan
 
 import numpy as np
@@ -13,6 +14,7 @@ _STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
 _SETTLING, _NEARER = 24, 2
 _LATE, _STARTS = 1024, 3  # boxes without a placement that holds, after which so many near to it slide
 _FIRST, _LARGEST, _SHORTEST, _NEAR = 0.125, 0.5, 1e-5, 1e-4  # steps of slides, as parts of an edge
+_GAPS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3)  # that are proven on the way, while what is asked is less
 _SLOW = 1e-5  # of a level, the least gain of one
 
 
@@ -27,10 +29,20 @@ def run_level(
     best: float | None = None
     due, before = _LATE, 0
     aim, top = level.start, level.top(search)
+    gaps, passed = [t for t in _GAPS if t > tolerance], list[float]()
     fixed = level.max_force * (1 + _STRICT)
     level.put(search, aim)
     try:
-        while search.goes_on(fixed, 0.0, most) or search.best <= level.max_force:
+        while True:
+            if not (search.goes_on(fixed, 0.0, most) or search.best <= level.max_force):
+                if best is None or not (search.closed and gaps):
+                    break
+                # nothing is that much better; boxes go on from there to what is left to be asked
+                passed.append(aim)
+                gaps.pop(0)
+                aim = _next(level, best, gaps, tolerance, top)
+                level.put(search, aim)
+                search.reopen()
             at = search.found if search.best <= level.max_force else None
             if at is None and search.count >= due:
                 at = _slid_below(search, level.max_force, search.tried_since(before)[:_STARTS])
@@ -39,7 +51,7 @@ def run_level(
                 due, before = search.count + _LATE, search.tries
                 reached, places, u = improved(search, level, aim, *at)
                 best = reached if best is None else max(best, reached)
-                aim = level.beyond(best, tolerance)
+                aim = _next(level, best, gaps, tolerance, top)
                 level.put(search, aim)
                 search.forget(reached, places, u)
                 if aim >= top:
@@ -54,7 +66,7 @@ def run_level(
         search.closed = search.closed and search.excludes(search.left, fixed)
         return best, aim
     try:
-        beyond = settled(search, level, aim, fixed)
+        beyond = settled(search, level, aim, fixed, passed)
     except KeyboardInterrupt:
         search.closed, search.interrupted, beyond = False, True, top
     if progress is not None:
@@ -65,22 +77,35 @@ def run_level(
     return best, beyond
 
 
-def settled(search: Search, level: Level, aim: float, fixed: float) -> float:
-    """A level at which boxes that are left, too small to be split or not looked at, are excluded, too."""
-    left, lo, hi = search.left, aim, level.top(search)
-    if aim >= hi:
-        return aim
-    level.put(search, aim)
-    search.closed = search.excludes(left, fixed)
-    if search.closed:
+def _next(level: Level, best: float, gaps: list[float], tolerance: float, top: float) -> float:
+    """The level to exclude, of the first gap that leaves one below the largest; others are dropped."""
+    while gaps and level.beyond(best, gaps[0]) >= top:
+        gaps.pop(0)
+    return level.beyond(best, (*gaps, tolerance)[0])
+
+
+def settled(
+    search: Search, level: Level, aim: float, fixed: float, passed: Sequence[float] = ()
+) -> float:  # fmt: skip
+    """A level at which boxes that are left, too small to be split or not looked at, are excluded, too.
+
+    passed: levels that were closed, or nearly, before.
+    """
+    left, top = search.left, level.top(search)
+    if aim >= top:
         return aim
     # first how far to go, by steps that double, then how much less is enough
-    for halvings in range(_SETTLING, 0, -1):
-        step = 0.5**halvings
-        level.put(search, aim + step * (hi - aim))
+    steps = [aim + 0.5**halvings * (top - aim) for halvings in range(_SETTLING, 0, -1)]
+    lo, hi = aim, top
+    for tried in sorted({aim, *(p for p in passed if aim < p < top), *steps}):
+        level.put(search, tried)
         if search.excludes(left, fixed):
-            lo, hi = aim + 0.5 * step * (hi - aim), aim + step * (hi - aim)
+            hi = tried
             break
+        lo = tried
+    if hi == aim:
+        search.closed = True
+        return aim
     for _ in range(_NEARER):
         middle = 0.5 * (lo + hi)
         level.put(search, middle)

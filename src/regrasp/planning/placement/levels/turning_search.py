@@ -123,5 +123,5 @@ class _Turning:
             return False
         loads, polynomials = found
         polynomials[:, 2] /= size
-        search.leave_to(node, loads, polynomials.reshape(len(loads), -1))
+        search.leave(node, None, (loads, polynomials.reshape(len(loads), -1)))
         return True
