@@ -189,11 +189,11 @@ def test_a_search_that_is_cut_short_has_a_bound_that_stands(objective: str) -> N
     asked = {"friction": 0.4, "max_force": 4, "tolerance": 1e-4, "objective": objective, "progress": progress}
     whole = rg.choose_grasp(shape, 3, loads, **asked)
     every, gaps = len(told) - 1, []
-    for after in sorted({2, every // 3, 2 * every // 3, every - 1}):
+    for after in sorted({1 if objective == "force" else 2, every // 2, every - 1}):
         told[:] = [after + 1.0]
         chosen = rg.choose_grasp(shape, 3, loads, **asked)
         assert rg.verify(chosen).ok
         value, bound = (-1 if objective == "friction_use" else 1) * np.array([whole.value, chosen.bound])
         assert value <= bound
         gaps.append(chosen.gap)
-    assert objective == "friction_use" or 0.1 > gaps[0] > gaps[1] > whole.gap
+    assert objective == "friction_use" or 0.03 > gaps[0] > gaps[1] >= whole.gap
