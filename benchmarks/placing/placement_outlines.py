@@ -1,7 +1,7 @@
 """Fingers on fifty outlines: is the gap reached, does the proof stand, is a random placement better?
 
     python benchmarks/placing/placement_outlines.py [--count 50] [--objectives peak force] [--fingers 2]
-                                                  [--cap 40] [--seconds 200] [-o FILE]
+                                                  [--cap 40] [--most 200000] [--seconds 200] [-o FILE]
     python benchmarks/placing/placement_outlines.py --attack 1000000
     python benchmarks/placing/placement_outlines.py --table
 
@@ -62,7 +62,9 @@ def within(cap: float) -> tuple[Callable[[], bool], Callable[..., None]]:
     return lambda: ended, progress
 
 
-def row(outline: rg.Outline, objective: str, fingers: int, cap: float) -> dict[str, Any]:
+def row(
+    outline: rg.Outline, objective: str, fingers: int, cap: float, most: int | None = None
+) -> dict[str, Any]:
     """How a search of at most ``cap`` seconds of processor time went, and what ``verify`` says."""
     begin, (ended, progress) = perf_counter(), within(cap)
     try:
@@ -143,6 +145,7 @@ def main() -> None:
     parser.add_argument("--objectives", nargs="+", default=OBJECTIVES, choices=OBJECTIVES)
     parser.add_argument("--fingers", nargs="+", type=int, default=(2, 3))
     parser.add_argument("--cap", type=float, default=40.0, help="of a search, of processor time [s]")
+    parser.add_argument("--most", type=int, help="boxes of a search; as choose_grasp has it if not given")
     parser.add_argument("--attack", type=int, default=0, metavar="RANDOM", help="kept rows, by so many each")
     parser.add_argument("--seconds", type=float, default=np.inf, help="after which no other row is begun")
     parser.add_argument("--table", action="store_true")
@@ -172,7 +175,7 @@ def main() -> None:
                 if perf_counter() - begin > given.seconds:
                     return
                 if key not in kept and not given.attack:
-                    keep(key, row(outline, objective, fingers, given.cap))
+                    keep(key, row(outline, objective, fingers, given.cap, given.most))
                 elif given.attack and kept.get(key, {"random": np.inf})["random"] < given.attack:
                     keep(key, kept[key] | attacked(outline, objective, fingers, kept[key], given.attack))
 
