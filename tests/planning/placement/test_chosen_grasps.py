@@ -123,7 +123,8 @@ def test_progress_of_a_level_ends_at_value_and_bound() -> None:
     chosen = rg.choose_grasp(BRACKET, 2, TILTED, progress=lambda *known: seen.append(known), **asked)
     bounds, values = np.array(seen).T
     assert (bounds <= chosen.value).all()
-    assert np.nanmin(values) == values[-1] == pytest.approx(chosen.value, rel=1e-6)
+    # what is told keeps a millionth of the limit back, which is more of the friction in use
+    assert np.nanmin(values) == values[-1] == pytest.approx(chosen.value, rel=1e-5)
     assert bounds[-1] == chosen.bound
 
 
