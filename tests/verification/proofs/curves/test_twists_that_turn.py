@@ -5,9 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 import regrasp as rg
 from proofs import planar
+from regrasp.planning.placement.levels.mixture import best_mixture
 from regrasp.planning.placement.levels.turning import TurningTwists, slowest
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn
 
@@ -172,13 +174,39 @@ def test_they_are_of_lengths_of_forces() -> None:
     assert said(motions=np.array(ABOUT[::-1]), bound=0.0) == ""
 
 
-def test_a_search_is_closed_by_them() -> None:
+def test_the_best_mixture_is_that_of_a_linear_program() -> None:
+    rng = np.random.default_rng(3)
+    found = []
+    for _ in range(40):
+        n, m = rng.integers(1, 80), rng.integers(1, 28)
+        gains = rng.normal(size=(n, m)) * rng.choice([1, 100.0], size=(n, 1)) + rng.uniform(-1, 1)
+        rows = np.column_stack([-gains.T, np.ones(m)])
+        sums, limits = np.append(np.ones(n), 0.0)[None], [(0, None)] * n + [(None, None)]
+        value = -linprog(np.append(np.zeros(n), -1.0), rows, np.zeros(m), sums, 1.0, limits).fun
+        weights = best_mixture(gains)
+        found.append(weights is not None)
+        assert found[-1] == (value > 0)
+        if weights is not None:
+            assert weights.min() >= 0
+            assert weights.sum() == pytest.approx(1)
+            assert (weights @ gains).min() == pytest.approx(value, rel=1e-8)
+    assert 5 < sum(found) < 35
+    assert best_mixture(np.zeros((2, 3))) is None
+
+
+def flower() -> tuple[rg.Outline, rg.LoadSet]:
+    """A smooth outline, and six loads."""
     angle = np.arange(8) * np.pi / 4
     radius = np.array([1.3, 1.2, 1, 1, 1.2, 0.9, 1, 1.1])[:, None]
     shape = rg.Outline.smooth(radius * np.column_stack([np.cos(angle), np.sin(angle)]))
     loads = rg.LoadSet.hull([
         rg.Wrench([x, y], t) for x, y in ((1, 0), (-0.5, 0.9), (-0.5, -0.9)) for t in (0.05, -0.05)
     ])  # fmt: skip
+    return shape, loads
+
+
+def test_a_search_is_closed_by_them() -> None:
+    shape, loads = flower()
     given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "most_boxes": 2000}
     chosen = rg.choose_grasp(shape, 2, loads, **given)
     assert chosen.gap <= 1e-3
@@ -200,3 +228,27 @@ def test_a_search_is_closed_by_them() -> None:
         assert not rg.verify(replace(proof, movers=proof.movers[less], motions=proof.motions[less])).ok
     for friction in (proof.friction * 1.01,):
         assert not rg.verify(replace(proof, friction=friction)).ok
+
+
+def test_of_a_search_cut_short_what_was_closed_is_left() -> None:
+    """One is closed some way from the best, and the next of 2,000 boxes or an interrupt ends."""
+    shape, loads = flower()
+    bounds: list[float] = []
+
+    def noted(bound: float, value: float) -> None:
+        bounds.append(bound)
+
+    def interrupting(bound: float, value: float) -> None:
+        if bound == kept:
+            raise KeyboardInterrupt
+
+    given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "tolerance": 1e-5}
+    cut = rg.choose_grasp(shape, 2, loads, most_boxes=2000, progress=noted, **given)
+    before, kept = sorted(set(bounds) - {0.0})
+    assert cut.bound == kept
+    assert 1e-5 < cut.gap < 0.5 * (cut.value - before) / cut.value
+    ended = rg.choose_grasp(shape, 2, loads, most_boxes=2000, progress=interrupting, **given)
+    assert ended.bound == kept
+    for chosen in (cut, ended):
+        assert chosen.certificate.motions is not None
+        assert rg.verify(chosen).ok

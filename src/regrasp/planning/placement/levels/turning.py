@@ -23,6 +23,7 @@ from math import comb
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.levels.mixture import best_mixture
 
 _SURE = 1e-9  # of the terms, more than rounding adds
 _ROUNDING = 1e-12  # of the largest coefficient, more than any sum of products of them is off by
@@ -131,8 +132,6 @@ class TurningTwists:
 
     def _mixed(self, twists: Array, most: Array, loads: Array) -> tuple[np.ndarray, Array] | None:
         """Loads (n,), and (n, 3^k, 3 + k) their twists and bounds mixed such that together they exclude."""
-        from scipy.optimize import linprog
-
         total = most.sum(axis=2)
         left = np.einsum("ld,pcd->lpc", loads, twists) - total
         share = left / np.maximum(total, 1e-9)
@@ -146,14 +145,10 @@ class TurningTwists:
         above = (self._bent @ (left[load, turn].T[:, :, None] * weights[:, None]).reshape(len(weights), -1)).T
         sizes = np.maximum((total[turn] @ weights).ravel() / len(weights), _SMALL)
         above /= sizes[:, None]
-        n, nodes = above.shape
-        goal = np.append(np.zeros(n), -1.0)
-        rows = np.vstack([np.column_stack([-above.T, np.ones(nodes)]), np.append(np.ones(n), 0.0)])
-        limits = [(0, None)] * n + [(None, None)]
-        found = linprog(goal, rows, np.append(np.zeros(nodes), 1.0), bounds=limits, method="highs-ds")
-        if found.status != 0 or found.fun >= 0:
+        found = best_mixture(above)
+        if found is None:
             return None
-        factors = (found.x[:-1] / sizes).reshape(len(load), -1)
+        factors = (found / sizes).reshape(len(load), -1)
         factors[factors < _LEAST * factors.max()] = 0.0
         shares = factors @ weights.T
         few = np.unique(load[shares.any(axis=1)])

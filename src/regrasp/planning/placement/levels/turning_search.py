@@ -2,6 +2,7 @@
 
 from collections import deque
 from contextlib import suppress
+from math import log
 
 import numpy as np
 
@@ -10,10 +11,12 @@ from regrasp.planning.placement.levels.climbing import improved, settled
 from regrasp.planning.placement.levels.level import SURE, Level
 from regrasp.planning.placement.levels.turning import TurningTwists
 from regrasp.planning.placement.search import Progress, Search
+from regrasp.planning.placement.sliding import Placed
 
 _COARSE = 0.2  # of the size: arcs of less are left to these twists
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _STRICT = 1e-9
+_FAR, _NEARER = 0.5, 8  # of the best level, the first searches are so far from it, then so many times nearer
 _TRIES, _STEP = 300, 1e-3  # of a simplex of placements, its size as a part of the boundary
 
 
@@ -23,22 +26,29 @@ def closed_by_turning(
 ) -> tuple[Search, float]:  # fmt: skip
     """A search that excludes more, and a level that no placement is beyond.
 
+    First one that is some way from the best, then nearer: what is closed is a bound where the next search is
+    cut short.
+
     search: that ended with ``best`` and ``beyond``, of forces on curves; it is returned where no more is
     excluded.
     """
-    found = search.anew()
-    found.narrow = _COARSE
-    turning = _Turning(found, level, best, tolerance)
+    programs = most // 3**search.fingers
+    kept, steps = search.placements(), max(int(log(_FAR / tolerance, _NEARER)), 0)
     with suppress(KeyboardInterrupt):
-        turning.settle(search.placements())
-        while found.goes_on(turning.limit, 0.0, most, only=True):
-            if progress is not None:
-                progress(level.value(beyond), level.value(turning.best))
-        aim = settled(found, level, turning.run(most, progress), turning.limit)
-        if found.closed and aim < beyond:
-            found.take(sorted(search.placements() + found.placements(), key=lambda placed: placed[0]))
-            return found, aim
-    search.take(sorted(search.placements() + found.placements(), key=lambda placed: placed[0]))
+        for step in range(steps, -1, -1):
+            turning = _Turning(search.anew(), level, best, tolerance * _NEARER**step, programs)
+            if step and turning.aim >= beyond:
+                continue
+            try:
+                closed = turning.close(kept, most, beyond, progress)
+            finally:
+                best, programs = turning.best, turning.programs
+                kept = sorted(kept + turning.search.placements(), key=lambda placed: placed[0])
+            if turning.search.closed and turning.aim < beyond:
+                search, beyond = turning.search, turning.aim
+            if not closed:
+                break
+    search.take(kept)
     level.put(search, beyond)
     return search, beyond
 
@@ -46,11 +56,28 @@ def closed_by_turning(
 class _Turning:
     """Boxes of one side for each finger, the widest first."""
 
-    def __init__(self, search: Search, level: Level, best: float, tolerance: float) -> None:
+    def __init__(self, search: Search, level: Level, best: float, tolerance: float, programs: int) -> None:
         self.search, self.level, self.best, self.tolerance = search, level, best, tolerance
+        self.programs = programs
+        search.narrow = _COARSE
         self.limit = level.max_force * (1 + _STRICT)
         self.twists = TurningTwists(search.fingers)
         self.aim = level.beyond(best, tolerance)
+
+    def close(self, placements: list[Placed], most: int, known: float, progress: Progress | None) -> bool:
+        """Whether no box is left. The aim is a level that no placement is beyond, where the search is closed.
+
+        placements: to begin from. known: a level that no placement is beyond.
+        """
+        search, level = self.search, self.level
+        self.settle(placements)
+        while search.goes_on(self.limit, 0.0, most, only=True):
+            if progress is not None:
+                progress(level.value(known), level.value(self.best))
+        self.run(most, known, progress)
+        aim = self.aim
+        self.aim = settled(search, level, aim, self.limit)
+        return search.closed and self.aim == aim
 
     def settle(self, placements: list[tuple[float, np.ndarray, Array]]) -> None:
         """Begin from the best of some placements, and from what is best near to it."""
@@ -59,11 +86,10 @@ class _Turning:
             self._better(*self._nearby(places, u))
         self.level.put(self.search, self.aim)
 
-    def run(self, most: int, progress: Progress | None) -> float:
-        """Exclude or split boxes; the level at which they are."""
+    def run(self, most: int, known: float, progress: Progress | None) -> None:
+        """Exclude or split boxes."""
         search, waiting = self.search, deque(self.search.left.tolist())
-        programs = most // 3**search.fingers
-        while waiting and programs > 0:
+        while waiting and self.programs > 0:
             node = waiting.popleft()
             arcs, ends = search.box(node)
             if (arcs[:, 0] != arcs[:, 1]).any():
@@ -71,7 +97,7 @@ class _Turning:
             self._better(arcs[:, 0].copy(), ends.mean(axis=1))
             if search.excludes(np.array([node]), self.limit):
                 continue
-            programs -= 1
+            self.programs -= 1
             if self._excluded(node, arcs[:, 0], ends):
                 continue
             lengths = np.diff(ends, axis=1)[:, 0] * search.sides.lengths[search.sides.edges[arcs[:, 0]]]
@@ -79,8 +105,7 @@ class _Turning:
             if lengths[i] > _NARROW * search.sides.size:
                 waiting += search.halved(node, i, float(ends[i].mean()), most)
             if progress is not None:
-                progress(self.level.value(self.aim), self.level.value(self.best))
-        return self.aim
+                progress(self.level.value(known), self.level.value(self.best))
 
     def _better(self, places: np.ndarray, u: Array) -> None:
         """Go on from a placement that is better, and from those that are better still."""
