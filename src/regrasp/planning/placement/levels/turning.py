@@ -31,7 +31,6 @@ _SHORT = 0.01  # of the size: ends of shorter legs are rounded by more of them
 _SMALL = 1e-3  # what fingers do along a twist of length 1 counts as more
 _VARIED = 0.3  # of a weight, its change from the middle of a part to an end
 _LEAST = 1e-9  # of the largest weight
-_OWN = 7  # degree of what a finger does in its own place: 2 of the twist, 3 of the point and 2 of the normal
 _CORNERS = 3  # of the polygon, besides 0
 
 
@@ -104,9 +103,8 @@ class TurningTwists:
 
     def _turns(self, parts: Array, friction: float) -> tuple[Array, Array]:
         """(c, 3^k, 3) twists at the nodes, and (c, 3^k, k) what fingers do along them at most."""
-        at = np.array([0.0, 0.5, 1.0])
-        points = _bernstein(3, at) @ parts
-        along = _bernstein(2, at) @ np.diff(parts, axis=1)
+        points = _POINTS @ parts
+        along = _SLOPES @ np.diff(parts, axis=1)
         t = along / np.linalg.norm(along, axis=2, keepdims=True)
         n = np.stack([-t[..., 1], t[..., 0]], axis=2)
         slant = np.hypot(1.0, friction)
@@ -126,14 +124,16 @@ class TurningTwists:
         middle = twists[:, twists.shape[1] // 2]
         twists /= np.linalg.norm(middle, axis=1)[:, None, None] + 1e-300
         twists = np.concatenate([twists, -twists])
-        done = np.einsum("pcd,icgd->pcig", twists, there[:, :, :_CORNERS])
+        corner = there[:, :, :_CORNERS].transpose(1, 3, 0, 2)
+        done = twists.transpose(1, 0, 2) @ corner.reshape(len(corner), 3, -1)
         done[np.abs(done) < 1e-13] = 0.0
-        return twists, np.maximum(done.max(axis=3), 0.0)
+        most = done.reshape(*done.shape[:2], self.fingers, _CORNERS).max(axis=3)
+        return twists, np.maximum(most, 0.0).transpose(1, 0, 2)
 
     def _mixed(self, twists: Array, most: Array, loads: Array) -> tuple[np.ndarray, Array] | None:
         """Loads (n,), and (n, 3^k, 3 + k) their twists and bounds mixed such that together they exclude."""
         total = most.sum(axis=2)
-        left = np.einsum("ld,pcd->lpc", loads, twists) - total
+        left = (twists @ loads.T).transpose(2, 0, 1) - total
         share = left / np.maximum(total, 1e-9)
         share[(left <= 0).all(axis=2)] = -np.inf
         best = share.argmax(axis=1)  # of each load at each node
@@ -169,7 +169,7 @@ class TurningTwists:
             normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
             ahead, aside = (_along(parts[i], way) for way in (normal, tangent))
             ahead, aside = (np.einsum("drb,ndbx->nrx", way, own[:, :3]) for way in (ahead, aside))
-            speed = _times(2, slowest(tangent))
+            speed = _SQUARED @ slowest(tangent)
             bound = np.einsum("rb,nbx->nrx", speed, own[:, 3 + i])
             edge = ahead + friction * np.abs(aside)
             lacking = np.maximum(edge / slant, slant * ahead) - bound
@@ -198,31 +198,17 @@ def _along(control: Array, way: Array) -> Array:
 
     control: (4, 2) of the part. way: (3, 2) coefficients.
     """
-    x, y = (_times(2, way[:, i]) for i in (0, 1))
-    around = _product(-control[:, 1], way[:, 0]) + _product(control[:, 0], way[:, 1])
-    return np.stack([x, y, _times(2, around)])
+    x, y = way.T
+    around = (_CUBED @ y) @ control[:, 0] - (_CUBED @ x) @ control[:, 1]
+    return np.stack([_SQUARED @ x, _SQUARED @ y, _OF_FIFTH @ around])
 
 
-def _times(degree: int, other: Array) -> Array:
-    """(8, degree + 1) by which coefficients become those of the product with another polynomial."""
-    made = np.array([_product(one, other) for one in np.eye(degree + 1)]).T
-    result: Array = _raising(len(made) - 1) @ made
-    return result
-
-
-def _product(a: Array, b: Array) -> Array:
-    """Bernstein coefficients of a product."""
-    m, n = len(a) - 1, len(b) - 1
-    scaled = np.convolve(a * _binomials(m), b * _binomials(n))
-    return np.asarray(scaled / _binomials(m + n))
-
-
-def _raising(degree: int) -> Array:
-    """(8, degree + 1) by which coefficients become those of degree 7."""
-    more = _binomials(_OWN - degree)
-    rows = [np.convolve(one * _binomials(degree), more) for one in np.eye(degree + 1)]
-    result: Array = np.array(rows).T / _binomials(_OWN)[:, None]
-    return result
+def _products(m: int, n: int) -> Array:
+    """(m + n + 1, m + 1, n + 1) by which coefficients of two polynomials become those of their product."""
+    found = np.zeros((m + n + 1, m + 1, n + 1))
+    i, j = np.indices((m + 1, n + 1))
+    found[i + j, i, j] = np.outer(_binomials(m), _binomials(n)) / _binomials(m + n)[i + j]
+    return found
 
 
 def _binomials(n: int) -> Array:
@@ -235,3 +221,10 @@ def _bernstein(degree: int, at: Array) -> Array:
     t = at[:, None]
     result: Array = _binomials(degree) * t**i * (1 - t) ** (degree - i)
     return result
+
+
+# at both ends and the middle; then products of coefficients, all to the degree 7 of what a finger does in its
+# own place: 2 of the twist, 3 of the point and 2 of the normal
+_POINTS, _SLOPES = (_bernstein(degree, np.array([0.0, 0.5, 1.0])) for degree in (3, 2))
+_CUBED, _OF_FIFTH = _products(3, 2), _products(2, 5)
+_SQUARED = np.tensordot(_products(4, 3).sum(axis=2), _products(2, 2), 1)
