@@ -1,4 +1,4 @@
-"""Solids in space for the tests of meshes: bumpy balls, motions, and soups of triangles."""
+"""Solids in space for the tests of meshes: bumpy balls and pebbles, motions, soups of triangles."""
 
 from dataclasses import dataclass
 
@@ -16,6 +16,21 @@ def bumpy(seed: int, **options) -> rg.Mesh:
     ball = rg.Mesh.sphere(1.0, divisions=2)
     radii = rng.uniform(0.7, 1.3, len(ball.vertices))
     return rg.Mesh(ball.vertices * radii[:, None] + rng.normal(size=3), ball.faces, **options)
+
+
+def pebble(n: int) -> rg.Mesh:
+    """2 n (n - 1) flat faces around a bumpy body."""
+    turn, down = np.meshgrid(2 * np.pi * np.arange(n) / n, np.pi * np.arange(1, n) / n)
+    reach = 1 + 0.12 * np.sin(3 * turn) * np.sin(down) ** 3 + 0.1 * np.cos(2 * down)
+    at = [0.03 * np.sin(down) * np.cos(turn), 0.022 * np.sin(down) * np.sin(turn), 0.04 * np.cos(down)]
+    points = np.vstack([np.moveaxis(reach * at, 0, 2).reshape(-1, 3), [0, 0, 0.044], [0, 0, -0.044]])
+    ring, k = np.arange(n), (np.arange(n) + 1) % n
+    top, last = np.full(n, len(points) - 2), (n - 2) * n
+    faces = [np.column_stack([top, ring, k]), np.column_stack([top + 1, last + k, last + ring])]
+    for i in range(0, last, n):
+        faces += [np.column_stack([i + ring, i + n + ring, i + n + k])]
+        faces += [np.column_stack([i + ring, i + n + k, i + k])]
+    return rg.Mesh(points, np.concatenate(faces))
 
 
 @dataclass(frozen=True)

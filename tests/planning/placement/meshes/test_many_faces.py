@@ -11,23 +11,9 @@ import regrasp as rg
 from regrasp.closed_form.compiled.patches import patch_support
 from regrasp.mesh.clear import clear_faces
 from regrasp.planning.placement.space.patches import patches_of
+from solids import pebble
 
 pytestmark = pytest.mark.oracle
-
-
-def pebble(n: int) -> rg.Mesh:
-    """2 n (n - 1) flat faces around a bumpy body."""
-    turn, down = np.meshgrid(2 * np.pi * np.arange(n) / n, np.pi * np.arange(1, n) / n)
-    reach = 1 + 0.12 * np.sin(3 * turn) * np.sin(down) ** 3 + 0.1 * np.cos(2 * down)
-    at = [0.03 * np.sin(down) * np.cos(turn), 0.022 * np.sin(down) * np.sin(turn), 0.04 * np.cos(down)]
-    points = np.vstack([np.moveaxis(reach * at, 0, 2).reshape(-1, 3), [0, 0, 0.044], [0, 0, -0.044]])
-    ring, k = np.arange(n), (np.arange(n) + 1) % n
-    top, last = np.full(n, len(points) - 2), (n - 2) * n
-    faces = [np.column_stack([top, ring, k]), np.column_stack([top + 1, last + k, last + ring])]
-    for i in range(0, last, n):
-        faces += [np.column_stack([i + ring, i + n + ring, i + n + k])]
-        faces += [np.column_stack([i + ring, i + n + k, i + k])]
-    return rg.Mesh(points, np.concatenate(faces))
 
 
 def plain(module: Any) -> dict[str, Any]:
