@@ -264,9 +264,8 @@ def main() -> None:
             "attacks": given.attacks, "best_attack": best, "below_bound": beaten, "rivals": rivals,
         }  # fmt: skip
         shown = ", ".join(f"{rival} {found / value - 1:+.1%}" for rival, found in rivals.items())
-        print(
-            f"{name}, {fingers} fingers, {objective}: {value:.5g} in {took:.2f} s ({worked:.2f} s processor, {memory:.0f} MB), gap {chosen.gap:.2%},"
-        )
+        print(f"{name}, {fingers} fingers, {objective}: {value:.5g}, gap {chosen.gap:.2%},")
+        print(f"  in {took:.2f} s, {worked:.2f} s of processor, at most {memory:.0f} MB,")
         print(f"  {len(chosen.certificate.boxes)} boxes, verified {verdict.ok} in {checked:.2f} s")
         print(
             f"  {given.attacks} attacks: best {best / value - 1:+.2%}, {beaten} below the bound; {shown}",
