@@ -65,6 +65,7 @@ def solid(corners, normals, loads, patches, nodes, **changes) -> SimpleNamespace
             "children": np.array([node[1] for node in nodes]),
             "number": np.array([node[2] for node in nodes]),
             "twists": np.array([node[3] for node in nodes], dtype=float),
+            "together": None,
         }
         | changes
     )

@@ -8,7 +8,7 @@ import pytest
 
 import regrasp as rg
 from foreign.beams import withstood
-from proofs import Patches, solid
+from proofs import Patches, everything, planar, solid
 from regrasp.errors import InvalidInput
 from regrasp.verification import kinds
 from scenarios import planned
@@ -227,3 +227,22 @@ def test_twists_of_cuts_are_planar() -> None:
         for more in 0, 1:
             words = refused(kinds._check_cut, SimpleNamespace(**cut | {name: np.zeros((2, columns + more))}))
             assert (words == "") == (more == 0)
+
+
+def test_numbers_that_round_or_overflow_before_rationals_do_are_refused() -> None:
+    """One finger pushes up with 100 N at most; whole numbers of 8 bits make 5 times 100 negative."""
+    floor = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])
+    sides = np.array([[0, 0, 1.0]])
+    proof = planar(floor, [(0, 100, 0)], [(everything(sides, 1), (0, 0), 0, (0, 2, 0))], sides=sides)
+    proof.bound = 1.0
+    assert rg.verify(proof).violations == ("proof: the twist of box 0 does not exclude it",)
+    for name in ("vertices", "centre_of_mass", "sides", "loads", "ends", "twists"):
+        for kind in (np.float16, np.float32, np.int8, np.int64):
+            narrow = SimpleNamespace(**vars(proof) | {name: getattr(proof, name).astype(kind)})
+            with pytest.raises(InvalidInput, match=f"{name} of a plan must be an array of doubles"):
+                rg.verify(narrow)
+    for name in ("arcs", "number"):
+        for kind in (np.int8, np.uint8, np.uint64):
+            narrow = SimpleNamespace(**vars(proof) | {name: getattr(proof, name).astype(kind)})
+            with pytest.raises(InvalidInput, match=f"{name} of a plan must be an array of signed whole"):
+                rg.verify(narrow)

@@ -33,15 +33,25 @@ def _is_table(value: Any) -> bool:
     return _is_array(value) and value.ndim > 0
 
 
+def _is_doubles(value: Any) -> bool:
+    """Of an array that is reckoned with before rationals are: narrow numbers round, whole ones overflow."""
+    return _is_table(value) and value.dtype.kind == "f" and value.dtype.itemsize == 8
+
+
+def _is_wide(value: Any) -> bool:
+    """Of coordinates of somebody's shape, which may be whole."""
+    return _is_table(value) and value.dtype.itemsize == 8
+
+
 def _is_whole(value: Any) -> bool:
-    return _is_table(value) and value.dtype.kind in "iu"
+    return _is_table(value) and value.dtype.kind == "i" and value.dtype.itemsize >= 4
 
 
 def _or_none(kind: _Kind) -> _Kind:
     return (lambda value: value is None or kind[0](value)), f"{kind[1]} or None"
 
 
-def _columns(count: int, is_so: Callable[[Any], bool] = _is_table) -> _Kind:
+def _columns(count: int, is_so: Callable[[Any], bool] = _is_doubles) -> _Kind:
     return (lambda value: is_so(value) and value.shape[1:] == (count,)), f"rows of {count} numbers"
 
 
@@ -68,8 +78,8 @@ _COUNT: _Kind = (lambda value: type(value) is int and 0 <= value < 2**31), "a wh
 _PLACES = _several(lambda value: type(value) is int, "whole numbers")
 _ROW: _Kind = _is_row, "a row of numbers"
 _ARRAY: _Kind = _is_array, "an array of numbers"
-_TABLE: _Kind = _is_table, "an array of numbers"
-_WHOLE: _Kind = _is_whole, "an array of whole numbers"
+_TABLE: _Kind = _is_doubles, "an array of doubles"
+_WHOLE: _Kind = _is_whole, "an array of signed whole numbers, of 32 bits or more"
 _WORD: _Kind = (lambda value: isinstance(value, str)), "a word"
 _SEVERAL: _Kind = (lambda value: isinstance(value, (tuple, list))), "a tuple"
 _STATES = _several(lambda value: isinstance(value, GraspState), "states")
@@ -81,13 +91,13 @@ _PLANAR: _Kind = (lambda value: isinstance(value, Grasp) and value.dimension == 
 _SPATIAL: _Kind = (lambda value: isinstance(value, Grasp) and value.dimension == 3), "a Grasp in space"
 _POINT: _Kind = (lambda value: _is_table(value) and value.shape == (2,)), "a point"
 _PLACE: _Kind = (lambda value: _is_table(value) and value.shape == (3,)), "a point"
-_POINTS = _columns(2)
+_POINTS = _columns(2, _is_wide)
 _RINGS = _several(_POINTS[0], "rings")
 _OUTLINE: _Kind = (
     (lambda v: _POINTS[0](v) and len(v) > 2 and bool(np.isfinite(v).all())),
     "three points or more",
 )
-_CUBICS: _Kind = (lambda v: _is_table(v) and v.shape[1:] == (4, 2)), "rows of 4 control points"
+_CUBICS: _Kind = (lambda v: _is_wide(v) and v.shape[1:] == (4, 2)), "rows of 4 control points"
 
 
 def read(owner: object, name: str) -> Any:
@@ -172,7 +182,7 @@ def _check_shape(claim: Any, **more: _Kind) -> None:
 
 def _is_surface(value: Any) -> bool:
     is_pair = isinstance(value, (tuple, list)) and len(value) == 2
-    return is_pair and _columns(3)[0](value[0]) and _columns(3, _is_whole)[0](value[1])
+    return is_pair and _columns(3, _is_wide)[0](value[0]) and _columns(3, _is_whole)[0](value[1])
 
 
 def _check_proof(proof: Any, where: str) -> None:
@@ -182,11 +192,13 @@ def _check_proof(proof: Any, where: str) -> None:
     _check(proof, where, min_distance=_DOUBLE, number=_WHOLE, twists=_TABLE, children=_columns(2, _is_whole))
     if is_there(proof, "normals"):
         _check(proof, where, corners=_TABLE, normals=_TABLE, spans=_WHOLE, halves=_WHOLE, boxes=_WHOLE)
+        _check(proof, where, together=_or_none(_TABLE))
         return
     _check(proof, where, vertices=_TABLE, centre_of_mass=_TABLE, sides=_TABLE, arcs=_WHOLE, ends=_TABLE)
     _check(proof, where, pairs=_or_none(_WHOLE), seconds=_or_none(_TABLE), control=_or_none(_TABLE))
     _check(proof, where, rings=_or_none(_WHOLE), margin=_DOUBLE, tied=_or_none(_TABLE))
     _check(proof, where, movers=_or_none(_WHOLE), motions=_or_none(_TABLE))
+    _check(proof, where, max_force=_or_none(_DOUBLE), min_normal=_DOUBLE)
 
 
 def _check_regions(regions: Any) -> None:
@@ -205,8 +217,8 @@ def _check_face_regions(regions: Any) -> None:
     _check(regions, "", grasp=_SPATIAL, max_force=_DOUBLE, patches=_SEVERAL, radius=_DOUBLE, radii=_TABLE)
     _check(regions, "", loads=_TABLE, moments=_TABLE, tilts=_TABLE, focus=_TABLE, forces=_TABLE)
     for k, patch in enumerate(regions.patches):
-        if not _is_table(patch):
-            raise InvalidInput(f"patches[{k}] of a plan must be an array of numbers, got {shown(patch)}")
+        if not _is_doubles(patch):
+            raise InvalidInput(f"patches[{k}] of a plan must be an array of doubles, got {shown(patch)}")
     _check_shape(regions)
 
 

@@ -177,12 +177,21 @@ def test_limits_of_a_proof_that_are_touched_are_seen(objective: str) -> None:
         ({"min_normal": -0.1}, "limits on forces must be 0 or more"),
         ({"max_force": np.nan}, "limits on forces must be 0 or more"),
         ({"size": "force", "norm": "sum"}, "the sizes of the four norms"),
+        # what squares of forces cost is more than squares of their normal parts
+        ({"size": "normal", "norm": "squares"}, "the sizes of the four norms"),
         ({"norm": "largest", "pairs": np.zeros((0, 2), int), "seconds": np.zeros((0, 3))}, "one twist a box"),
     ],
 )
 def test_limits_that_are_none_are_refused(changes, words: str) -> None:
     proof = replace(chosen("sum_normal").certificate, **changes)
     assert words in str(rg.verify(proof).violations)
+
+
+@pytest.mark.parametrize("name", ["max_force", "min_normal"])
+def test_limits_are_numbers(name: str) -> None:
+    for value in ("1", 1j, [1.0], np.ones(1)):
+        with pytest.raises(rg.InvalidInput, match=f"{name} of a plan must be a number"):
+            rg.verify(replace(chosen("sum_normal").certificate, **{name: value}))
 
 
 def test_doubles_decide_nearly_all_boxes_and_none_wrongly() -> None:

@@ -55,6 +55,25 @@ def test_the_limit_is_that_of_work_over_most_work() -> None:
     assert said(moving([[0, 0.0625, -1, 0, 4], ABOUT[1]], bound=3.0)) != ""
 
 
+def test_many_twists_of_one_box_are_left_to_rationals() -> None:
+    """Doubles lose a little of each in a sum; rationals find the same."""
+    for times, clear in (100, True), (101, False):
+        for motions, good in (ABOUT, True), (ABOUT[::-1], False):
+            proof = moving(motions * times, [(0, load) for load in (0, 1)] * times)
+            judged = _Checked(proof)
+            assert (judged.violations() == []) == good
+            assert judged.clear.tolist() == [clear and good]
+
+
+def test_of_many_fingers_they_are_refused_before_their_corners_are_counted() -> None:
+    nodes = [(everything([(0, 0, 1.0)], 40), (0, 0), 0, (0.0, 0.0, 0.0))]
+    given = {"size": "force", "norm": "largest", "sides": np.array([(0, 0, 1.0)]), "bound": 1.0}
+    more = {"movers": np.array([(0, 0)]), "motions": np.zeros((1, 83))}
+    assert said(planar(SQUARE, LOADS, nodes, **given, **more)) == (
+        "proof: twists that move go with up to 7 fingers"
+    )
+
+
 def test_a_search_finds_them() -> None:
     """The same finger and loads, friction of any size: a turn about the finger for each load, as above."""
     for friction in 0.75, 0.01, 0.0:

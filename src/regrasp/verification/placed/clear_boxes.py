@@ -11,6 +11,7 @@ from regrasp.verification.placed.protocol import Proof
 _ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
 _SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them
 _AT_ONCE = 20_000  # stretches of sides
+_ADDED = 200  # gains of a box: their sum loses less than what is taken from each
 
 
 class Edges(Protocol):
@@ -96,6 +97,7 @@ def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
     sure = np.zeros(len(arcs), bool)
     sure[box[good]] = True
     sure[box[~good & (box >= 0) & (box < len(arcs))]] = False
+    sure[np.bincount(box[good], minlength=len(arcs)) > _ADDED] = False
     rows = np.flatnonzero(good)
     for some in np.split(rows, range(_AT_ONCE, len(rows), _AT_ONCE)):
         at, motions = box[some], np.asarray(proof.motions)[some]

@@ -40,6 +40,8 @@ from regrasp.verification.placed.whole_sets import Most, is_excluded, ties_of
 
 Arc = tuple[int, int, float, float]
 
+_MOST_MOVING = 7  # fingers: 2^7 corners, or 3^7 coefficients of a polynomial of degree 2
+
 
 def check_proof(proof: Proof) -> list[str]:
     """What is wrong with the tree of boxes or with what excludes them, in words; nothing for a proof."""
@@ -70,6 +72,8 @@ def _shapes(proof: Proof) -> list[str]:
         q = len(proof.movers)
         columns = 3 + 2 * k if proof.control is None else (3 + k) * terms_of(k)
         wanted += [("movers", proof.movers, (q, 2)), ("motions", proof.motions, (q, columns))]
+        if k > _MOST_MOVING:
+            return [f"proof: twists that move go with up to {_MOST_MOVING} fingers"]
         if proof.motions is None or proof.norm != "largest" or proof.size == "margin":
             return ["proof: twists that move go with boxes, a largest force and no margin"]
         if proof.control is not None and proof.size != "force":

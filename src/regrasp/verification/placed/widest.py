@@ -58,7 +58,8 @@ def widest_wrong(proof: Widest, regions: Any, rings: list[Array], edges: list[in
     shapes: _Shapes = ((k,), (count, k, 2), (count, k), (count, 3), (count, 3))
     if any(a.shape != shape for a, shape in zip(arrays, shapes, strict=True)):
         return ["the proof of the widest has parts missing"]
-    if not 0 < width < inf or not all(np.isfinite(a).all() for a in arrays):
+    finite = 0 <= regions.max_force < inf and all(np.isfinite(a).all() for a in arrays)
+    if not (0 < width < inf and finite):
         return ["the proof of the widest has numbers that are none to compute with"]
     places, cells, at, loads, twists = (a.tolist() for a in arrays)
     vertices = np.concatenate(rings)

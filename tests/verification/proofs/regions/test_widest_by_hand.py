@@ -143,6 +143,13 @@ def test_the_load_is_one_of_those_held_and_forces_are_those_of_the_limit() -> No
     assert "may hold its load" in said(replace(regions, grasp=slippery))
 
 
+def test_without_a_limit_nothing_is_the_widest() -> None:
+    regions = found()
+    free = rg.Grasp(c.changed(max_force=None) for c in regions.grasp)
+    for limit in (inf, nan):
+        assert "none to compute with" in said(replace(regions, max_force=limit, grasp=free))
+
+
 def test_no_such_proof_is_one_on_a_curve() -> None:
     shape = rg.Outline.ellipse(2, 1)
     grasp = rg.Grasp(shape.contact_at(s * shape.length, friction=0.6) for s in (0.7, 0.8))

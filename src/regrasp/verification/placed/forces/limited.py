@@ -18,6 +18,7 @@ from regrasp.verification.placed.protocol import Chosen, Point, Proof
 from regrasp.verification.placed.roots import root_above, root_below
 
 _ROUNDING = 1e-13  # of the terms of a sum
+_NORMS = ("normal", "sum"), ("normal", "largest"), ("force", "largest"), ("force", "squares")
 Parts = Sequence[Sequence[Point]]
 """Of each finger (a, c) at the ends of its sides."""
 
@@ -145,7 +146,7 @@ def wrong_limits(proof: Proof) -> list[str]:
     largest = proof.min_normal if proof.max_force is None else proof.max_force
     if not 0 <= proof.min_normal <= largest < float("inf"):
         return ["proof: limits on forces must be 0 or more, the least no more than the largest"]
-    if proof.size == "margin" or (proof.size, proof.norm) == ("force", "sum"):
+    if (proof.size, proof.norm) not in _NORMS:
         return ["proof: limits on forces go with the sizes of the four norms"]
     others = (proof.pairs, proof.tied, proof.movers)
     return ["proof: limits on forces go with one twist a box"] if any(o is not None for o in others) else []

@@ -25,7 +25,7 @@ def together_wrong(proof: Any, rows: Rows, boxes: np.ndarray) -> list[str]:
     """What is wrong with boxes whose twists are rows of ``together``, in words."""
     if not len(boxes):
         return []
-    twists = getattr(proof, "together", None)
+    twists = proof.together
     if twists is None:
         return ["proof: a box has no load"]
     if proof.norm != "largest":
