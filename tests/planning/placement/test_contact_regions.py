@@ -133,7 +133,6 @@ def test_what_has_no_regions_is_refused() -> None:
         ({"shape": rg.Outline.ellipse(2, 1)}, "is not on the outline"),
         ({"load": rg.Wrench([0, 0])}, "max_force"),
         ({"widest": "largest"}, "together, least, product"),
-        ({"widest": "least", "shape": rg.Outline.ellipse(2, 1)}, "for polygons"),
         ({"grasp": rg.Grasp([rg.Contact([9, 9], [1, 0], 0.5), rg.Contact([0, 0], [1, 0], 0.5)])}, "no side"),
     ):
         asked = {"shape": BRACKET, "grasp": GRASP, "load": RING} | more

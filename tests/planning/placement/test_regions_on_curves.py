@@ -25,6 +25,29 @@ def fails(places: np.ndarray, limit: float) -> bool:
     return False
 
 
+def test_longer_least_arcs_and_larger_products_hold_too() -> None:
+    chosen = rg.choose_grasp(PEAR, 2, LOADS, friction=0.6, objective="peak", tolerance=0.02)
+    together, least, product_of = (
+        rg.contact_regions(PEAR, chosen.grasp, LOADS, widest=w) for w in ("together", "least", "product")
+    )
+    assert least.widths.min() > 1.2 * together.widths.min()
+    assert product_of.widths.prod() > 1.7 * together.widths.prod()
+    assert product_of.widths.prod() > least.widths.prod()
+    assert product_of.widths.min() < least.widths.min()
+    rng = np.random.default_rng(4)
+    for regions in (least, product_of):
+        assert regions.max_force == together.max_force
+        assert regions.half_width <= together.half_width
+        assert (regions.arcs[:, 0] <= regions.places).all()
+        assert (regions.places <= regions.arcs[:, 1]).all()
+        assert not any(fails(rng.uniform(*regions.arcs.T), regions.max_force) for _ in range(60))
+        assert rg.verify(regions).ok
+        longer = replace(regions, arcs=regions.arcs + [-0.01, 0.01])
+        assert any("another arc" in v or "longer than" in v for v in rg.verify(longer).violations)
+        wider = replace(regions, half_width=together.half_width)
+        assert any("less than the half width" in v for v in rg.verify(wider).violations)
+
+
 def test_every_choice_within_regions_on_a_curve_holds() -> None:
     chosen = rg.choose_grasp(PEAR, 2, LOADS, friction=0.6, objective="peak", tolerance=0.02)
     regions = rg.contact_regions(PEAR, chosen.grasp, LOADS)

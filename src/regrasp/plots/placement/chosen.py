@@ -104,11 +104,11 @@ def plot_contact_regions(
             look.set_gid(gid)
             ax.add_line(look)
         words = f"{name} {short(float(f'{width:.3g}'))} {units.length}"
-        handles.append(Line2D([], [], color=colour, linewidth=4, label=words))
+        handles.append(_bar(colour, words))
     half = f"{short(float(f'{regions.half_width:.3g}'))} {units.length}"
     handles += [
-        Line2D([], [], color=GREY, linewidth=4, label=f"all off by {half} at once"),
-        Line2D([], [], color=GREY, linewidth=7, alpha=0.3, label="one finger alone"),
+        _bar(GREY, f"all off by {half} at once"),
+        _bar(GREY, "one finger alone", linewidth=7, alpha=0.3),
     ]
     legend(ax, handles, ncols=2)
     return ax
@@ -123,6 +123,12 @@ def _arc(regions: ContactRegions, contact: Contact, off: Array, place: float) ->
     return result
 
 
+def _bar(colour: str, words: str, linewidth: float = 4, alpha: float = 1.0) -> Line2D:
+    """A sample for the legend that ends before its words begin."""
+    look = {"linewidth": linewidth, "alpha": alpha, "solid_capstyle": "butt"}
+    return Line2D([], [], color=colour, label=words, **look)
+
+
 def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:
     """In the legend, how far each finger may be off, and while the others are not, and all at once."""
     radii, alone = (
@@ -134,8 +140,7 @@ def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:
     ]
     words.append(f"all off by {radii[-1]} {units.length} at once")
     colours = [*contact_colours(regions.grasp).values(), GREY]
-    lines = [Line2D([], [], color=c, linewidth=4, label=w) for c, w in zip(colours, words, strict=True)]
-    legend(ax, lines, ncols=1)  # two are wider than a column
+    legend(ax, list(map(_bar, colours, words)), ncols=1)  # two are wider than a column
 
 
 def _cone(ax: Axes, contact: Contact, length: float, colour: str) -> None:

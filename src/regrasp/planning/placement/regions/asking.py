@@ -68,9 +68,11 @@ def contact_regions(
         max_force: limit on every force, beside those of the contacts, of which the least counts for all [N];
             three times the least that the grasp needs if there is none.
         widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
-            ``product`` of all arcs; the last two on polygons. How wide a least arc can be is proven
+            ``product`` of all arcs. On polygons how wide a least arc can be is proven
             (``ContactRegions.widest``); the product is found by trading one end of an arc for others while
-            that helps, which nothing proves the largest.
+            that helps, which nothing proves the largest. On curves both are what some eighty questions
+            find, from regions that are wide together; on a mesh the least radius is that of all together,
+            and the product, of the areas of the polygons, is sought as on curves.
 
     Raises:
         Infeasible: Where the grasp itself does not hold the loads.
@@ -90,13 +92,10 @@ def contact_regions(
     given = min(limits, default=None)
     if not isinstance(widest, str) or widest not in WIDEST:
         raise InvalidInput(f"widest must be one of {', '.join(WIDEST)}; got {shown(widest)}")
-    straight = isinstance(shape, Outline) and isinstance(shape.boundary, PolygonBoundary)
-    if widest != "together" and not straight:
-        raise InvalidInput(f"widest {widest!r} is for polygons; on other shapes regions are wide together")
     if isinstance(shape, Mesh):
-        return regions_on_faces(shape, grasp, check_space(shape, load), given)
+        return regions_on_faces(shape, grasp, check_space(shape, load), given, widest)
     check_planar(load)
     _, loads = inner_and_outer(load, 1e-3)
     if not isinstance(shape.boundary, PolygonBoundary):
-        return on_curve(CurvedPlaces(shape, grasp, loads), given)
+        return on_curve(CurvedPlaces(shape, grasp, loads), given, widest)
     return on_sides(shape, grasp, loads, given, widest)

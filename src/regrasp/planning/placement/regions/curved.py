@@ -9,6 +9,7 @@ forces for p, in its own cone and within the limit. Finger by finger this proves
 The shorter parts are, the less it loses: a box that is not proven so is halved into cells, up to some number.
 """
 
+from collections.abc import Callable
 from itertools import product
 
 import numpy as np
@@ -25,6 +26,7 @@ from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.planning.placement.regions.growing import farthest, moved_out
 from regrasp.planning.placement.regions.needs import LESS, limit_of
+from regrasp.planning.placement.regions.seeking import Seeking
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides, moved
 from regrasp.planning.states.choosing import choose_state
@@ -33,7 +35,7 @@ ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
 _BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
 _CELLS, _STATES = 16, 4096  # at most
 _LITTLE = 0.02  # parts that turn by less are not halved [rad]
-_ON_CURVES = 11  # halvings
+_ON_CURVES, _OUT = 11, 6  # halvings, those after a search
 _STEEP = 1.3  # angles of forces to a chord's normal of no more are tried [rad]
 
 
@@ -146,7 +148,7 @@ class CurvedPlaces:
         return tuple(states)
 
 
-def on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
+def on_curve(around: CurvedPlaces, given: float | None, widest: str) -> ContactRegions:
     """What ``contact_regions`` finds on a smooth outline."""
     at, k = around.places, len(around.places)
     single = np.stack([at, at], axis=1)
@@ -163,6 +165,9 @@ def on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
         last = at[i] + far * ways[end]
         box[i, end] = at[i] + (1 - LESS) * (moved_out(holds, box, i, end, last, _ON_CURVES) - at[i])
         alone[i, end] = (1 - LESS) * abs(moved_out(holds, single, i, end, last, _ON_CURVES) - at[i])
+    if widest != "together":
+        box = _sought(holds, at, box, far, widest)
+        half = min(half, float(np.abs(box - single).min()))
     cells = around.cells(around.spans(box), limit)
     if cells is None:
         raise Infeasible("the regions found were left without forces by rounding")
@@ -171,6 +176,28 @@ def on_curve(around: CurvedPlaces, given: float | None) -> ContactRegions:
         limit * (1 + LESS), tuple(s for cell in cells for s in around.states(cell, limit * (1 + LESS))),
         read_only(around.spans(box)), read_only(np.array(cells)),
     )  # fmt: skip
+
+
+def _sought(holds: Callable[[Array], bool], at: Array, box: Array, far: float, widest: str) -> Array:
+    """A box of a longer least arc or a larger product of arcs, if one is found."""
+    ways: Array = np.array([-1.0, 1.0])
+
+    def there(off: Array) -> Array:
+        return at[:, None] + off.reshape(-1, 2) * ways
+
+    def score(off: Array) -> float:
+        return float(np.log(np.maximum(off[::2] + off[1::2], 1e-12 * far)).sum())
+
+    start = np.abs(box - at[:, None]).ravel()
+    seeking = Seeking(lambda off: holds(there(off)), np.full(len(start), far))
+    if widest == "product":
+        return there(seeking.product(start, score))
+    found = there(seeking.least(start))
+    if np.ptp(found, axis=1).min() <= np.ptp(box, axis=1).min():
+        return box
+    for i, end in product(range(len(at)), range(2)):
+        found[i, end] = moved_out(holds, found, i, end, at[i] + far * ways[end], _OUT)
+    return found
 
 
 def _turned(tangents: Array) -> tuple[Array, float, float]:

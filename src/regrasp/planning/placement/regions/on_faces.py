@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from itertools import product
-from math import atan, inf, prod, sqrt, tan
+from math import atan, inf, log, prod, sqrt, tan
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.planning.placement.regions.needs import LESS, ON_EDGE, limit_of
+from regrasp.planning.placement.regions.seeking import Seeking
 from regrasp.planning.placement.sides import moved
 from regrasp.planning.placement.space.face_pieces import FacePlace, place_on
 from regrasp.planning.states.choosing import choose_state
@@ -26,11 +27,12 @@ _HALVINGS, _OWN_HALVINGS = 9, 5
 _KEPT = 1e-3  # of friction, given up so that what a search leaves of the balance can be made good
 _ROUNDING = 1e-12  # of forces, as if they were off by so much
 _PRECISE = 5e-2  # of efforts: any forces do
+_NO_AREA = 1e-24  # in sizes
 _ROUNDS, _MORE = 8, 1.1  # of moments, and by how much more than needed is tried next
 
 
-def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None) -> FaceRegions:
-    """What ``contact_regions`` finds on a mesh."""
+def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None, widest: str) -> FaceRegions:
+    """What ``contact_regions`` finds on a mesh. The radius of all together is the largest least one, too."""
     search = _Regions(mesh, grasp, loads)
     grasp = search.grasp
     limit = search.limit = limit_of(search.need(), given, grasp, loads)
@@ -43,6 +45,9 @@ def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None
     for i in range(k):
         radii[i] = _farthest(partial(search.holds_with, radii, i), radius, far, _OWN_HALVINGS)
         alone[i] = _farthest(partial(search.holds_with, none, i), radius, far, _OWN_HALVINGS)
+    if widest == "product":
+        radii = Seeking(search.holds, none + far).product(radii, search.log_areas)
+        radius = min(radius, float(radii.min()))
     ends = [
         float(np.linalg.norm(p - c.position, axis=1).max())
         for p, c in zip(search.patches(alone), grasp, strict=True)
@@ -93,6 +98,14 @@ class _Regions:
             place.piece(float(r), sides) if r > 0 else place.point[None]
             for place, r in zip(self.places, radii, strict=True)
         ]
+
+    def log_areas(self, radii: Array) -> float:
+        """The sum of logarithms of the polygons' areas, in sizes."""
+        total = 0.0
+        for patch, place in zip(self.patches(radii), self.places, strict=True):
+            x, y = ((patch - place.point) @ place.axes.T / self.size).T
+            total += log(max(0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1)), _NO_AREA))
+        return total
 
     def holds(self, radii: Array) -> bool:
         """Whether every choice within so far of the places holds all loads, as far as it can be proven."""
