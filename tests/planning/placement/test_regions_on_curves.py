@@ -42,7 +42,7 @@ def test_longer_least_arcs_and_larger_products_hold_too() -> None:
         assert (regions.places <= regions.arcs[:, 1]).all()
         assert not any(fails(rng.uniform(*regions.arcs.T), regions.max_force) for _ in range(60))
         assert rg.verify(regions).ok
-        longer = replace(regions, arcs=regions.arcs + [-0.01, 0.01])
+        longer = replace(regions, arcs=regions.arcs + np.array([-0.01, 0.01]))
         assert any("another arc" in v or "longer than" in v for v in rg.verify(longer).violations)
         wider = replace(regions, half_width=together.half_width)
         assert any("less than the half width" in v for v in rg.verify(wider).violations)

@@ -53,6 +53,35 @@ def test_every_choice_within_regions_holds_and_not_within_wider_ones() -> None:
     assert fails[4.0] > 5
 
 
+def test_the_least_radius_is_that_of_all_and_products_of_areas_are_larger() -> None:
+    together = on_faces()
+    least, product_of = (
+        rg.contact_regions(together.shape, together.grasp, WEIGHT, widest=w) for w in ("least", "product")
+    )
+    assert least == together
+    assert least.radii.min() == least.radius
+    assert area(product_of) > 1.05 * area(together)
+    assert product_of.radius == product_of.radii.min() <= together.radius
+    assert rg.verify(product_of).ok
+    rng = np.random.default_rng(3)
+    for _ in range(40):
+        assert holds(
+            [rng.dirichlet(np.full(len(p), 0.2)) @ p for p in product_of.patches], product_of.max_force
+        )
+    for wrong, words in (
+        (replace(product_of, radii=together.radii), "does not end there"),
+        (replace(product_of, radius=together.radius), "radius of all"),
+        (replace(product_of, forces=together.forces), "equilibrium"),
+    ):
+        assert any(words in v for v in rg.verify(wrong).violations), (words, rg.verify(wrong))
+
+
+def area(regions: rg.FaceRegions) -> float:
+    """Product of the areas of polygons in planes z."""
+    x, y = np.array([p.T[:2] for p in regions.patches]).transpose(1, 0, 2)
+    return float(abs(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1).prod())
+
+
 def test_regions_are_discs_but_where_faces_end() -> None:
     box = rg.Mesh.box(0.4, 0.3, 0.5)
     places = [[-0.1, -0.08, -0.25], [0.1, -0.08, -0.25], [0, 0.149, -0.25]]  # 1 mm from an edge

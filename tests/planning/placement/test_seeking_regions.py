@@ -22,12 +22,12 @@ def test_the_least_arc_is_nearly_the_longest() -> None:
         return ways[0] <= 0.5 and ways[3] <= 0.3 and ways.sum() <= 5.0
 
     start = np.full(4, 0.3)
-    found = Seeking(holds, np.full(4, 9.0)).least(start)
+    found = Seeking(holds, np.full(4, 9.0), 80).least(start)
     assert holds(found)
     assert (found >= 0).all()
     assert np.allclose(found[::2] + found[1::2], found[0] + found[1])
     assert 2.2 < found[0] + found[1] <= 2.5
-    assert len(asked) <= 81
+    assert len(asked) <= 80
 
 
 def test_the_product_is_nearly_the_largest() -> None:
@@ -37,7 +37,7 @@ def test_the_product_is_nearly_the_largest() -> None:
         return bool((ways[:2].sum() + 3 * ways[2:].sum()) <= 6.0)
 
     start = np.array([0.6, 0.6, 0.8, 0.8])
-    found = Seeking(holds, np.full(4, 9.0)).product(start, score)
+    found = Seeking(holds, np.full(4, 9.0), 80).product(start, score)
     assert holds(found)
     assert score(found) > score(start) + 0.3
     assert score(found) > np.log(0.97 * 3.0 * 1.0)
@@ -53,12 +53,12 @@ def test_nothing_is_asked_twice_or_beyond_the_longest_and_what_holds_stays() -> 
         return False
 
     start = np.array([1.0, 1.0, 0.9, 0.8])
-    assert Seeking(holds, np.full(4, 1.2)).product(start, score).tolist() == start.tolist()
-    few = Seeking(holds, np.full(4, 1.2), left=3)
+    assert Seeking(holds, np.full(4, 1.2), 80).product(start, score).tolist() == start.tolist()
+    few = Seeking(holds, np.full(4, 1.2), 3)
     refused.clear()
     few.product(start, score)
     assert len(refused) == 3
     refused.clear()
-    least = Seeking(holds, np.full(4, 1.2)).least(start)
+    least = Seeking(holds, np.full(4, 1.2), 80).least(start)
     assert least[0] + least[1] == least[2] + least[3] == pytest.approx(1.7)
     assert (least <= start + 1e-12).all()

@@ -125,8 +125,7 @@ def _arc(regions: ContactRegions, contact: Contact, off: Array, place: float) ->
 
 def _bar(colour: str, words: str, linewidth: float = 4, alpha: float = 1.0) -> Line2D:
     """A sample for the legend that ends before its words begin."""
-    look = {"linewidth": linewidth, "alpha": alpha, "solid_capstyle": "butt"}
-    return Line2D([], [], color=colour, label=words, **look)
+    return Line2D([], [], color=colour, label=words, linewidth=linewidth, alpha=alpha, solid_capstyle="butt")
 
 
 def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:

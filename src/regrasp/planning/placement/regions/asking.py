@@ -70,7 +70,7 @@ def contact_regions(
         widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
             ``product`` of all arcs. On polygons how wide a least arc can be is proven
             (``ContactRegions.widest``); the product is found by trading one end of an arc for others while
-            that helps, which nothing proves the largest. On curves both are what some eighty questions
+            that helps, which nothing proves the largest. On curves both are what up to a hundred questions
             find, from regions that are wide together; on a mesh the least radius is that of all together,
             and the product, of the areas of the polygons, is sought as on curves.
 

@@ -26,7 +26,7 @@ from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.planning.placement.regions.growing import farthest, moved_out
 from regrasp.planning.placement.regions.needs import LESS, limit_of
-from regrasp.planning.placement.regions.seeking import Seeking
+from regrasp.planning.placement.regions.seeking import MOST, Seeking
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides, moved
 from regrasp.planning.states.choosing import choose_state
@@ -189,15 +189,18 @@ def _sought(holds: Callable[[Array], bool], at: Array, box: Array, far: float, w
         return float(np.log(np.maximum(off[::2] + off[1::2], 1e-12 * far)).sum())
 
     start = np.abs(box - at[:, None]).ravel()
-    seeking = Seeking(lambda off: holds(there(off)), np.full(len(start), far))
-    if widest == "product":
-        return there(seeking.product(start, score))
+    seeking = Seeking(lambda off: holds(there(off)), np.full(len(start), far), MOST[widest])
     found = there(seeking.least(start))
-    if np.ptp(found, axis=1).min() <= np.ptp(box, axis=1).min():
-        return box
-    for i, end in product(range(len(at)), range(2)):
-        found[i, end] = moved_out(holds, found, i, end, at[i] + far * ways[end], _OUT)
-    return found
+    if np.ptp(found, axis=1).min() < 1.001 * np.ptp(box, axis=1).min():  # where it began, by rounding
+        found = box
+    else:
+        for i, end in product(range(len(at)), range(2)):
+            found[i, end] = moved_out(holds, found, i, end, at[i] + far * ways[end], _OUT)
+    if widest == "least":
+        return found
+    start, other = (np.abs(each - at[:, None]).ravel() for each in (box, found))
+    seeking.left = MOST[widest]
+    return there(seeking.product(max(start, other, key=score), score))
 
 
 def _turned(tangents: Array) -> tuple[Array, float, float]:

@@ -16,7 +16,7 @@ from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.planning.placement.regions.needs import LESS, ON_EDGE, limit_of
-from regrasp.planning.placement.regions.seeking import Seeking
+from regrasp.planning.placement.regions.seeking import MOST, Seeking
 from regrasp.planning.placement.sides import moved
 from regrasp.planning.placement.space.face_pieces import FacePlace, place_on
 from regrasp.planning.states.choosing import choose_state
@@ -46,7 +46,7 @@ def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None
         radii[i] = _farthest(partial(search.holds_with, radii, i), radius, far, _OWN_HALVINGS)
         alone[i] = _farthest(partial(search.holds_with, none, i), radius, far, _OWN_HALVINGS)
     if widest == "product":
-        radii = Seeking(search.holds, none + far).product(radii, search.log_areas)
+        radii = Seeking(search.holds, none + far, MOST[widest]).product(radii, search.log_areas)
         radius = min(radius, float(radii.min()))
     ends = [
         float(np.linalg.norm(p - c.position, axis=1).max())

@@ -10,7 +10,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 
-MOST = 80  # questions
+MOST = {"least": 80, "product": 50}  # questions; those about a product twice, for the least come first
 _STEPS = (0.5, 0.25, 0.12, 0.06, 0.03)  # of widths
 _BETTER = 0.01  # least gain
 
@@ -18,7 +18,7 @@ _BETTER = 0.01  # least gain
 class Seeking:
     """Questions about boxes no longer than ``most``, which are answered by ``holds``, so many at most."""
 
-    def __init__(self, holds: Callable[[Array], bool], longest: Array, left: int = MOST) -> None:
+    def __init__(self, holds: Callable[[Array], bool], longest: Array, left: int) -> None:
         self.holds, self.longest, self.left = holds, longest, left
         self._refused: list[Array] = []
 
