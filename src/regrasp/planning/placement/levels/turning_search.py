@@ -2,6 +2,7 @@
 
 from collections import deque
 from contextlib import suppress
+from copy import deepcopy
 from math import log
 
 import numpy as np
@@ -26,17 +27,19 @@ def closed_by_turning(
 ) -> tuple[Search, float]:  # fmt: skip
     """A search that excludes more, and a level that no placement is beyond.
 
-    First one that is some way from the best, then nearer: what is closed is a bound where the next search is
-    cut short.
+    First one that is some way from the best, then nearer, from the boxes that this took: what is closed is a
+    bound where the next is cut short.
 
     search: that ended with ``best`` and ``beyond``, of forces on curves; it is returned where no more is
     excluded.
     """
     programs = most // 3**search.fingers
     kept, steps = search.placements(), max(int(log(_FAR / tolerance, _NEARER)), 0)
+    begun = search.anew()
+    begun.narrow = _COARSE
     with suppress(KeyboardInterrupt):
         for step in range(steps, -1, -1):
-            turning = _Turning(search.anew(), level, best, tolerance * _NEARER**step, programs)
+            turning = _Turning(begun, level, best, tolerance * _NEARER**step, programs)
             if step and turning.aim >= beyond:
                 continue
             try:
@@ -48,6 +51,10 @@ def closed_by_turning(
                 search, beyond = turning.search, turning.aim
             if not closed:
                 break
+            begun = deepcopy(turning.search)
+            begun.take([])
+            begun.moving.clear()
+            begun.reopen()
     search.take(kept)
     level.put(search, beyond)
     return search, beyond
@@ -59,7 +66,6 @@ class _Turning:
     def __init__(self, search: Search, level: Level, best: float, tolerance: float, programs: int) -> None:
         self.search, self.level, self.best, self.tolerance = search, level, best, tolerance
         self.programs = programs
-        search.narrow = _COARSE
         self.limit = level.max_force * (1 + _STRICT)
         self.twists = TurningTwists(search.fingers)
         self.aim = level.beyond(best, tolerance)
