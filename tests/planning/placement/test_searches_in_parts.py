@@ -1,4 +1,4 @@
-"""Large searches in parts, on one thread and on more: the same answer, number by number, with a proof."""
+"""Large searches in parts, on one thread and on more: the same answer and proof; and all of it is told."""
 
 from _thread import interrupt_main
 from threading import Timer
@@ -9,6 +9,7 @@ import pytest
 
 import regrasp as rg
 from regrasp.planning.placement import parts
+from regrasp.planning.placement.search import Search
 
 pytestmark = pytest.mark.laws
 
@@ -75,3 +76,32 @@ def test_an_interrupt_within_a_round_leaves_a_whole_proof(monkeypatch: pytest.Mo
     assert rounds
     assert cut.gap > 1e-6
     assert rg.verify(cut)
+
+
+@pytest.mark.parametrize("objective", ["sum_normal", "force", "friction_use", "wrench"])
+@pytest.mark.parametrize("shape", [C, rg.Outline.ellipse(2, 1)], ids=["C", "ellipse"])
+def test_every_step_of_a_search_is_told(
+    monkeypatch: pytest.MonkeyPatch, objective: str, shape: rg.Outline
+) -> None:
+    steps: list[str] = []
+
+    def told(name: str) -> None:
+        inside = getattr(Search, name)
+
+        def noted(*given: Any, **more: Any) -> Any:
+            steps.append(name)
+            return inside(*given, **more)
+
+        monkeypatch.setattr(Search, name, noted)
+
+    told("goes_on")
+    told("box")
+    more: dict[str, Any] = {} if objective == "sum_normal" else {"max_force": 4.0}
+    more |= {"disturbance": LOADS} if objective == "wrench" else {}
+    rg.choose_grasp(
+        shape, 2, rg.Wrench([0, -1]), friction=0.5, objective=objective, tolerance=3e-3, most_boxes=3000,
+        progress=lambda *_: steps.append("progress"), **more,
+    )  # fmt: skip
+    between = " ".join(steps).split("progress")
+    assert max(part.count("goes_on") for part in between) == 1
+    assert max(part.count("box") for part in between) <= 3  # looked at, measured and split

@@ -66,6 +66,7 @@ class _Moving:
         room = room_to_move(len(search.loads), search.fingers)
         while waiting:
             node = waiting.popleft()
+            told()
             arcs, ends = search.box(node)
             if (arcs[:, 0] != arcs[:, 1]).any():
                 break
@@ -83,7 +84,6 @@ class _Moving:
                 if not inside:
                     break
                 waiting += inside
-            told()
 
     def _try(self, places: np.ndarray, u: Array) -> None:
         """Go on from a placement that is better."""

@@ -88,7 +88,9 @@ class TiedSearch:
         heap = [(-beyond, i, node) for i, node in enumerate(left)]
         made, programs = len(heap), most // _BOXES
         while heap and -heap[0][0] > self.aim and self.solved < programs:
-            node = heappop(heap)[2]
+            bounded, _, node = heappop(heap)
+            if progress is not None:
+                progress(-bounded, self.best)
             spread = self._bounded(node)
             if spread is None:
                 continue
@@ -103,8 +105,6 @@ class TiedSearch:
             for child in inside:
                 made += 1
                 heappush(heap, (-bound[0], made, child))
-            if progress is not None:
-                progress(max(self.aim, -heap[0][0]), self.best)
 
     def _bounded(self, node: int) -> Array | None:
         """Exclude a box: None; or note its best bound, and how far (k,) centres of pressure are apart."""

@@ -97,6 +97,8 @@ class _Turning:
         search, waiting = self.search, deque(self.search.left.tolist())
         while waiting and self.programs > 0:
             node = waiting.popleft()
+            if progress is not None:
+                progress(self.level.value(known), self.level.value(self.best))
             arcs, ends = search.box(node)
             if (arcs[:, 0] != arcs[:, 1]).any():
                 break
@@ -110,8 +112,6 @@ class _Turning:
             i = int(lengths.argmax())
             if lengths[i] > _NARROW * search.sides.size:
                 waiting += search.halved(node, i, float(ends[i].mean()), most)
-            if progress is not None:
-                progress(self.level.value(known), self.level.value(self.best))
 
     def _better(self, places: np.ndarray, u: Array) -> None:
         """Go on from a placement that is better, and from those that are better still."""

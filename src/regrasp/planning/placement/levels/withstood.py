@@ -87,16 +87,22 @@ class WithstoodLevel(AnsweredLevel):
         found = search.anew()
         found.narrow = inf  # until one side is left of each finger
         limit, going = self.max_force * (1 + STRICT), True
+
+        def batch() -> bool:
+            if progress is not None:
+                progress(beyond, max((-placed[0] for placed in known), default=nan))
+            return found.goes_on(limit, 0.0, most, only=True)
+
         self.put(found, max((-placed[0] for placed in known), default=0.0))
         for _ in range(_BATCHES):
-            going = going and found.goes_on(limit, 0.0, most, only=True)
+            going = going and batch()
         for places, u in self._others(found, known):
             known.append((-self._factor(search, places, u), places, u))
         known[:] = sorted((p for p in known if p[0] <= 0), key=lambda placed: placed[0])
         known += [self._climbed(search, placed, tolerance) for placed in known[:_CLIMBED]]
         self.put(found, self.beyond(max((-placed[0] for placed in known), default=0.0), tolerance))
         while going:
-            going = found.goes_on(limit, 0.0, most, only=True)
+            going = batch()
 
         def factor(places: np.ndarray, u: Array) -> float:
             return self._factor(search, places, u)
