@@ -5,11 +5,14 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.planning.placement.levels import turning_search
+from regrasp.planning.placement.levels.climbing import improved
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.verification.placed.cubic import CubicEdges
 
@@ -181,6 +184,24 @@ def test_units_and_turns_change_nothing() -> None:
         assert found.value == pytest.approx(base.value, rel=1e-3)
         assert found.bound <= base.value * (1 + 1e-9)
         assert base.bound <= found.value * (1 + 1e-9)
+
+
+def test_a_search_ends_where_no_friction_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Normals on the line of the load: a use of 0, which every level beyond it is, too."""
+    calls = iter(range(100))
+
+    def counted(*given: Any) -> Any:
+        assert next(calls, None) is not None, "the best placement was found again and again"
+        return improved(*given)
+
+    monkeypatch.setattr(turning_search, "improved", counted)
+    drop = rg.Outline.smooth([[0.9, 0], [0, 1.2], [-1.3, 0], [0, -1.1]])
+    asked: dict[str, Any] = {"objective": "friction_use", "max_force": 10, "most_boxes": 200}
+    found = rg.choose_grasp(drop, 2, rg.Wrench([1.2, 0], 0.15), friction=0.5, **asked)
+    assert next(calls) > 0  # it is this search that found it
+    assert found.value < 1e-5
+    assert str(found.bound) == "0.0"
+    assert rg.verify(found).ok
 
 
 @pytest.mark.parametrize("radius", [0.6, 2.0])

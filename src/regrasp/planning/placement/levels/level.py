@@ -119,7 +119,7 @@ class FrictionLevel(Level):
 
     def value(self, level: float) -> float:
         """The use of friction [-] or the angle margin [rad]."""
-        return min(level, atan(self.friction)) if self.angle else max(-level, 0.0)
+        return min(level, atan(self.friction)) if self.angle else max(0.0, -level)
 
     def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
         """The states of the loads."""

@@ -68,7 +68,7 @@ class _Turning:
         self.programs = programs
         self.limit = level.max_force * (1 + _STRICT)
         self.twists = TurningTwists(search.fingers)
-        self.aim = level.beyond(best, tolerance)
+        self.aim, self.top = level.beyond(best, tolerance), level.top(search)
 
     def close(self, placements: list[Placed], most: int, known: float, progress: Progress | None) -> bool:
         """Whether no box is left. The aim is a level that no placement is beyond, where the search is closed.
@@ -77,6 +77,8 @@ class _Turning:
         """
         search, level = self.search, self.level
         self.settle(placements)
+        if self.aim >= self.top:
+            return False
         while search.goes_on(self.limit, 0.0, most, only=True):
             if progress is not None:
                 progress(level.value(known), level.value(self.best))
@@ -95,7 +97,7 @@ class _Turning:
     def run(self, most: int, known: float, progress: Progress | None) -> None:
         """Exclude or split boxes."""
         search, waiting = self.search, deque(self.search.left.tolist())
-        while waiting and self.programs > 0:
+        while waiting and self.programs > 0 and self.aim < self.top:
             node = waiting.popleft()
             if progress is not None:
                 progress(self.level.value(known), self.level.value(self.best))
@@ -117,7 +119,10 @@ class _Turning:
         """Go on from a placement that is better, and from those that are better still."""
         search, level = self.search, self.level
         level.put(search, self.aim)
-        while search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
+        # at the top no friction is left to do without: the level there is held, and so is each beyond it
+        while self.aim < self.top:
+            if not search.are_apart(places, u) or search.norm_at(places, u) > level.max_force * (1 - SURE):
+                break
             self.best, places, u = improved(search, level, self.aim, places, u)
             search.forget(self.best, places, u)
             self.aim = level.beyond(self.best, self.tolerance)
