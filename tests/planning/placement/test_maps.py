@@ -5,6 +5,7 @@ import pytest
 
 import regrasp as rg
 from refusals import refusal
+from regrasp.mesh import parts
 
 pytestmark = pytest.mark.oracle
 
@@ -103,3 +104,8 @@ def test_maps_of_other_numbers_of_fingers_are_refused() -> None:
     ):
         said = refusal(lambda given=given: rg.placement_map(BRACKET, LOADS, friction=0.5, **given))  # type: ignore[misc]
         assert words in str(said)
+
+
+def test_a_map_of_a_mesh_names_the_verb_for_it() -> None:
+    said = refusal(lambda: rg.placement_map(parts.bracket(), rg.Wrench([0, -1]), friction=0.5))  # type: ignore[arg-type]
+    assert "must be an Outline (surface_map is for meshes)" in str(said)

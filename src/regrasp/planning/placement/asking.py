@@ -85,8 +85,8 @@ def _deviations(disturbance: LoadSet) -> Array:
     return disturbance.vertices
 
 
-def check_task(shape: Outline, load: Wrench | LoadSet) -> None:
+def check_task(shape: Outline, load: Wrench | LoadSet, expected: str = "an Outline or a Mesh") -> None:
     """``InvalidInput`` for what is no outline or no load of the plane."""
     if not isinstance(shape, Outline):
-        raise InvalidInput(f"shape must be an Outline or a Mesh, got {shown(shape)}")
+        raise InvalidInput(f"shape must be {expected}, got {shown(shape)}")
     check_planar(load)

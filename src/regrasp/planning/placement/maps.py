@@ -104,7 +104,7 @@ def placement_map(
     Raises:
         InvalidInput: For arguments that are not what they must be.
     """
-    check_task(shape, load)
+    check_task(shape, load, "an Outline (surface_map is for meshes)")
     mu, goal = number(friction, "friction", least=0), law_of(objective)
     stays = array(fixed, "fixed", (None,))
     whole(free, "free", least=1, most=2)
