@@ -161,7 +161,13 @@ def check_claim(claim: Any) -> None:
         grasp, places = (_SPATIAL, _columns(3)) if in_space else (_PLANAR, _ROW)
         _check(claim, "", objective=_WORD, value=_DOUBLE, bound=_DOUBLE, places=places, states=_STATES)
         _check(claim, "", others=_SEVERAL, max_force=_or_none(_DOUBLE), min_normal=_DOUBLE)
-        _check(claim, "", length=_or_none(_DOUBLE), deviations=_or_none(_columns(3)), grasp=grasp)
+        _check(
+            claim,
+            "",
+            length=_or_none(_DOUBLE),
+            deviations=_or_none(_columns(6 if in_space else 3)),
+            grasp=grasp,
+        )
         for k, other in enumerate(claim.others):
             _check(other, f"others[{k}]", value=_DOUBLE)
         _check_proof(claim.certificate, "certificate")

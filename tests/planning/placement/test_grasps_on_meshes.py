@@ -180,7 +180,11 @@ def test_without_friction_or_load_nothing_is_held_beside_a_load() -> None:
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"objective": "angle", "max_force": 3.0}, r"objective 'angle' has no bound on meshes"),
+        ({"objective": "force", "max_force": 3.0}, r"objective 'force' has no bound on meshes"),
+        (
+            {"objective": "wrench_ball", "max_force": 3.0},
+            r"objective 'wrench_ball' has no bound on meshes",
+        ),
         ({"load": rg.Wrench([0, -1])}, r"the shape is in space and load in the plane; give a load in space"),
         ({"shape": rg.Mesh.sphere(1.0)}, r"a smooth mesh has no bound"),
         (

@@ -204,7 +204,8 @@ def test_what_a_grasp_on_a_mesh_claims() -> None:
     (state,) = good.states
     other = rg.GraspState(state.grasp, 1.001 * state.load, 1.001 * state.forces)
     assert "a load of the proof has no state" in said(replace(good, states=(other,)))
-    assert "has no bound on meshes" in said(replace(good, objective="angle", max_force=4.0))
+    for goal in ("force", "wrench", "wrench_ball"):
+        assert "has no bound on meshes" in said(replace(good, objective=goal, max_force=4.0))
     assert "the proof is about another mesh" in said(replace(good, shape=SQUARE))
     assert "the proof is about another mesh" in said(replace(good, shape=rg.Mesh.box(0.041, 0.03, 0.05)))
     pair = rg.Grasp(list(grasp)[:2])

@@ -51,7 +51,9 @@ def level_of(
         loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
         if loads is not None and not loads.any() and goal != "force":
             raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")
-        asked = inner_and_outer(load, 0.1)[0] / [1, 1, length]
+        asked = inner_and_outer(load, 0.1)[0] / (
+            [1, 1, length] if load.dimension == 2 else [1] * 3 + [length] * 3
+        )
         size = float(np.abs(asked).max())
         if size and limit > _FARTHEST * size:
             raise InvalidInput(
@@ -66,7 +68,7 @@ def level_of(
             f"objective {goal!r} takes one load, a Wrench, on top of which the disturbance comes"
         )
     level = WithstoodLevel if goal == "wrench" else AnsweredLevel
-    return level(limit, load.vector, _deviations(disturbance))
+    return level(limit, load.vector, _deviations(disturbance, load.dimension))
 
 
 def length_of(goal: str, length: float | None, shape: Outline) -> float:
@@ -77,9 +79,11 @@ def length_of(goal: str, length: float | None, shape: Outline) -> float:
     return reach if length is None else number(length, "length", above=0)
 
 
-def _deviations(disturbance: LoadSet) -> Array:
-    if not isinstance(disturbance, LoadSet) or disturbance.dimension != 2 or disturbance.vertices is None:
-        raise InvalidInput(f"disturbance must be a planar LoadSet.hull, got {shown(disturbance)}")
+def _deviations(disturbance: LoadSet, dimension: int) -> Array:
+    of = isinstance(disturbance, LoadSet) and disturbance.dimension == dimension
+    if not of or disturbance.vertices is None:
+        what = "a planar LoadSet.hull" if dimension == 2 else "a LoadSet.hull in space"
+        raise InvalidInput(f"disturbance must be {what}, got {shown(disturbance)}")
     if not disturbance.vertices.any(axis=1).all():
         raise InvalidInput("every vertex of disturbance must be a deviation, other than zero")
     return disturbance.vertices

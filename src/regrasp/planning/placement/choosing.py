@@ -71,7 +71,8 @@ def choose_grasp(
 
     Args:
         shape: a polygon or a smooth outline, where contacts are on its outer boundary unless ``in_holes``, or
-            a mesh of flat faces. On a mesh the objectives are the first four, and of the options
+            a mesh of flat faces. On a mesh the objectives are the first four, ``friction_use``, ``angle`` and
+            ``answered``, with ``max_force`` and ``disturbance`` for these three alone; of the options
             ``tolerance``, ``min_distance``, ``from_corners``, ``most_boxes`` and ``progress``.
         fingers: how many, 2 to 4; all alike.
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
@@ -158,10 +159,11 @@ def choose_grasp(
         unused = {
             name: value is not None and value is not False and value != 0 for name, value in named.items()
         }
+        loads, reach = check_space(shape, load, goal, unused), float(np.linalg.norm(points, axis=1).max())
         return choose_on_mesh(
-            shape, fingers, check_space(shape, load, goal, unused), mu, goal, law, tolerance=tolerance,
-            apart=DISTINCT * float(np.linalg.norm(points, axis=1).max()) if apart is None else apart,
-            away=away, most=cap, progress=progress,
+            shape, fingers, loads, mu, goal, law, tolerance=tolerance,
+            apart=DISTINCT * reach if apart is None else apart, away=away, most=cap, progress=progress,
+            level=level_of(goal, mu, load, max_force, disturbance, reach),
         )  # fmt: skip
     most = CONSTRAINED_BOXES if constraints.unbounded else MOST_BOXES
     if most_boxes is not None:

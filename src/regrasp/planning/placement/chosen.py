@@ -161,7 +161,7 @@ class ChosenGrasp(ArrayValue):
             (PlacementProof if flat else PatchProof).from_dict(given["certificate"]),
             None if limit is None else number(limit, "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
-            None if deviations is None else array(deviations, "deviations", (None, 3)),
+            None if deviations is None else array(deviations, "deviations", (None, 3 if flat else 6)),
             None if given.get("length") is None else number(given["length"], "length", above=0),
         )
         if "digest" in given and given.pop("digest") != _digest(given):

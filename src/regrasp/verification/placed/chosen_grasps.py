@@ -10,7 +10,14 @@ from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.claims.contacts import check_places, check_spots
 from regrasp.verification.placed.claims.levels import check_level
-from regrasp.verification.placed.claims.meanings import CLOSE, LARGEST, LEVELS, MEANINGS, power_of
+from regrasp.verification.placed.claims.meanings import (
+    CLOSE,
+    LARGEST,
+    LEVELS,
+    MEANINGS,
+    SPACE_LEVELS,
+    power_of,
+)
 from regrasp.verification.placed.forces.limited import others_limits
 from regrasp.verification.placed.meshes.areas import part_of_surface, share_on
 from regrasp.verification.placed.meshes.surfaces import check_surface_proof
@@ -44,7 +51,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     in_space = hasattr(proof, "normals")
     if not in_space and chosen.objective != "wrench" and proof.tied is not None:
         broken.append(f"the proof is of forces tied by stiffness, not of {chosen.objective}")
-    if in_space and chosen.objective in LEVELS:
+    if in_space and chosen.objective in LEVELS and chosen.objective not in SPACE_LEVELS:
         broken.append(f"objective {chosen.objective!r} has no bound on meshes")
     elif wrong := _check_proof(proof):
         broken += wrong

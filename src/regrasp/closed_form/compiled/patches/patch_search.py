@@ -219,7 +219,7 @@ def _loop(digest: str) -> Any:
         bound them (N,), -1 for none. state: numbers of boxes, of those in the heap, of placements tried, of
         patches, of rows, of what was looked at, of rows of ``together``, of boxes whose loads were taken
         together, and of those excluded so. found: (1 + 6 k) the least value and its spots. together:
-        (T, L, 6) twists of all loads; room: for them.
+        (T, L, 6) twists of all loads; room: for them. tolerance: where below 0, what is found ends it.
         """
         _ = digest
         patches, bounds, twists, critical, kinds, children, places, fingers, joined = boxes
@@ -258,6 +258,10 @@ def _loop(digest: str) -> Any:
             if value < found[0]:
                 for c in range(6 * k + 1):
                     found[c] = tried[row, c]
+                if tolerance < 0.0:
+                    push(heap, state[1], bounds, box)
+                    state[1] += 1
+                    return PAUSED
                 level = found[0] * (1.0 - tolerance)
             if bounds[box] < level and norm == LARGEST and 1 < len(loads) <= LOADS:
                 _locate(spans, radius, patches[box], first, count, wide)

@@ -1,6 +1,7 @@
 """Choosing where the fingers go on a mesh."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from math import inf, sqrt
 from types import MappingProxyType
 
@@ -16,9 +17,11 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.clear import clear_faces
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
-from regrasp.planning.placement.laws import LEVELS, Law
+from regrasp.planning.placement.laws import LARGEST, LEVELS, Law
+from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel, Level
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.search import Progress
+from regrasp.planning.placement.space.climbing import Climb
 from regrasp.planning.placement.space.patches import patches_of
 from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, MOST_LOOKS, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state
@@ -26,6 +29,7 @@ from regrasp.planning.states.criteria import ChosenState
 
 FROM_EDGES = 1e-3
 """Default distance of fingers from sharp edges, as a fraction of the root of the surface's area."""
+SPACE_LEVELS = ("friction_use", "angle", "answered")
 _ATTEMPTS = 20  # placements whose forces are computed, the best first, until one has them
 _AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found is at the edge of what holds
 _DIFFERENT = 0.05  # of the root of the area
@@ -44,16 +48,18 @@ def check_space(
         raise InvalidInput(f"load must be a Wrench or a LoadSet, got {shown(load)}")
     if load.dimension != 3:
         raise InvalidInput("the shape is in space and load in the plane; give a load in space")
-    if goal in LEVELS:
+    if goal in LEVELS and goal not in SPACE_LEVELS:
         raise InvalidInput(
-            f"objective {goal!r} has no bound on meshes: sum_normal, peak_normal, peak and effort have"
+            f"objective {goal!r} has no bound on meshes: sum_normal, peak_normal, peak, effort, "
+            f"{' and '.join(SPACE_LEVELS)} have"
         )
     if shape.smooth:
         raise InvalidInput(
             "a smooth mesh has no bound: its normals turn within a face; give Mesh(vertices, faces), whose "
             "faces are flat"
         )
-    unknown = [name for name, there in given.items() if there]
+    of_levels = ("max_force", "disturbance") if goal in SPACE_LEVELS else ()
+    unknown = [name for name, there in given.items() if there and name not in of_levels]
     if unknown:
         raise InvalidInput(f"{', '.join(unknown)}: on outlines only, and the shape is a mesh")
     if isinstance(load, Wrench):
@@ -65,19 +71,29 @@ def check_space(
 
 def choose_on_mesh(
     shape: Mesh, fingers: int, loads: Array, friction: float, objective: str, law: Law, *, tolerance: float,
-    apart: float, away: float | None, most: int | None, progress: Progress | None,
+    apart: float, away: float | None, most: int | None, progress: Progress | None, level: Level | None = None,
 ) -> ChosenGrasp:  # fmt: skip
     """The best places on the faces; the arguments are those of ``choose_grasp``, checked."""
     root = sqrt(shape.area)
     corners, normals = clear_faces(shape, FROM_EDGES * root if away is None else away)
     if not len(corners):
         raise InvalidInput("from_corners leaves no place for a finger: no face reaches so far from its edges")
+    boxes, looks = (MOST_BOXES, MOST_LOOKS) if most is None else (most, inf)
     half = 0.5 * tolerance / law.power
-    search = SurfaceSearch(patches_of(corners, normals), fingers, friction, loads, law, apart, half)
+    search = SurfaceSearch(
+        patches_of(corners, normals), fingers, friction, loads, law, apart, half,
+        None if level is None else level.max_force,
+    )  # fmt: skip
+    if isinstance(level, FrictionLevel | AnsweredLevel):
+        climb = Climb(search, level, tolerance)
+        if isinstance(level, AnsweredLevel):
+            climb.put(1.0)
+        few = _on_samples(corners, normals, search)
+        climb.run([spots for _, spots in few.placements()[:_OTHERS]], _NARROW, boxes, looks, progress)
+        return _at_level(climb, shape, loads, friction, objective, _DIFFERENT * root)
     few = _on_samples(corners, normals, search)
     for _, spots in few.placements()[:_OTHERS]:
         search.accept(spots)
-    boxes, looks = (MOST_BOXES, MOST_LOOKS) if most is None else (most, inf)
     looks = -1 if few.interrupted else looks  # some boxes, for a bound, and no more after an interrupt
     search.run(half, boxes, _NARROW, progress, looks)
     power = law.power
@@ -97,6 +113,50 @@ def choose_on_mesh(
             _others(search, few, spots, objective, shape, _DIFFERENT * root), _proof(search, bound),
         )  # fmt: skip
     raise _none_holds(search)
+
+
+def _at_level(
+    climb: Climb, shape: Mesh, loads: Array, friction: float, objective: str, least: float
+) -> ChosenGrasp:
+    """The best placement of a climb, with the proof that none is beyond."""
+    search, level = climb.search, climb.level
+    limit = level.max_force
+    if not climb.kept:
+        what = "hold the loads"
+        if not search.closed:
+            what = "were found to hold the loads; that there are none is not proven"
+        raise Infeasible(
+            f"no {search.fingers} fingers anywhere on this mesh {what}, with friction {friction:g} and "
+            f"forces of at most {limit:g} N",
+            _proof(search, float(np.nextafter(limit, inf)) if search.closed else 0.0),
+        )
+    found: list[tuple[Array, Grasp, Sequence[GraspState], float]] = []
+    for reached, spots in climb.kept[::-1][:_ATTEMPTS]:
+        if any(_apart(spots, other[0]) < least for other in found):
+            continue
+        with suppress(RegraspError):
+            grasp = _grasp(spots, friction)
+            shown = level.shown(grasp, objective, loads, reached)
+            found += [] if shown is None else [(spots, grasp, *shown)]
+    if not found:
+        raise Infeasible(
+            "placements that hold the loads are so few that rounding decides, and none of those tried has "
+            "forces inside the cones and the limit"
+        )
+    spots, grasp, states, value = found[0]
+    bound = level.value(climb.beyond)
+    bound = max(bound, value) if objective in LARGEST else min(bound, value)
+    trivial = not search.closed or bound == 0.0
+    others = [
+        OtherGrasp(grasp, read_only(at[:, :3] + shape.centre_of_mass), there)
+        for at, grasp, _, there in found[1 : 1 + _OTHERS]
+    ]
+    return ChosenGrasp(
+        shape, objective, grasp, tuple(GraspState(s.grasp, s.load, s.forces) for s in states), value, bound,
+        read_only(spots[:, :3] + shape.centre_of_mass), tuple(others),
+        _proof(search, 0.0 if trivial else float(np.nextafter(limit, inf))), max_force=limit,
+        deviations=read_only(level.deviations.copy()) if isinstance(level, AnsweredLevel) else None,
+    )  # fmt: skip
 
 
 def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> SurfaceSearch:

@@ -19,6 +19,8 @@ _AT_A_TIME, _ROWS = 512, 3000  # boxes, on so many rows
 _TRIED = 4096
 _PRECISE, _TRY_PRECISE = 1e-3, 1e-6
 _SAFE = 1e-9  # of a bound, given up to rounding
+_STRICT = 1e-9  # of a limit, by which excluded boxes must be above it
+_NEVER_TOGETHER = 1 << 40
 _STEP, _SHORTEST = 0.2, 1e-5  # of slides, of the size
 HELD = 1e-2
 """Of ``NEVER``: a load is held by less, so by forces of at most a thousand times its size."""
@@ -30,7 +32,8 @@ _GAINED = 0.01  # a placement better by so much is worth a slide
 class SurfaceSearch:
     """A search for the best places of fingers on patches.
 
-    apart: least distance of fingers [m]. precise: how near each bound is to the best for its box, a fraction.
+    apart: least distance of fingers [m]. tolerance: of which bounds of boxes may be off a tenth, a fraction.
+    limit: of forces, where a level is sought at which they are below it [N].
     """
 
     def __init__(
@@ -42,22 +45,19 @@ class SurfaceSearch:
         law: Law,
         apart: float,
         tolerance: float,
+        limit: float | None = None,
     ) -> None:
         from regrasp.closed_form.compiled.patches.patch_gauge import NEVER
+        from regrasp.closed_form.compiled.patches.patch_joint import LOADS, room_together
+        from regrasp.closed_form.compiled.patches.patch_search import spare
 
-        self.patches, self.fingers, self.friction = patches, fingers, friction
-        self.loads, self.law, self.apart = loads, law, apart
+        self.patches, self.fingers, self.law, self.apart = patches, fingers, law, apart
         self.size = float(np.linalg.norm(patches.rows[:, :3], axis=1).max()) or 1.0
         self._unit = np.repeat([1.0, self.size], 3)
-        self.unit = float(np.abs(loads / self._unit).max()) or 1.0
-        self._wanted = np.ascontiguousarray(-loads / self._unit / self.unit)
-        # two fingers hold no torque about their line, and three hold nothing aside without friction
-        every = fingers > 2 and friction >= _SLIPPERY and loads.any()
-        aside = np.vstack([np.eye(6), np.full(6, -1.0)]) * (_ASIDE if every else 0.0)
-        self._trials = np.vstack([self._wanted, (self._wanted[:, None] + aside).reshape(-1, 6)])
-        size, norm = law.codes()
-        self._law = (friction, size, norm, min(0.1 * tolerance, _PRECISE))
-        self._usable = kept_friction(friction, 2 * RESERVE)
+        self.unit = limit or float(np.abs(loads / self._unit).max()) or 1.0
+        self._precision = min(0.1 * tolerance, _PRECISE) if limit is None else _TRY_PRECISE
+        self.put(friction, loads)
+        self._spare, self._for_all = spare(fingers), room_together(min(len(loads), LOADS))
         rows = patches.rows / [self.size, self.size, self.size, 1, 1, 1]
         room = 2 * len(patches.spans) + _FIRST_BOXES
         self._rows = _room(rows, len(rows) + 3 * room)
@@ -73,6 +73,20 @@ class SurfaceSearch:
         self._tried = np.zeros((_TRIED, 1 + 6 * fingers))
         self.closed = self.interrupted = False
 
+    def put(self, friction: float, loads: Array) -> None:
+        """From now on with this friction, under these loads (L, 6) [N, N m].
+
+        What has bounded boxes must still: friction gets less, or loads go on away from the first of them.
+        """
+        self.friction, self.loads = friction, loads
+        self._wanted = np.ascontiguousarray(-loads / self._unit / self.unit)
+        # two fingers hold no torque about their line, and three hold nothing aside without friction
+        every = self.fingers > 2 and friction >= _SLIPPERY and loads.any()
+        aside = np.vstack([np.eye(6), np.full(6, -1.0)]) * (_ASIDE if every else 0.0)
+        self._trials = np.vstack([self._wanted, (self._wanted[:, None] + aside).reshape(-1, 6)])
+        self._law = (friction, *self.law.codes(), self._precision)
+        self._usable = kept_friction(friction, 2 * RESERVE)
+
     def run(
         self, tolerance: float, most: int, narrow: float, progress: Progress | None, looks: float = inf
     ) -> None:
@@ -82,21 +96,12 @@ class SurfaceSearch:
 
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
-        from regrasp.closed_form.compiled.patches.patch_joint import LOADS, room_together
-        from regrasp.closed_form.compiled.patches.patch_search import search, spare
         from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL
 
-        room = room_together(min(len(self._wanted), LOADS))
-        each = max(_AT_A_TIME * _ROWS // max(_ROWS, len(self.patches.rows)), 1)  # lest an interrupt waits
-        memory, slid, due = spare(self.fingers), inf, _FIRST_BOXES
+        slid, due = inf, _FIRST_BOXES
         try:
             while True:
-                ended = search(
-                    self._surface, self._radius, self._wanted, self._trials,
-                    self._law, self._usable, tolerance, self.apart / self.size, narrow, self._boxes,
-                    self._heap, self._state, self._found, self._tried, each, memory,
-                    self._together, room,
-                )  # fmt: skip
+                ended = self._some(tolerance, narrow)
                 if self._found[0] < slid * (1 - _GAINED) or self.count >= due:
                     fine = ended == CLOSED or self.count >= due
                     self._slide(_STEP, _SHORTEST if fine else 0.1 * _STEP)
@@ -111,6 +116,72 @@ class SurfaceSearch:
             self.interrupted = True
             if self.best == inf:
                 raise
+
+    def _some(self, tolerance: float, narrow: float) -> int:
+        from regrasp.closed_form.compiled.patches.patch_search import search
+
+        each = max(_AT_A_TIME * _ROWS // max(_ROWS, len(self.patches.rows)), 1)  # lest an interrupt waits
+        return int(search(
+            self._surface, self._radius, self._wanted, self._trials, self._law, self._usable, tolerance,
+            self.apart / self.size, narrow, self._boxes, self._heap, self._state, self._found, self._tried,
+            each, self._spare, self._together, self._for_all,
+        ))  # fmt: skip
+
+    def begin_level(self, *, together: bool) -> None:
+        """Look for a placement with forces up to the limit; whether loads may be taken together."""
+        self._found[0] = 1.0
+        self._state[7] = 0 if together else _NEVER_TOGETHER
+
+    def goes_on(self, narrow: float, most: int, looks: float) -> bool:
+        """Some more boxes at a level. False where none is left, or no room for more of them."""
+        from regrasp.closed_form.compiled.places.placement_search import CLOSED, FULL
+
+        ended = self._some(-_STRICT, narrow)
+        self.closed = ended == CLOSED
+        return not self.closed and self._state[5] <= looks and (ended != FULL or self._grow(most))
+
+    @property
+    def found(self) -> Array | None:
+        """The spots (k, 6) [m] of a placement with forces up to the limit; None before there is one."""
+        scale = [self.size, self.size, self.size, 1, 1, 1]
+        return self._found[1:].reshape(-1, 6) * scale if self._found[0] < 1.0 else None
+
+    def pass_over(self) -> None:
+        """Try no placement of the box that comes next: its fingers in one place are none."""
+        self._boxes[6][self._heap[0]] = self._boxes[6][self._heap[0], :1]
+
+    def excludes(self, boxes: np.ndarray) -> bool:
+        """Whether each of some boxes holds no loads by forces up to the limit, as the search stands now."""
+        from regrasp.closed_form.compiled.patches.patch_search import search
+
+        for box in boxes:
+            one = tuple(values[box : box + 1] for values in self._boxes)
+            one[1][0], one[4][0], one[8][0] = 0.0, 0, -1
+            state = np.array([1, 1, 0, *self._state[3:5], 0, 0, 0, 0])
+            search(
+                self._surface, self._radius, self._wanted, self._trials, self._law, self._usable, -_STRICT,
+                0.0, 0.0, one, np.zeros(1, np.int64), state, np.full(len(self._found), 1.0), self._tried[:1],
+                0, self._spare, self._together, self._for_all,
+            )  # fmt: skip
+            if one[4][0] == 0:
+                return False
+        return True
+
+    @property
+    def left(self) -> np.ndarray:
+        """Numbers of boxes not excluded: not looked at, or too small to be split; the least bound first."""
+        open_ones = np.flatnonzero(self._boxes[4][: self.count] == 0)
+        return open_ones[np.argsort(self._boxes[1][open_ones], kind="stable")]
+
+    def slid(self, spots: Array) -> tuple[float, Array]:
+        """The norm [N] and the spots (k, 6) [m] that fingers come to by sliding from these."""
+        found = self._found.copy()
+        self._found[1:] = self._scaled(spots).ravel()
+        self._found[0] = self._value(self._scaled(spots))
+        self._slide(0.1 * _STEP, _SHORTEST)
+        norm, at = self.best, self._found[1:].reshape(-1, 6) * [self.size, self.size, self.size, 1, 1, 1]
+        self._found[:] = found
+        return norm, at
 
     @property
     def _surface(self) -> tuple[np.ndarray, ...]:
@@ -221,6 +292,8 @@ class SurfaceSearch:
         number = np.where(split, 0, np.where(kinds == 3, -1, critical))
         number[rows] = -2 - np.arange(len(rows))
         twists = np.where(split[:, None] | (number < -1)[:, None], 0.0, twists / self._unit)
+        strongest = (-twists @ self.loads.T).argmax(axis=1)
+        number = np.where(split | (number < 0), number, strongest)
         return {
             "spans": spans,
             "halves": self._tree[:p],

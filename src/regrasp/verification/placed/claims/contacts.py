@@ -25,12 +25,12 @@ def check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:
     for contact in chosen.grasp:
         if not touches(proof, contact):
             broken.append(f"contact {contact.name} is on none of the faces that the proof is about")
-        if contact.friction > proof.friction:
+        if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")
     positions = chosen.grasp.positions
     if _nearest(positions) < proof.min_distance - float(RESOLUTION) * np.abs(positions).max():
         broken.append("two contacts are nearer than the least distance")
-    if not _all_shown(chosen, np.asarray(proof.loads)):
+    if chosen.objective not in ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
     return broken + _off_their_places(chosen, np.asarray(chosen.places) - shape.centre_of_mass)
 

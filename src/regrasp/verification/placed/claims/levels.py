@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 from math import atan, hypot, inf, sin
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,9 @@ def check_level(chosen: Chosen, proof: Proof) -> list[str]:
         return broken
     if chosen.objective == "wrench_ball" and (broken := check_ball(chosen, chosen.max_force)):
         return broken
-    beyond = proof.bound >= chosen.max_force if proof.margin else proof.bound > chosen.max_force
+    beyond = (
+        proof.bound >= chosen.max_force if getattr(proof, "margin", 0.0) else proof.bound > chosen.max_force
+    )
     if not beyond:  # forces of the limit itself are allowed; a search cut short proves what needs no proof
         return check_trivial(chosen, proof, chosen.max_force)
     mu = min(c.friction for c in chosen.grasp)
@@ -77,11 +80,18 @@ def check_trivial(chosen: Chosen, proof: Proof, limit: float) -> list[str]:
     elif chosen.objective == "wrench_ball":
         proven = chosen.bound >= len(chosen.grasp) * limit * hypot(1.0, mu)
     else:  # k forces make no larger wrench than k times the limit, at the largest lever
-        levers = np.array([1.0, 1.0, Touching(proof).reach])
+        levers = _levers(proof)
         most = len(chosen.grasp) * limit * levers
         center, deviations = np.asarray(proof.loads)[0], np.asarray(chosen.deviations)
         proven = bool((np.abs(center + deviations * chosen.bound) >= most).any())
     return [] if proven else ["the proof proves no bound"]
+
+
+def _levers(proof: Any) -> Array:
+    """The largest wrench that a force of size 1 makes, of each component."""
+    if hasattr(proof, "normals"):
+        return np.repeat([1.0, float(np.linalg.norm(proof.corners, axis=2).max())], 3)
+    return np.array([1.0, 1.0, Touching(proof).reach])
 
 
 def _scaled(chosen: Chosen, loads: Array, factor: float) -> bool:

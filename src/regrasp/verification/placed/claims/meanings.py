@@ -15,6 +15,7 @@ MEANINGS = {
     "wrench_ball": ("normal", "largest"),
 }
 LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
+SPACE_LEVELS = ("friction_use", "angle", "answered")  # those that meshes have bounds for
 LARGEST = ("angle", "force", "answered", "wrench", "wrench_ball")  # what is best as large as can be
 ANY_LOAD = ("answered", "wrench", "wrench_ball")  # their proofs have loads that no state holds
 CLOSE = 1e-9  # of a value, the same in another order of the sums

@@ -1,0 +1,136 @@
+"""Climbing to the best level on a surface, where placements raise it and boxes are excluded at it."""
+
+from dataclasses import dataclass, field
+from math import inf, nan
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel
+from regrasp.planning.placement.search import Progress
+from regrasp.planning.placement.space.surface_search import SurfaceSearch
+
+SpaceLevel = FrictionLevel | AnsweredLevel
+_SURE = 1e-6  # of the limit, more than norms are uncertain by
+_HALVINGS, _EXACT = 40, 1e-9  # of a level of a placement
+_SLIDES, _SLOW = 8, 1e-4  # of a placement, while each gains so much of its level
+_SETTLING, _NEARER = 16, 2
+
+
+@dataclass
+class Climb:
+    """A search for the best level: the placements found, the best last, and what none is beyond."""
+
+    search: SurfaceSearch
+    level: SpaceLevel
+    tolerance: float
+    beyond: float = inf
+    kept: list[tuple[float, Array]] = field(default_factory=list)
+
+    def put(self, level: float) -> None:
+        """Search at this level from now on."""
+        if isinstance(self.level, FrictionLevel):
+            self.search.put(self.level.coefficient(level), self.search.loads)
+        else:
+            self.search.put(self.search.friction, self.level.loads(level))
+
+    @property
+    def top(self) -> float:
+        """A level that no placement reaches, or the largest there is."""
+        if isinstance(self.level, FrictionLevel):
+            return self.level.top(self.search)  # type: ignore[arg-type]
+        reach = np.repeat([1.0, self.search.size], 3) * self.search.fingers * self.level.max_force
+        with np.errstate(divide="ignore"):
+            factors = (reach + np.abs(self.level.center)) / np.abs(self.level.deviations)
+        return 2.0 * float(factors.min(axis=1).min(initial=inf))
+
+    @property
+    def best(self) -> float | None:
+        """The best level found."""
+        return self.kept[-1][0] if self.kept else None
+
+    def run(
+        self, starts: list[Array], narrow: float, most: int, looks: float, progress: Progress | None
+    ) -> None:
+        """Until no placement can be better by ``tolerance``, or ``most`` boxes are used."""
+        search, aim = self.search, self.level.start
+        self.put(aim)
+        search.begin_level(together=isinstance(self.level, FrictionLevel))
+        try:
+            for spots in starts:
+                aim = self._raised(aim, spots)
+            going = True
+            while going and aim < self.top:
+                going = search.goes_on(narrow, most, looks)
+                if search.found is not None:
+                    before, going = aim, True
+                    aim = self._raised(aim, search.found)
+                    if aim == before:  # found by rounding alone
+                        search.pass_over()
+                if progress is not None:
+                    best = nan if self.best is None else self.level.value(self.best)
+                    progress(self.level.value(self.top), best)
+            self.beyond = self._settled(aim)
+        except KeyboardInterrupt:
+            search.closed, search.interrupted, self.beyond = False, True, self.top
+            if not self.kept:
+                raise
+
+    def _holds(self, spots: Array) -> bool:
+        return self.search.norm_at(spots) <= self.level.max_force * (1 - _SURE)
+
+    def _raised(self, aim: float, spots: Array) -> float:
+        """The level to look for next, as a placement is found at ``aim``."""
+        best = -inf
+        for _ in range(_SLIDES):
+            reached = self._reached(aim, spots)
+            if reached > best:
+                best, at = reached, spots
+            aim = max(aim, self.level.beyond(best, _SLOW)) if best > -inf else aim
+            self.put(aim)
+            norm, spots = self.search.slid(spots)
+            if not norm <= self.level.max_force * (1 - _SURE):
+                break
+        if best > -inf and (self.best is None or best > self.best):
+            self.kept.append((best, at))
+        aim = self.level.start if self.best is None else self.level.beyond(self.best, self.tolerance)
+        self.put(aim)
+        self.search.begin_level(together=isinstance(self.level, FrictionLevel))
+        return aim
+
+    def _reached(self, known: float, spots: Array) -> float:
+        """The best level at which a placement has forces below the limit; -inf for less than ``known``."""
+        self.put(known)
+        if not self.search.norm_at(spots) <= self.level.max_force:
+            return -inf
+        lo, hi = known, self.top
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (lo + hi)
+            self.put(middle)
+            lo, hi = (middle, hi) if self._holds(spots) else (lo, middle)
+            if hi - lo <= _EXACT * max(abs(lo), abs(hi)):
+                break
+        return lo
+
+    def _settled(self, aim: float) -> float:
+        """A level at which boxes that are left, too small to be split or not looked at, are excluded, too."""
+        left, lo, hi, search = self.search.left, aim, self.top, self.search
+        if aim >= hi:
+            search.closed = False
+            return hi
+        self.put(aim)
+        search.closed = search.excludes(left)
+        if search.closed or self.best is None:
+            return aim
+        for halvings in range(_SETTLING, 0, -1):  # by steps that double, then how much less is enough
+            step = 0.5**halvings
+            self.put(aim + step * (hi - aim))
+            if search.excludes(left):
+                lo, hi = aim + 0.5 * step * (hi - aim), aim + step * (hi - aim)
+                break
+        for _ in range(_NEARER):
+            self.put(0.5 * (lo + hi))
+            lo, hi = (lo, 0.5 * (lo + hi)) if search.excludes(left) else (0.5 * (lo + hi), hi)
+        self.put(hi)
+        search.closed = search.excludes(left)
+        return hi
