@@ -140,18 +140,12 @@ def test_no_force_where_no_load_asks_for_any() -> None:
 
 def test_forces_near_none_are_none() -> None:
     """What is left of given forces where no load asks for any, and the cones let none cancel."""
-    rng, none, refused = np.random.default_rng(4), 0, 0
+    rng, none = np.random.default_rng(4), 0
     for _ in range(40):
         r, n = rng.normal(size=(3, 2)), rng.normal(size=(3, 2))
         grasp = rg.Grasp(rg.Contact(*c, 0.4) for c in zip(r, n, strict=True))
-        state = rg.GraspState(grasp, rg.Wrench([0, 0]), rng.normal(size=(3, 2)))
-        try:
-            found = state.balanced()
-        except rg.Infeasible as reason:  # by rounding, which differs between machines
-            refused += "no proof" in str(reason)
-            continue
+        found = rg.GraspState(grasp, rg.Wrench([0, 0]), rng.normal(size=(3, 2))).balanced()
         size = abs(found.forces).max()
         assert size == 0 or size > 1e-12
         none += size == 0
     assert 5 < none < 40
-    assert refused <= 1

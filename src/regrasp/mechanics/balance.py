@@ -121,6 +121,8 @@ def nearest_equilibrium(
         if abs(residual).max() <= _ENOUGH * max(heaviest, float(abs(f).max())):
             return f if heaviest or abs(f).max() > _DUST * scale else np.zeros_like(f)
         if abs(residual).max() <= _ENOUGH * scale:  # as near as beside such large forces; go on from here
+            if not heaviest and abs(f).max() <= _DUST * scale:
+                return np.zeros_like(f)
             found = nearest_equilibrium(f, matrix, load, normals, frictions, limits, length)
             is_dust = found is not None and not heaviest and abs(found).max() <= _DUST * scale
             return np.zeros_like(f) if is_dust else found
