@@ -120,7 +120,7 @@ def test_regrasps_in_space_withstand(states):
     goal = on_box((1, -0.3, -0.1), (-1, 0.2, 0.1), (-0.3, 0.75, 0.1), (-0.1, -0.75, -0.1))
     c, s = np.cos(0.5), np.sin(0.5)
     turn = [[c, -s, 0], [s, c, 0], [0, 0, 1]]
-    loads = rg.LoadSet.ball(rg.Wrench([0, 0, 0]), force=0.3, torque=0.3)
+    loads = rg.LoadSet.ball(rg.Wrench([0, 0, 0]), force=0.4, torque=0.4)
     pads = rg.ForceLimits([[1, 0, 0], [0, 1, 0], [0, 0, -1]], [40.0, 15.0, 15.0])
     springs = [1.0, 2.0, 3.0, 4.0]
     plan = rg.plan_regrasp(

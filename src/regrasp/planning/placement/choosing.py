@@ -18,7 +18,7 @@ from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.curves.curved_sides import CurvedSides
-from regrasp.planning.placement.laws import LEVELS, law_of
+from regrasp.planning.placement.laws import LEVELS, Law, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
 from regrasp.planning.placement.levels.level import FrictionLevel, Level
@@ -118,9 +118,10 @@ def choose_grasp(
             200,000, or 20,000 with ``keep`` or ``removable``, of which bounds know nothing, and 1,000,000 on
             a mesh, and fewer on one of many faces: such for which 1.5 billion corners and groups of faces
             were looked at.
-        progress: called with the bound and the best value so far as the search goes on: of the four norms
-            the norm of forces behind the objective [N], infinite while none is found; of the others the
-            objective itself, NaN while none is, with a bound that comes near at the end of the search alone.
+        progress: called with the bound and the best value so far as the search goes on, at last with those of
+            the result: of the four norms the norm of forces behind the objective [N], infinite while none is
+            found; of the others the objective itself, NaN while none is, with a bound that comes near at the
+            end of the search alone.
 
     Raises:
         Infeasible: Where no placement holds the loads; the certificate is the proof.
@@ -160,11 +161,12 @@ def choose_grasp(
             name: value is not None and value is not False and value != 0 for name, value in named.items()
         }
         loads, reach = check_space(shape, load, goal, unused), float(np.linalg.norm(points, axis=1).max())
-        return choose_on_mesh(
+        chosen = choose_on_mesh(
             shape, fingers, loads, mu, goal, law, tolerance=tolerance,
             apart=DISTINCT * reach if apart is None else apart, away=away, most=cap, progress=progress,
             level=level_of(goal, mu, load, max_force, disturbance, reach),
         )  # fmt: skip
+        return _told(chosen, law, progress)
     most = CONSTRAINED_BOXES if constraints.unbounded else MOST_BOXES
     if most_boxes is not None:
         most = whole(most_boxes, "most_boxes", least=64, most=10_000_000)
@@ -209,7 +211,7 @@ def choose_grasp(
                 search, beyond = closed_by_turning(*given)
         if isinstance(level, WithstoodLevel) and best is not None and not search.interrupted:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)
-        return chosen_at_level(search, asked, level, best, beyond)
+        return _told(chosen_at_level(search, asked, level, best, beyond), law, progress)
     # half of the tolerance is for loads around a round set and for friction kept back
     half = 0.5 * tolerance / law.power
     if constraints.unbounded:
@@ -218,7 +220,15 @@ def choose_grasp(
         search.run(half, most, progress)
         if not search.closed and mu > 0:
             _spare_friction(search, half, 0 if search.interrupted else most // 10)
-    return chosen_by_norm(search, asked)
+    return _told(chosen_by_norm(search, asked), law, progress)
+
+
+def _told(chosen: ChosenGrasp, law: Law, progress: Progress | None) -> ChosenGrasp:
+    """The result, which is the last that progress is told: forces come out a little better than searched."""
+    if progress is not None:
+        with suppress(KeyboardInterrupt):
+            progress(chosen.bound ** (1 / law.power), chosen.value ** (1 / law.power))
+    return chosen
 
 
 def _spare_friction(search: Search, tolerance: float, most: int) -> None:

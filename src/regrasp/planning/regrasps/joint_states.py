@@ -6,8 +6,11 @@ The unknowns are the forces of every state, block after block, and t:
     least normal forces, linear limits,
     withstood deviations                  of every finger of a state, as for the state alone
     margin    maximise t
-    change    minimise the sum of |f_k+1 - f_k|^2 over states that follow one another, with t given;
+    change    minimise the sum of |f_k+1 - f_k|^2 over states that follow one another, less w t;
               a contact that one of the two does not have counts with zero there
+
+The weight w rises until t is the widest: were t given instead, there would be next to no room inside of the
+rows, where interior points stall before they keep them.
 """
 
 from collections.abc import Hashable, Sequence
@@ -29,8 +32,12 @@ from regrasp.planning.states.solving import SLACK, Chooser
 from regrasp.planning.states.withstanding.demand import Demand
 from regrasp.programs import Program, Status, solve
 
-# Fraction of the widest margin that the second program may give up.
 _MARGIN = 1e-7
+"""Fraction of the widest margin that the second program may give up."""
+_EXACT = 1e-10
+"""Of a margin, in units: what a solver's answer is known to."""
+_WEIGHTS = 10.0 ** np.arange(5, 10)
+"""Of t beside the change, both in units of force; the first that gives up no more is taken."""
 
 
 @dataclass(frozen=True)
@@ -68,10 +75,10 @@ class SequenceState:
         return np.where(self.counts, np.sqrt(1 + np.array(self.frictions) ** 2), 0.0)
 
 
-def sequence_program(states: Sequence[SequenceState], unit: float, margin: float | None = None) -> Program:
-    """The program of the widest worst margin; or, with a least ``margin`` [N], that of the least change.
+def sequence_program(states: Sequence[SequenceState], unit: float, weight: float | None = None) -> Program:
+    """The program of the widest worst margin; or, with its ``weight``, that of the least change less it.
 
-    Unknowns are the forces of all states in order, in units of ``unit`` [N], then t for the first program.
+    Unknowns are the forces of all states in order, then t, in units of ``unit`` [N].
     """
     if len(states) < 2:
         raise InvalidInput(f"a sequence has two states or more, got {len(states)}")
@@ -80,17 +87,13 @@ def sequence_program(states: Sequence[SequenceState], unit: float, margin: float
     distances = sparse.vstack([part.A[:, -1] for part in parts], format="csc")
     b = np.concatenate([part.b for part in parts])
     blocks = tuple(block for part in parts for block in part.blocks)
-    width = forces.shape[1]
-    if margin is None:
-        q = np.zeros(width + 1)
-        q[-1] = -1.0
-        whole = sparse.hstack([forces, distances], format="csc")
-        return Program(sparse.csc_matrix((width + 1, width + 1)), q, whole, b, blocks, size=1.0)
-    change = _changes(states, [part.q.size - 1 for part in parts])
-    shifted = b - distances.toarray()[:, 0] * (margin / unit)
-    return Program(
-        sparse.csc_matrix(2 * change.T @ change), np.zeros(width), forces, shifted, blocks, size=1.0
-    )
+    width = forces.shape[1] + 1
+    P, q = sparse.csc_matrix((width, width)), np.zeros(width)
+    q[-1] = -1.0 if weight is None else -weight
+    if weight is not None:
+        change = _changes(states, [part.q.size - 1 for part in parts], width)
+        P = sparse.csc_matrix(2 * change.T @ change)
+    return Program(P, q, sparse.hstack([forces, distances], format="csc"), b, blocks, size=1.0)
 
 
 def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "clarabel") -> list[Array]:
@@ -111,9 +114,13 @@ def spread_forces(states: Sequence[SequenceState], unit: float, backend: str = "
         raise Infeasible("some state of the sequence has no forces inside cones and limits")
     if widest.status is not Status.SOLVED:
         raise SolverFailed(f"{backend}: {widest.status.advice}", widest.program, widest)
-    margin = float(widest.value[-1]) * unit
-    answer = solve(sequence_program(kept, unit, margin - _MARGIN * abs(margin)), backend)
-    if answer.status is not Status.SOLVED:
+    margin = widest.value[-1]
+    for weight in _WEIGHTS:
+        answer = solve(sequence_program(kept, unit, weight), backend, throw=False)
+        lost = margin - answer.value[-1]
+        if answer.status is Status.SOLVED and lost <= _MARGIN * abs(margin) + _EXACT:
+            break
+    else:
         raise SolverFailed(f"{backend}: no least change at the widest margin", answer.program, answer)
     result, begin = [], 0
     for state in states:
@@ -142,9 +149,9 @@ def _part(state: SequenceState, unit: float) -> Program:
     return pressing(program, s.grasp, s.normals, unit, unit)
 
 
-def _changes(states: Sequence[SequenceState], widths: Sequence[int]) -> sparse.csr_matrix:
+def _changes(states: Sequence[SequenceState], widths: Sequence[int], width: int) -> sparse.csr_matrix:
     """Rows f_k+1 - f_k of every contact of two states that follow one another."""
-    d, width = states[0].grasp.width, sum(widths)
+    d = states[0].grasp.width
     starts = np.concatenate([[0], np.cumsum(widths)])
     rows: list[int] = []
     columns: list[int] = []

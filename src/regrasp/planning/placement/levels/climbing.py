@@ -69,11 +69,6 @@ def run_level(
         beyond = settled(search, level, aim, fixed, passed)
     except KeyboardInterrupt:
         search.closed, search.interrupted, beyond = False, True, top
-    if progress is not None:
-        try:
-            progress(level.value(beyond), level.value(best))
-        except KeyboardInterrupt:
-            search.interrupted = True
     return best, beyond
 
 
