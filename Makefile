@@ -5,16 +5,22 @@ BIN := $(VENV)/bin
 # Asserts that pytest rewrites are kept beside the tests; writing them anew costs a sixth of the inner loop.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test quick docs bench mutants clean
+.PHONY: demo test checked tested quick docs bench mutants clean
 
 demo: $(VENV)/installed
 	$(BIN)/regrasp demo
 
-test: $(VENV)/installed-dev
+# With `make -j3 test docs` what takes one core goes on beside the tests, which take all there are.
+test: checked tested
+
+tested: $(VENV)/installed-dev
+	$(BIN)/regrasp warm-up
+	$(BIN)/pytest -n auto --nbmake --nbmake-timeout=300 tests notebooks
+
+checked: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/pytest -n auto --nbmake --nbmake-timeout=300 tests notebooks
 	$(BIN)/regrasp demo -o $(VENV)/demo
 	rm -rf $(VENV)/bench
 	$(BIN)/regrasp bench --quick -o $(VENV)/bench

@@ -9,7 +9,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.plain import listed
 from regrasp.mechanics.state import GraspState
 from regrasp.outline.outline import Outline
-from regrasp.planning.placement.regions.sealed import Sealed
+from regrasp.planning.placement.proofs.sealed import Sealed
 from regrasp.planning.placement.regions.widest_proof import WidestProof
 
 
@@ -36,6 +36,7 @@ class ContactRegions(Sealed):
             what was asked for on a polygon; None elsewhere.
     """
 
+    _what = "regions"
     shape: Outline
     grasp: Grasp
     places: Array

@@ -8,8 +8,8 @@ from regrasp.mechanics.checks import Array, array, number
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.plain import listed
 from regrasp.mesh.mesh import Mesh
+from regrasp.planning.placement.proofs.sealed import Sealed
 from regrasp.planning.placement.proofs.shape_data import shape_of
-from regrasp.planning.placement.regions.sealed import Sealed
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -35,6 +35,7 @@ class FaceRegions(Sealed):
             they prove the regions [N].
     """
 
+    _what = "regions"
     shape: Mesh
     grasp: Grasp
     patches: tuple[Array, ...]

@@ -1,4 +1,4 @@
-"""Regions as plain data with a digest: a number that is touched in a file no longer fits."""
+"""Proofs and regions as plain data with a digest: a number that is touched in a file no longer fits."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -21,28 +21,28 @@ class Sealed(ArrayValue, ABC):
     What has its default is left out, so that a new field with one changes no digest that was written before.
     """
 
-    _what = "regions"
+    _what: str
 
     @property
     def digest(self) -> str:
-        """Of all that they hold."""
+        """Of all that it holds."""
         return sha256(repr(self._plain()).encode()).hexdigest()
 
     def _plain(self) -> dict[str, Any]:
         found: dict[str, Any] = {}
         for field in fields(self):  # type: ignore[arg-type]
             value = getattr(self, field.name)
-            if field.default is MISSING or value is not field.default:
+            if isinstance(value, np.ndarray) or value != field.default:
                 found[field.name] = _plain(value)
         return found
 
     def to_dict(self) -> dict[str, Any]:
-        """The regions as plain data, which JSON can hold; ``from_dict`` gives back equal ones."""
+        """All as plain data, which JSON can hold; ``from_dict`` gives back what is equal."""
         return {**self._plain(), "digest": self.digest}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """The regions of plain data; whether they are any ``regrasp.verify`` says.
+        """What plain data says; whether it is true ``regrasp.verify`` says.
 
         Args:
             data: what ``to_dict`` returned, or JSON made of it.
@@ -55,7 +55,7 @@ class Sealed(ArrayValue, ABC):
         given = entries(data, cls._what, [*needed, "digest"], optional)
         found = cls._checked(given)
         if given["digest"] != found.digest:
-            raise InvalidInput(f"the digest of {cls._what} does not fit: something in them was changed")
+            raise InvalidInput(f"the digest of {cls._what} does not fit: something was changed")
         return found
 
     @classmethod
@@ -71,4 +71,6 @@ def _plain(value: Any) -> Any:
         return [_plain(each) for each in value]
     if isinstance(value, float):
         return float(value)  # NumPy's numbers are written otherwise
+    if isinstance(value, (int, str)):
+        return value
     return shape_data(value) if isinstance(value, Mesh) else value.to_dict()
