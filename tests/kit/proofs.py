@@ -44,6 +44,7 @@ def planar(vertices, loads, nodes, **changes) -> SimpleNamespace:
             "motions": None,
             "max_force": None,
             "min_normal": 0.0,
+            "turned": False,
         }
         | changes
     )

@@ -16,6 +16,7 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
+from regrasp.planning.placement.circles import turned
 from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.curves.curved_sides import CurvedSides
 from regrasp.planning.placement.laws import LEVELS, Law, law_of
@@ -214,6 +215,8 @@ def choose_grasp(
         return _told(chosen_at_level(search, asked, level, best, beyond), law, progress)
     # half of the tolerance is for loads around a round set and for friction kept back
     half = 0.5 * tolerance / law.power
+    if limits == ANY_FORCE and not (constraints.unbounded or offset):
+        search, half = turned(search, load, half)
     if constraints.unbounded:
         run_constrained(search, constraints, half, most, progress)
     else:

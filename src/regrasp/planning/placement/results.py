@@ -138,7 +138,7 @@ def _first(
     for norm, places, u in search.placements()[:_ATTEMPTS]:
         order = np.argsort(u, kind="stable")
         grasp = grasp_at(search.sides, places[order], u[order], asked.friction)
-        if grasp is None:
+        if grasp is None or not search.are_apart(places, u):
             continue
         try:
             with np.errstate(all="ignore"):  # forces at the edge of what can be held

@@ -37,6 +37,8 @@ class Search:
     limits: largest force and least normal force of every finger [N].
     """
 
+    turned = False  # (``circles``)
+
     def __init__(
         self, sides: Sides, fingers: int, friction: float, loads: Array, law: Law, apart: float,
         narrow: float, limits: Limits = ANY_FORCE,
@@ -53,7 +55,7 @@ class Search:
         self._found = np.full(1 + 2 * fingers, inf)
         self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
         self.closed = self.interrupted = self._only = False
-        self.narrow, self.limits = narrow, limits
+        self.narrow, self.limits, self._least = narrow, limits, apart / sides.size
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
         self._kept: list[tuple[float, np.ndarray, Array]] = []
         self.tied: dict[int, int] = {}  # boxes excluded by duals of all loads together, and the row of
@@ -87,9 +89,8 @@ class Search:
 
     def _try_points(self) -> None:
         """Take the best placement on some points spread evenly for found, where one holds."""
-        k = self.fingers
-        on, u = self.sides.spread(_POINTS[k])
-        for few in map(list, combinations(range(len(u)), k)):
+        on, u = self.sides.spread(_POINTS[self.fingers])
+        for few in map(list, combinations(range(len(u)), self.fingers)):
             norm = self.norm_at(on[few], u[few]) if self.are_apart(on[few], u[few]) else inf
             if norm < self.best:
                 self._found[0], self._found[1::2], self._found[2::2] = norm / self.unit, on[few], u[few]
@@ -108,8 +109,8 @@ class Search:
 
         def part(queue: Queue, budget: int) -> int:
             return int(search(
-                self._table, self._wanted, law, fixed / self.unit, tolerance, self.apart / self.sides.size,
-                self.narrow, queue.boxes, queue.heap, queue.state, queue.found, queue.tried, budget,
+                self._table, self._wanted, law, fixed / self.unit, tolerance, self._least, self.narrow,
+                queue.boxes, queue.heap, queue.state, queue.found, queue.tried, budget,
                 spare(self.fingers, len(self._wanted)),
             ))  # fmt: skip
 
@@ -130,11 +131,8 @@ class Search:
     @property
     def left(self) -> np.ndarray:
         """Numbers of boxes not excluded: not looked at, or too small to be split; the least bound first."""
-        return self._left[np.argsort(self._boxes[2][self._left], kind="stable")]
-
-    @property
-    def _left(self) -> np.ndarray:
-        return np.flatnonzero(self._boxes[5][: self.count] == 0)
+        found = np.flatnonzero(self._boxes[5][: self.count] == 0)
+        return found[np.argsort(self._boxes[2][found], kind="stable")]
 
     def excludes(self, boxes: np.ndarray, fixed: float) -> bool:
         """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
@@ -284,8 +282,11 @@ class Search:
     def bound(self) -> float:
         """No placement has a smaller norm [N]."""
         bounds, kinds = self._boxes[2][: self.count], self._boxes[5][: self.count]
-        open_ones = bounds[(kinds == 0) | (kinds == 1)]
-        return float(open_ones.min(initial=inf)) * self.unit * (1 - _SAFE)
+        leaves = np.flatnonzero((kinds == 0) | (kinds == 1))
+        return float(self._proven(bounds[leaves], leaves).min(initial=inf)) * self.unit * (1 - _SAFE)
+
+    def _proven(self, bounds: Array, _: np.ndarray) -> Array:
+        return bounds
 
     @property
     def largest(self) -> float:
@@ -341,7 +342,7 @@ class Search:
             read_only(edges[:, 0].copy()) if smooth else edges, centre, fingers=self.fingers, bound=bound,
             friction=self.friction, margin=self.margin, norm=self.law.norm, min_distance=self.apart,
             size="force" if self.law.size == "margin" and not self.margin else self.law.size,
-            control=edges if smooth else None,
+            control=edges if smooth else None, turned=self.turned,
             rings=read_only(self.sides.rings.copy()) if isinstance(self.sides, RingSides) else None,
             tied=read_only(np.array(self.duals)) if self.tied else None,
             max_force=None if self.limits[0] == inf else self.limits[0], min_normal=self.limits[1],

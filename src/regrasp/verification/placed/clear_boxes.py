@@ -24,8 +24,11 @@ class Edges(Protocol):
         """Of points whose hulls contain stretches a and c of ``limited`` (m,), but for rounding."""
 
 
-def clear_boxes(proof: Proof, boundary: Edges) -> np.ndarray:
-    """(n,) whether each box is excluded for sure; what is not may be, too, and rationals tell."""
+def clear_boxes(proof: Proof, boundary: Edges, play: float = 0.0) -> np.ndarray:
+    """(n,) whether each box is excluded for sure; what is not may be, too, and rationals tell.
+
+    play: by which a circle is off one.
+    """
     number, m = np.asarray(proof.number), len(proof.sides)
     arcs = np.asarray(proof.arcs)
     told = (np.asarray(proof.children)[:, 1] == 0) & (number >= 0) & (number < len(proof.loads))
@@ -39,14 +42,14 @@ def clear_boxes(proof: Proof, boundary: Edges) -> np.ndarray:
     parts = np.flatnonzero(np.diff(np.cumsum(rows) // _AT_ONCE)) + 1
     with np.errstate(all="ignore"):
         for some in np.split(boxes, parts):
-            found[some] = _clear(proof, boundary, some)
+            found[some] = _clear(proof, boundary, some, play)
         if proof.movers is not None and proof.control is None:
             found[np.unique(np.asarray(proof.movers)[:, 0])] = False
             found |= told & _clear_of_movers(proof, boundary, told)
     return found
 
 
-def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
+def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray, play: float) -> np.ndarray:
     y = np.asarray(proof.twists)[boxes]
     terms = -np.asarray(proof.loads)[np.asarray(proof.number)[boxes]] * y
     z = np.zeros_like(y)
@@ -55,7 +58,7 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray) -> np.ndarray:
         terms = np.column_stack([terms, more])
     lost = _ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
-    room = _room(proof, np.abs(y) + np.abs(z))
+    room = _room(proof, np.abs(y) + np.abs(z)) * (1 + (1 + _ROUNDING) * play / _ROUNDING)
     if proof.size == "margin":
         room *= 4 * proof.bound
     told = np.minimum(room, lost) > _SMALL

@@ -29,6 +29,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
+from regrasp.verification.placed.curves.circles import play_of
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn, terms_of
 from regrasp.verification.placed.forces.limited import is_excluded as is_excluded_within
 from regrasp.verification.placed.forces.limited import is_least, wrong_limits
@@ -85,6 +86,10 @@ def _shapes(proof: Proof) -> list[str]:
         apart = np.diff(np.append(first, len(proof.vertices))) >= 3
         if proof.control is not None or first[:1].tolist() != [0] or not apart.all():
             return ["proof: rings must begin at vertices, three or more apart, the first at 0"]
+    if proof.turned:
+        more = (proof.pairs, proof.movers, proof.tied, proof.max_force)
+        if proof.control is None or proof.min_normal or proof.size == "margin" or more != (None,) * 4:
+            return ["proof: turns go with a smooth boundary, forces of any size and one twist for each box"]
     if proof.tied is not None:
         columns = 3 * len(proof.loads) + ties_of(k) * (len(proof.loads) - 1)
         wanted.append(("tied", proof.tied, (len(proof.tied), columns)))
@@ -115,6 +120,7 @@ class _Checked:
         self.boundary = StraightEdges(proof) if proof.control is None else CubicEdges(proof)
         self.groups = Groups(proof, self.boundary)
         self.clear: np.ndarray = np.zeros(len(proof.children), bool)  # boxes that doubles decide
+        self.play, self.reach = Fraction(0), Fraction(0)  # of a circle
         self.limited = proof.max_force is not None or proof.min_normal > 0
         pairs = () if proof.pairs is None else zip(proof.pairs.tolist(), proof.seconds.tolist(), strict=True)  # type: ignore[union-attr]
         self.second = {box: (load, twist) for (box, load), twist in pairs}
@@ -140,10 +146,16 @@ class _Checked:
         if broken:
             return broken
         ends = float(self.proof.sides[0, 1]), float(self.proof.sides[-1, 2])
-        everything = (0, len(self.sides) - 1, *ends)
-        if self._arcs(0) != [everything] * self.proof.fingers:
+        root = [(0, len(self.sides) - 1, *ends)] * self.proof.fingers
+        if self.proof.turned:
+            root[0] = (0, 0, ends[0], ends[0])
+            found = play_of(self.proof, self.boundary.control)  # type: ignore[union-attr]
+            if found is None:
+                return ["proof: its boundary is no circle about the centre of mass, all of it"]
+            self.play, self.reach = found
+        if self._arcs(0) != root:
             return ["proof: box 0 must give every finger the whole boundary"]
-        self.clear = clear_boxes(self.proof, self.boundary)
+        self.clear = clear_boxes(self.proof, self.boundary, float(self.play))
         left, waiting = set(range(1, len(self.proof.children))), [0]
         while waiting:
             box = waiting.pop()
@@ -226,7 +238,9 @@ class _Checked:
             ]
             excluded = is_least(self.proof) or is_excluded_within(self.proof, Fraction(work), parts)
             return [] if excluded else [f"proof: the twist of box {box} does not exclude it"]
-        most = [self._most(arc, twists) for arc in arcs]
+        x, y, turn = map(abs, twists[0])
+        more = self.play * (1 + self.boundary.mu) * (x + y + turn * self.reach)
+        most = [self._most(arc, twists) + more for arc in arcs]
         if self.proof.size == "margin":  # forces below the limit do no more than these together
             done = sum(most, start=Fraction(0))
             return [] if work > done else [f"proof: the twist of box {box} does not exclude it"]
@@ -292,7 +306,7 @@ class _Checked:
 
     def _near(self, arcs: list[Arc]) -> bool:
         """Whether two fingers on one side each are nearer than they must be, wherever they are."""
-        least2 = Fraction(self.proof.min_distance) ** 2
+        least2 = max(Fraction(self.proof.min_distance) - 2 * self.play * self.reach, Fraction(0)) ** 2
         single = [arc for arc in arcs if arc[0] == arc[1]]
         corners = [self._hull(*arc) for arc in single]
         for i, one in enumerate(corners):

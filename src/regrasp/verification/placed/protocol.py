@@ -111,6 +111,10 @@ class Proof(Protocol):
         """
 
     @property
+    def turned(self) -> bool:
+        """Whether loads and boundary are the same after every turn, and the first finger stays."""
+
+    @property
     def max_force(self) -> float | None:
         """Of every finger [N]; None for none."""
 

@@ -5,6 +5,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, choice, number, whole
 from regrasp.planning.placement.proofs.box_proof import BoxProof, integers
 
@@ -54,6 +55,8 @@ class PlacementProof(BoxProof):
             finger does along them; 1 first, then each place, then each product of two.
         max_force: of every finger, which the proof counts on [N]; None for none.
         min_normal: with which every finger pushes at the least, which it counts on, too [N].
+        turned: whether the boundary is a circle about the centre of mass, or nearly, and the proof is of all
+            loads together that turns make of ``loads``: in box 0 the first finger then is at the beginning.
     """
 
     vertices: Array
@@ -81,6 +84,7 @@ class PlacementProof(BoxProof):
     motions: Array | None = None
     max_force: float | None = None
     min_normal: float = 0.0
+    turned: bool = False
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
@@ -114,4 +118,11 @@ class PlacementProof(BoxProof):
             None if given.get("motions") is None else array(given["motions"], "motions", (None, None)),
             None if given.get("max_force") is None else number(given["max_force"], "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
+            _flag(given.get("turned", False)),
         )
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InvalidInput(f"turned must be true or false, got {shown(value)}")
+    return value

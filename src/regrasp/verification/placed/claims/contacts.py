@@ -64,7 +64,20 @@ def check_places(chosen: Chosen, proof: Proof) -> list[str]:
         broken.append("two contacts are nearer than the least distance")
     if chosen.objective not in ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
+    if proof.turned and not _all_turns_shown(chosen, np.asarray(proof.loads)):
+        broken.append("a load that a turn makes of one of the proof has no state")
     return broken + _off_their_places(chosen, points_at(chosen.places, given, control, proof.rings))
+
+
+def _all_turns_shown(chosen: Chosen, loads: Array) -> bool:
+    """Whether the hull of the states' loads has all that turns make of some."""
+    shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, 3)
+    torques = np.concatenate([shown[:, 2], loads[:, 2]])
+    shown = shown[np.argsort(np.arctan2(shown[:, 1], shown[:, 0])), :2]
+    after, size = np.roll(shown, -1, axis=0), np.hypot(loads[:, 0], loads[:, 1]).max()
+    across = shown[:, 0] * after[:, 1] - shown[:, 1] * after[:, 0]
+    around = (across > 0) & (across >= size * (1 - CLOSE) * np.hypot(*(after - shown).T))
+    return bool(len(shown) > 2 and around.all() and np.ptp(torques) <= CLOSE * np.abs(torques).max())
 
 
 def _off_their_places(chosen: Chosen, given: Array) -> list[str]:
