@@ -249,3 +249,14 @@ def test_fingers_slide_to_better_levels_not_to_lesser_forces() -> None:
     )  # fmt: skip
     assert chosen.gap <= 1e-2
     assert chosen.value < 0.084  # 0.58 after ten times as many boxes
+
+
+@pytest.mark.parametrize("max_force", [None, 5.0])
+def test_four_fingers_without_friction_hold_every_orientation(max_force: float | None) -> None:
+    # on each side in line with its opposite they need no more than the load itself
+    shape = rg.Outline([[0, 0], [1, 0], [1, 3], [2.5, 3], [2.5, 4], [-1.5, 4], [-1.5, 3], [0, 3]])
+    loads = rg.LoadSet.turned(rg.Wrench([0, -1]))
+    found = rg.choose_grasp(shape, 4, loads, friction=0, objective="peak", max_force=max_force)
+    assert found.bound <= 1 <= found.value <= 1 + 1e-3
+    assert found.gap <= 1e-3
+    assert rg.verify(found).ok

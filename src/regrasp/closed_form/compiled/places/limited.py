@@ -65,7 +65,7 @@ def _most_less_half_square(a, c, mu, least, limit):  # type: ignore[no-untyped-d
     """The most of a p + c q - (p^2 + q^2) / 2 there, without a cap; p, q."""
     s = a + mu * c
     p = q = 0.0
-    if c <= mu * a:
+    if a > 0.0 and c <= mu * a:
         p, q = a, c
     elif s > 0.0:
         p = s / (1.0 + mu * mu)
@@ -105,7 +105,7 @@ def best_of_arc(sides, arcs, ends, i, law, cap, rising, y, out, best):  # type: 
                 else:
                     value, p, q = _most_work(a, c, mu, least, cap, limit)
             else:
-                if size == DISC and c <= mu * a:
+                if size == DISC and a > 0.0 and c <= mu * a:
                     value = sqrt(a * a + c * c)
                     per = 1.0 / value if value > 0.0 else 0.0
                     p, q = a * per, c * per

@@ -67,7 +67,7 @@ def support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-
             vx, vy = y[0] - y[2] * py, y[1] + y[2] * px
             ahead, across = nx * vx + ny * vy, ny * vx - nx * vy
             aside = abs(across)
-            if size == DISC and aside <= mu * ahead:
+            if size == DISC and ahead > 0.0 and aside <= mu * ahead:
                 value = sqrt(ahead * ahead + aside * aside)
                 per = 1.0 / value if value > 0.0 else 0.0
                 normal, tangent = ahead * per, across * per
