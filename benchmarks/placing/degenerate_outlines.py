@@ -2,11 +2,13 @@
 
     python benchmarks/placing/degenerate_outlines.py [--cap 20] [--seconds 300]
     python benchmarks/placing/degenerate_outlines.py --table
+    python benchmarks/placing/degenerate_outlines.py --circles [1.01]
 
 Needles, collinear points, tiny edges, pockets, holes, spikes, symmetric shapes whose corners are best, and
 coordinates far from zero, under every objective. Each search ends after ``--cap`` seconds of processor time
 by an interrupt; what goes on for more than 20 s after it *hangs*. Answers are verified and judged against
-all pairs of 40 points and triples of 16. A row is kept when it is done, in a random order.
+all pairs of 40 points and triples of 16. A row is kept when it is done, in a random order. ``--circles`` is
+of a unit force of every orientation on ellipses of half axes 1 and this.
 """
 
 import argparse
@@ -123,14 +125,34 @@ def table(kept: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def circles(axis: float) -> None:
+    """Print a line for each norm and number of fingers: gap, boxes, times to search and to verify [s]."""
+    shape, load = rg.Outline.ellipse(1.0, axis), rg.LoadSet.turned(rg.Wrench([0.0, -1.0]))
+    rg.choose_grasp(shape, 2, rg.Wrench([0.0, -1.0]), friction=0.5)  # compiles
+    for objective in ("sum_normal", "peak_normal", "peak", "effort"):
+        for fingers in (2, 3, 4) if axis == 1 else (2,):
+            begin = process_time()
+            chosen = rg.choose_grasp(shape, fingers, load, friction=0.5, objective=objective)
+            found = process_time()
+            proven = "yes" if rg.verify(chosen).ok else "NO"
+            print(
+                f"| {objective}, {fingers} | {chosen.gap:.1e} | {len(chosen.certificate.children):,} | "
+                f"{found - begin:.2f} | {proven}, {process_time() - found:.2f} |"
+            )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cap", type=float, default=20.0, help="of a search, of processor time [s]")
     parser.add_argument("--seconds", type=float, default=np.inf, help="after which no other row is begun")
     parser.add_argument("--table", action="store_true")
+    parser.add_argument("--circles", type=float, nargs="?", const=1.0)
     parser.add_argument("-o", "--output", type=Path, default=RESULTS)
     given = parser.parse_args()
     kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    if given.circles:
+        circles(given.circles)
+        return
     if given.table:
         print(table(kept))
         return
