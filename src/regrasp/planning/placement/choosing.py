@@ -24,7 +24,7 @@ from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
 from regrasp.planning.placement.levels.level import FrictionLevel, Level
 from regrasp.planning.placement.levels.moving_search import COARSE, closed_by_moving
-from regrasp.planning.placement.levels.turning_search import closed_by_turning
+from regrasp.planning.placement.levels.turning_search import WIDE, closed_by_turning
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
@@ -195,9 +195,9 @@ def choose_grasp(
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.unbounded)
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
-        moving = isinstance(level, FrictionLevel) and not isinstance(sides, CurvedSides)
+        moving, curved = isinstance(level, FrictionLevel), isinstance(sides, CurvedSides)
         if moving:
-            search.narrow = max(COARSE, search.narrow)
+            search.narrow = max(WIDE if curved else COARSE, search.narrow)
         best, beyond = run_level(search, level, around * tolerance, most, progress)
         if moving and best is None and not search.closed:  # places that hold are few
             search = search.anew()
@@ -206,10 +206,10 @@ def choose_grasp(
         wide = best is not None and beyond > level.beyond(best, 1.1 * around * tolerance)
         if best is not None and wide and not search.interrupted:
             given = search, level, best, beyond, around * tolerance, most, progress
-            if moving:
-                beyond = closed_by_moving(*given)
-            elif isinstance(level, FrictionLevel) and isinstance(sides, CurvedSides):
+            if moving and curved:
                 search, beyond = closed_by_turning(*given)
+            elif moving:
+                beyond = closed_by_moving(*given)
         if isinstance(level, WithstoodLevel) and best is not None and not search.interrupted:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)
         return _told(chosen_at_level(search, asked, level, best, beyond), law, progress)

@@ -30,7 +30,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.clear_boxes import clear_boxes
 from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.curves.circles import play_of
-from regrasp.verification.placed.curves.turning import is_excluded_in_turn, terms_of
+from regrasp.verification.placed.curves.turning import is_excluded_in_turn, numbers_of
 from regrasp.verification.placed.forces.limited import is_excluded as is_excluded_within
 from regrasp.verification.placed.forces.limited import is_least, wrong_limits
 from regrasp.verification.placed.groups import MOST, Groups, Stretch
@@ -71,7 +71,7 @@ def _shapes(proof: Proof) -> list[str]:
             return ["proof: second twists go with their boxes, a largest force and straight sides"]
     if proof.movers is not None:
         q = len(proof.movers)
-        columns = 3 + 2 * k if proof.control is None else (3 + k) * terms_of(k)
+        columns = 3 + 2 * k if proof.control is None else numbers_of(k)
         wanted += [("movers", proof.movers, (q, 2)), ("motions", proof.motions, (q, columns))]
         if k > _MOST_MOVING:
             return [f"proof: twists that move go with up to {_MOST_MOVING} fingers"]

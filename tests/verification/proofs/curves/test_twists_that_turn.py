@@ -5,12 +5,14 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from numba import njit
 from scipy.optimize import linprog
 
 import regrasp as rg
 from proofs import planar
-from regrasp.planning.placement.levels.mixture import best_mixture
-from regrasp.planning.placement.levels.turning import TurningTwists, slowest
+from regrasp.closed_form.compiled.places.matrix_game import play
+from regrasp.closed_form.compiled.places.turning_bounds import least_above, slowest
+from regrasp.closed_form.compiled.places.turning_twists import room_to_turn, turned
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn
 
 pytestmark = pytest.mark.oracle
@@ -47,19 +49,19 @@ def test_a_bound_is_at_the_edge_of_the_cone() -> None:
     """Velocity (1/2, 1/4) on the floor: (1/4 + 3/4 / 2) / (5/4) = 1/2 along the edge of friction 3/4."""
     for way in (-1, 1):
         for s, good in (0.5, True), (0.5 - 2**-40, False), (0.5 + 2**-40, True):
-            moved = [[0.5 * way, 0, 0, 0.25, 0, 0, *NONE, s, 0, 0]]
+            moved = [[0.5 * way, 0, 0, 0.25, 0, 0, *NONE, s, s, s]]
             for bound in (0.25, 1.0):
                 # the load does 3/4 along it
                 assert excluded(moved, [[-1.0 * way, -1, 0]], part=FLOOR, bound=bound) == good
     work = 0.5 + 0.25
     for factor, good in (1 - 2**-40, True), (1, False), (1 + 2**-40, False):
-        moved = [[0.5, 0, 0, 0.25, 0, 0, *NONE, 0.5, 0, 0]]
+        moved = [[0.5, 0, 0, 0.25, 0, 0, *NONE, 0.5, 0.5, 0.5]]
         assert excluded(moved, [[-1.0, -1, 0]], part=FLOOR, bound=2 * work * factor) == good
 
 
 def test_along_the_normal_it_is_that_of_the_polygon() -> None:
     for s, good in (1.25 + 2**-40, True), (1.25 - 2**-40, False):
-        moved = [[*NONE, 1, 0, 0, *NONE, s, 0, 0]]
+        moved = [[*NONE, 1, 0, 0, *NONE, s, s, s]]
         assert excluded(moved, [[0, -2.0, 0]], part=FLOOR, bound=1) == good
 
 
@@ -76,8 +78,8 @@ def _sampled(motions, loads, bound, parts, friction, t) -> float:
     k = len(parts)
     terms = [np.ones(len(t)), *t.T, *(t[:, i] * t[:, j] for i in range(k) for j in range(i, k))]
     left = np.zeros(len(t))
-    for load, motion in zip(loads, np.array(motions).reshape(len(loads), 3 + k, -1), strict=True):
-        y = motion @ np.array(terms)
+    for load, motion in zip(loads, motions, strict=True):
+        y = np.reshape(motion[: 3 * len(terms)], (3, -1)) @ np.array(terms)
         left -= load @ y[:3]
         for i, part in enumerate(parts):
             s = t[:, i]
@@ -102,16 +104,27 @@ def test_what_is_excluded_is_at_every_place(fingers: int) -> None:
     for _ in range(150):
         parts = [BOWL / 3 + 0.2 * rng.normal(size=(4, 2)) for _ in range(fingers)]
         loads = rng.normal(size=(2, 3))
-        rows = 0.1 / fingers * rng.normal(size=(2, 3 + fingers, m))
-        rows[:, :3, 0] -= loads
-        rows[:, 3:, 0] += rng.uniform(1, 3)
+        twists = 0.1 / fingers * rng.normal(size=(2, 3, m))
+        twists[:, :, 0] -= loads
+        most = 0.1 / fingers * rng.normal(size=(2, fingers * 3**fingers)) + rng.uniform(1, 3)
+        rows = np.hstack([twists.reshape(2, -1), most])
         bound, friction = float(rng.uniform(0.01, 0.5) / fingers), float(rng.uniform(0.1, 1))
         hulls = [[(Fraction(x), Fraction(y)) for x, y in part.tolist()] for part in parts]
-        motions = [(load, row.ravel().tolist()) for load, row in zip(loads.tolist(), rows, strict=True)]
+        motions = list(zip(loads.tolist(), rows.tolist(), strict=True))
         if is_excluded_in_turn(motions, Fraction(bound), hulls, friction):
             seen += 1
             assert _sampled(rows, loads, bound, parts, friction, t) > 0
     assert seen > 5
+
+
+@njit
+def _lowest(x, y):
+    return slowest(x, y)
+
+
+def lowest(tangents) -> np.ndarray:
+    """Coefficients of a polynomial below the length of tangents (3, 2)."""
+    return np.array(_lowest(*np.array(tangents).T.copy()))
 
 
 def test_the_slowest_is_below_and_near_by_the_third_power() -> None:
@@ -127,11 +140,11 @@ def test_the_slowest_is_below_and_near_by_the_third_power() -> None:
                 [h * h, 2 * h * (1 - h), (1 - h) ** 2][::-1] @ whole,
             ]
         )
-        length, q = np.hypot(*(slopes @ tangent).T), slopes @ slowest(tangent)
+        length, q = np.hypot(*(slopes @ tangent).T), slopes @ lowest(tangent)
         assert (q <= length + 1e-15).all()
         off.append((length - q).max())
     assert off[0] > 5 * off[1] > 30 * off[2] > 0
-    assert not slowest(np.array([[1.0, 0], [0, 0], [-1, 0]])).any()
+    assert not lowest([[1.0, 0], [0, 0], [-1, 0]]).any()
 
 
 def test_twists_of_the_search_are_bounds() -> None:
@@ -139,22 +152,41 @@ def test_twists_of_the_search_are_bounds() -> None:
     shape = rg.Outline.ellipse(2.0, 1.0)
     control = shape.cubics()[[10, 70, 120]] / 2
     loads = np.array([[0.5, 0, 0.2], [0.5, 0, -0.2], [0, 0.5, 0.2], [0, 0.5, -0.2]])
+    rows = np.zeros((4, 3 * 10 + 3 * 27))
+    hulls = [[(Fraction(x), Fraction(y)) for x, y in part.tolist()] for part in control]
     for friction in (0.02, 0.2):
-        found = TurningTwists(3).excluding(control, friction, loads)
-        assert found is not None
-        few, rows = found
-        motions = [(-loads[i], row.ravel().tolist()) for i, row in zip(few, rows, strict=True)]
-        hulls = [[(Fraction(x), Fraction(y)) for x, y in part.tolist()] for part in control]
-        given = [(load.tolist(), row) for load, row in motions]
-        assert is_excluded_in_turn(given, Fraction(1), hulls, friction)
-        for i in range(3):
+        assert turned(control, friction, loads, rows, room_to_turn(4, 3))
+        few = np.flatnonzero(rows.any(axis=1))
+
+        def judged(given: np.ndarray, friction=friction, hulls=hulls, few=few) -> bool:
+            motions = list(zip((-loads[few]).tolist(), given[few].tolist(), strict=True))
+            return is_excluded_in_turn(motions, Fraction(1), hulls, friction)
+
+        assert judged(rows)
+        for column in range(30, 30 + 81, 4):
             lower = rows.copy()
-            lower[:, 3 + i, 0] -= 0.01 * np.abs(rows).max()
-            less = [(load, row.ravel().tolist()) for (load, _), row in zip(given, lower, strict=True)]
-            assert not is_excluded_in_turn(less, Fraction(1), hulls, friction)
-        assert not is_excluded_in_turn(given, Fraction(1), hulls, 2 * friction)
-        assert not is_excluded_in_turn(given, Fraction(1), hulls[::-1], friction)
-    assert TurningTwists(3).excluding(control, 0.0, loads) is None
+            lower[:, column] -= 0.01 * np.abs(rows).max()
+            assert not judged(lower), column
+        assert not judged(rows, 2 * friction)
+        assert not judged(rows, hulls=hulls[::-1])
+    assert not turned(control, 2.0, loads, rows, room_to_turn(4, 3))
+
+
+@njit
+def _raised(speed, edge, basis, s):
+    least_above(speed, edge, basis, s)
+
+
+def test_the_least_above_is_that_of_a_linear_program() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        speed, edge, s = rng.uniform(0, 1, (8, 3)), rng.normal(size=8), np.zeros(3)
+        _raised(speed, edge, np.zeros((3, 4)), s)
+        assert (s >= 0).all()
+        assert (speed @ s >= edge - 1e-12).all()
+        assert s.sum() == pytest.approx(linprog(np.ones(3), -speed, -edge).fun, rel=1e-9, abs=1e-12)
+    _raised(speed, -np.ones(8), np.zeros((3, 4)), s)
+    assert not s.any()
 
 
 def test_they_are_of_lengths_of_forces() -> None:
@@ -174,24 +206,29 @@ def test_they_are_of_lengths_of_forces() -> None:
     assert said(motions=np.array(ABOUT[::-1]), bound=0.0) == ""
 
 
-def test_the_best_mixture_is_that_of_a_linear_program() -> None:
+@njit
+def _played(gains, least, table, names, shares, corners):
+    return play(gains, len(gains), least, table, names, shares, corners)
+
+
+def test_a_game_is_that_of_a_linear_program() -> None:
     rng = np.random.default_rng(3)
-    found = []
+    above = 0
     for _ in range(40):
         n, m = rng.integers(1, 80), rng.integers(1, 28)
         gains = rng.normal(size=(n, m)) * rng.choice([1, 100.0], size=(n, 1)) + rng.uniform(-1, 1)
+        gains /= np.abs(gains).max()
         rows = np.column_stack([-gains.T, np.ones(m)])
         sums, limits = np.append(np.ones(n), 0.0)[None], [(0, None)] * n + [(None, None)]
         value = -linprog(np.append(np.zeros(n), -1.0), rows, np.zeros(m), sums, 1.0, limits).fun
-        weights = best_mixture(gains)
-        found.append(weights is not None)
-        assert found[-1] == (value > 0)
-        if weights is not None:
-            assert weights.min() >= 0
-            assert weights.sum() == pytest.approx(1)
-            assert (weights @ gains).min() == pytest.approx(value, rel=1e-8)
-    assert 5 < sum(found) < 35
-    assert best_mixture(np.zeros((2, 3))) is None
+        room = np.zeros((n + 1, m + 1)), np.zeros(n + m, int), np.zeros(n), np.zeros(m)
+        assert _played(gains, -1.0, *room) == pytest.approx(value, abs=1e-9)
+        shares, corners = room[2:]
+        assert (shares.sum(), corners.sum()) == pytest.approx((1, 1))
+        assert (shares @ gains).min() == pytest.approx((gains @ corners).max(), abs=1e-9)
+        above += value > 0
+        assert (_played(gains, 0.0, *room) > 0) == (value > 0)
+    assert 5 < above < 35
 
 
 def flower() -> tuple[rg.Outline, rg.LoadSet]:

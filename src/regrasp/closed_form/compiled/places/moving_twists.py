@@ -20,7 +20,8 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.places import cubic_arcs, eroded, wrench_gauge
+from regrasp.closed_form.compiled.places import cubic_arcs, eroded, matrix_game, wrench_gauge
+from regrasp.closed_form.compiled.places.matrix_game import play
 from regrasp.closed_form.compiled.places.wrench_gauge import (
     ERODED,
     LARGEST,
@@ -34,8 +35,6 @@ from regrasp.compilation import kept
 LEFT, GONE, HELD = 0, 1, 2
 """A box that is not excluded; one that is; and one with a placement that holds all loads."""
 ROUNDS = 4
-_PIVOTS = 64
-_SHIFT = 2.0  # of gains of at most 1, which makes all of them positive
 _SURE = 1e-9  # of the terms, more than rounding adds
 _FLAT = 1e-9  # of two equations that are one
 _BETTER = 1e-4  # of the largest gain, that a round has to add for another
@@ -96,59 +95,6 @@ def _follow(sides, arcs, ends, u, work, twist):  # type: ignore[no-untyped-def]
             twist[3 + i], twist[3 + k + i] = b * bx * per, b * by * per
         twist[0] -= u[i] * twist[3 + i]
         twist[1] -= u[i] * twist[3 + k + i]
-
-
-@njit(**VIEWS)
-def _play(gains, rows, table, names, shares, corners):  # type: ignore[no-untyped-def]
-    """The value of the game: shares of ``rows`` rows of gains and of corners. A simplex method.
-
-    table: one row and one column more than gains. names: of its columns, then of its rows.
-    """
-    n = gains.shape[1]
-    for j in range(rows):
-        for c in range(n):
-            table[j, c] = gains[j, c] + _SHIFT
-        table[j, n], names[n + j] = 1.0, n + j
-    for c in range(n):
-        table[rows, c], names[c] = -1.0, c
-    table[rows, n] = 0.0
-    for _ in range(_PIVOTS):
-        s, least = -1, -1e-12
-        for c in range(n):
-            if table[rows, c] < least:
-                s, least = c, table[rows, c]
-        if s < 0:
-            break
-        r, ratio = -1, np.inf
-        for j in range(rows):
-            if table[j, s] > 1e-12 and table[j, n] < ratio * table[j, s]:
-                r, ratio = j, table[j, n] / table[j, s]
-        if r < 0:
-            break
-        per = 1.0 / table[r, s]
-        for j in range(rows + 1):
-            part = table[j, s] * per
-            if j != r and part != 0.0:
-                for c in range(n + 1):
-                    if c != s:
-                        table[j, c] -= part * table[r, c]
-                table[j, s] = -part
-        for c in range(n + 1):
-            table[r, c] *= per
-        table[r, s] = per
-        names[s], names[n + r] = names[n + r], names[s]
-    for j in range(rows):
-        shares[j] = 0.0
-    for c in range(n):
-        corners[c] = 0.0
-    total = table[rows, n]
-    for c in range(n):
-        if names[c] >= n:
-            shares[names[c] - n] = max(table[rows, c], 0.0) / total
-    for j in range(rows):
-        if names[n + j] < n:
-            corners[names[n + j]] = max(table[j, n], 0.0) / total
-    return 1.0 / total - _SHIFT
 
 
 @njit(**VIEWS)
@@ -216,7 +162,7 @@ def _loop(digest: str) -> Any:
             if holds:
                 return HELD
             rows += count
-            before, value = value, _play(gains, rows, table, names, shares, corners)
+            before, value = value, play(gains, rows, -1.0, table, names, shares, corners)
             if value > 0.0:
                 for n in range(count):
                     for c in range(3 + 2 * k):
@@ -238,4 +184,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-moved = _loop(digest((cubic_arcs, eroded, wrench_gauge)))
+moved = _loop(digest((cubic_arcs, eroded, matrix_game, wrench_gauge)))

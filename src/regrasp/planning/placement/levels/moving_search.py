@@ -26,7 +26,7 @@ def closed_by_moving(
     search: of forces on straight sides, that ended with ``best`` and ``beyond``; boxes that it left are
     excluded or split.
     """
-    moving = _Moving(search, level, best, tolerance)
+    moving = Moving(search, level, best, tolerance)
 
     def told() -> None:
         if progress is not None:
@@ -45,7 +45,7 @@ def closed_by_moving(
     return beyond
 
 
-class _Moving:
+class Moving:
     """Boxes of one side for each finger, the widest first."""
 
     def __init__(self, search: Search, level: Level, best: float, tolerance: float) -> None:
@@ -56,27 +56,20 @@ class _Moving:
 
     def run(self, most: int, told: Callable[[], None]) -> None:
         """Exclude boxes or split them."""
-        from regrasp.closed_form.compiled.places.moving_twists import room_to_move
-
         search = self.search
-        search.reopen()  # what other levels exclude
+        if search.count > 1:
+            search.reopen()  # what other levels exclude
         while search.goes_on(self.limit, 0.0, most, only=True):
             told()
         waiting = deque(search.left.tolist())
-        room = room_to_move(len(search.loads), search.fingers)
-        while waiting:
+        while waiting and self.goes_on():
             node = waiting.popleft()
             told()
             arcs, ends = search.box(node)
             if (arcs[:, 0] != arcs[:, 1]).any():
                 break
-            if search.excludes(np.array([node]), self.limit):
+            if search.excludes(np.array([node]), self.limit) or self.followed(node):
                 continue
-            u = search.moved(node, self.limit, room)
-            if node in search.moving:
-                continue
-            if u is not None:
-                self._try(arcs[:, 0].copy(), u)
             lengths = np.diff(ends, axis=1)[:, 0] * search.sides.lengths[search.sides.edges[arcs[:, 0]]]
             i = int(lengths.argmax())
             if lengths[i] > _NARROW * search.sides.size:
@@ -85,11 +78,25 @@ class _Moving:
                     break
                 waiting += inside
 
-    def _try(self, places: np.ndarray, u: Array) -> None:
-        """Go on from a placement that is better."""
+    def goes_on(self) -> bool:
+        """Whether there is a better level."""
+        return True
+
+    def followed(self, node: int) -> bool:
+        """Whether twists exclude a box; a placement that holds is gone on from."""
+        u = self.search.moved(node, self.limit)
+        if u is not None:
+            self.better(self.search.box(node)[0][:, 0].copy(), u)
+        return node in self.search.moving
+
+    def better(self, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array] | None:
+        """Go on from a placement where it is better, to the best near to it; None where it is not."""
         search, level = self.search, self.level
-        if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
-            self.best, *at = improved(search, level, self.aim, places, u)
-            search.forget(self.best, *at)
-            self.aim = level.beyond(self.best, self.tolerance)
-            level.put(search, self.aim)
+        level.put(search, self.aim)
+        if not search.are_apart(places, u) or search.norm_at(places, u) > level.max_force * (1 - SURE):
+            return None
+        self.best, places, u = improved(search, level, self.aim, places, u)
+        search.forget(self.best, places, u)
+        self.aim = level.beyond(self.best, self.tolerance)
+        level.put(search, self.aim)
+        return places, u

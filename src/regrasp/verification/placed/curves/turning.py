@@ -1,9 +1,10 @@
 """Whether twists that turn with the fingers exclude a box of parts of cubics, in whole numbers.
 
 Let t_i run from 0 to 1 as finger i goes along its part p_i(t_i), with tangent T_i and normal N_i = J T_i, J a
-quarter of a turn. A motion of a load w has polynomials of degree 2 in all t: velocity v, angular velocity
-omega, and s_i for each finger. A force of size 1 in the cone is in the hull of 0, the edges n -+ mu t over
-r = sqrt(1 + mu^2), and r n. So where, with q_i at or below the length of T_i,
+quarter of a turn. A motion of a load w has polynomials of degree 2 in all t: velocity v and angular velocity
+omega; and for each finger s_i, of degree 2 in each place, by its Bernstein coefficients. A force of size 1 in
+the cone is in the hull of 0, the edges n -+ mu t over r = sqrt(1 + mu^2), and r n. So where, with q_i at or
+below the length of T_i,
 
     s_i >= 0,    s_i q_i r >= u . (N_i -+ mu T_i),    s_i q_i >= r u . N_i,    u = v + omega J p_i,
 
@@ -32,9 +33,13 @@ Numbers = np.ndarray[Any, Any]
 """Whole numbers of any size."""
 
 
-def terms_of(fingers: int) -> int:
-    """How many a polynomial of degree 2 has: one, each place, each product of two places in turn."""
-    return (fingers + 1) * (fingers + 2) // 2
+def numbers_of(fingers: int) -> int:
+    """How many a motion has, of ``fingers``.
+
+    Three polynomials of degree 2, by terms: one, each place, each product of two in turn; then coefficients
+    of one of degree 2 in each place for each finger.
+    """
+    return 3 * (fingers + 1) * (fingers + 2) // 2 + fingers * 3**fingers
 
 
 def is_excluded_in_turn(
@@ -42,19 +47,21 @@ def is_excluded_in_turn(
 ) -> bool:
     """Whether motions of some loads exclude a box for forces below a bound.
 
-    motions: of each load, the load; and terms of v_x, v_y, omega and each s_i. hulls: the control points of
-    each finger's part, about the centre of mass.
+    motions: of each load, the load; and terms of v_x, v_y and omega, then coefficients of each s_i.
+    hulls: the control points of each finger's part, about the centre of mass.
     """
     k = len(hulls)
     values = _whole([Fraction(c) for _, motion in motions for c in motion])
     basis = np.array(_basis(k), dtype=object)
-    polynomials = values.reshape(len(motions), 3 + k, -1) @ basis.reshape(len(basis), -1)
+    values, terms = values.reshape(len(motions), -1), len(basis)
+    twists = values[:, : 3 * terms].reshape(len(motions), 3, terms) @ basis.reshape(terms, -1)
+    bounds = values[:, 3 * terms :].reshape(len(motions), k, -1) * basis[0].ravel()  # by the factors of 1
     limit, *numbers = _whole([bound, *(Fraction(c) for load, _ in motions for c in load)])
     loads = np.array(numbers, dtype=object).reshape(-1, 3)
     left: Any = 0
-    for load, motion in zip(loads, polynomials, strict=True):
-        left = left - load @ motion[:3] - limit * motion[3:].sum(axis=0)
-    if not (left > 0).all() or not (polynomials[:, 3:] >= 0).all():
+    for load, twist, most in zip(loads, twists, bounds, strict=True):
+        left = left - load @ twist - limit * most.sum(axis=0)
+    if not (left > 0).all() or not (bounds >= 0).all():
         return False
     square = 1 + Fraction(friction) ** 2
     mu, below, above, one = _whole([Fraction(friction), root_below(square), root_above(square), Fraction(1)])
@@ -64,16 +71,14 @@ def is_excluded_in_turn(
         tangent = [(int(b[0] - a[0]), int(b[1] - a[1])) for a, b in pairwise(points)]
         speed = _slowest(tangent)
         ways = [[(-y, x) for x, y in tangent], tangent]
-        for motion in polynomials:
-            own = [
-                np.moveaxis(c.reshape((3,) * k), i, 0).reshape(3, -1) for c in (*motion[:3], motion[3 + i])
-            ]
+        for twist, most in zip(twists, bounds, strict=True):
+            own = [np.moveaxis(c.reshape((3,) * k), i, 0).reshape(3, -1) for c in (*twist, most[i])]
             ahead, aside = (_work(own[:3], unit, points, way) for way in ways)
-            most = _raised(_product(own[3], [speed[0], 2 * speed[1], speed[2]])) * unit
-            sharp = most * below - ahead * one
+            done = _raised(_product(own[3], [speed[0], 2 * speed[1], speed[2]])) * unit
+            sharp = done * below - ahead * one
             if not all((room >= 0).all() for room in (sharp - mu * aside, sharp + mu * aside)):
                 return False
-            if not (most * one >= ahead * above).all():
+            if not (done * one >= ahead * above).all():
                 return False
     return True
 
