@@ -61,7 +61,6 @@ class Search:
         self.tied: dict[int, int] = {}  # boxes excluded by duals of all loads together, and the row of
         self.duals: list[Array] = []
         self.moving: dict[int, tuple[np.ndarray, Array]] = {}  # or by loads' twists that move with fingers
-        self._room: tuple[Any, ...] | None = None  # to find them
 
     def under(self, loads: Array) -> None:
         """From now on, of these loads (L, 3) [N, N m]."""
@@ -190,43 +189,20 @@ class Search:
             self.moving[node] = moving
         self._boxes[5][node] = 3 if row is None and moving is None else 1
 
-    def moved(self, node: int, fixed: float) -> Array | None:
+    def moved(self, node: int, fixed: float, room: tuple[Any, ...]) -> Array | None:
         """Exclude a box at a level [N] by twists that move with fingers, or say where a placement holds."""
-        from regrasp.closed_form.compiled.places.moving_twists import GONE, HELD, moved, room_to_move
+        from regrasp.closed_form.compiled.places.moving_twists import GONE, HELD, moved
 
         u, twists = np.zeros(self.fingers), np.zeros((len(self.loads), 3 + 2 * self.fingers))
-        if self._room is None:
-            self._room = room_to_move(len(self.loads), self.fingers)
         how = moved(
             self._table, self._wanted, self._law(self.friction, self.friction, self.law), fixed / self.unit,
-            *self.box(node), u, twists, self._room,
+            *self.box(node), u, twists, room,
         )  # fmt: skip
         if how == GONE:
             few, twists[:, 2] = np.flatnonzero(twists.any(axis=1)), twists[:, 2] / self.sides.size
             self.leave(node, None, (few, twists[few]))
         lo, hi = self._boxes[1][node].T
         return lo + u * (hi - lo) if how == HELD else None
-
-    def turned(self, node: int, fixed: float) -> bool:
-        """Whether a box on curves is excluded at a level [N] by twists that turn with fingers."""
-        from regrasp.closed_form.compiled.places.turning_twists import room_to_turn, turned
-
-        size, k = self.sides.size, self.fingers
-        arcs, ends = self.box(node)
-        parts = [
-            self.sides.part(int(j), lo, hi)[0] for j, (lo, hi) in zip(arcs[:, 0], ends.tolist(), strict=True)
-        ]
-        terms = (k + 1) * (k + 2) // 2
-        found = np.zeros((len(self.loads), 3 * terms + k * 3**k))
-        wanted = self._wanted * (self.unit / fixed)
-        if self._room is None:
-            self._room = room_to_turn(len(self.loads), k)
-        if not self.friction > 0 or not turned(parts, self.friction, wanted, found, self._room):
-            return False
-        found[:, 2 * terms : 3 * terms] /= size
-        few = np.flatnonzero(found.any(axis=1))
-        self.leave(node, None, (few, found[few]))
-        return True
 
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""

@@ -15,9 +15,10 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
-from regrasp.mechanics.checks import Array
 
-_ROUNDING = 1e-11  # of the largest coefficient, more than any sum of products of them is off by
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+_ROUNDING = 1e-12  # of the largest coefficient, more than any sum of products of them is off by
 _SHORT = 0.01  # of the size: ends of shorter legs are rounded by more of them
 _NOTHING = 1e-12
 _STEPS = 24  # to the least bound in one place of others

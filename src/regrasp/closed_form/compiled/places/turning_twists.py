@@ -36,7 +36,8 @@ from regrasp.closed_form.compiled.places.turning_bounds import (
     room_to_follow,
 )
 from regrasp.compilation import kept
-from regrasp.mechanics.checks import Array
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
 
 _SURE = 1e-9  # of the terms, more than rounding adds
 _NOTHING = 1e-13  # of work, that rounding makes
@@ -157,8 +158,7 @@ def _best(loads, twists, most, chosen, best):  # type: ignore[no-untyped-def]
     count, nodes = 0, twists.shape[1]
     for n in range(len(loads)):
         for a in range(nodes):
-            best[a] = -1.0
-            best[nodes + a] = -np.inf
+            best[0, a], best[1, a] = -1.0, -np.inf
         for c in range(len(twists)):
             some = False
             for a in range(nodes):
@@ -166,14 +166,14 @@ def _best(loads, twists, most, chosen, best):  # type: ignore[no-untyped-def]
             if some:
                 for a in range(nodes):
                     share = _left(loads[n], twists[c, a], most[c, a]) / max(most[c, a], 1e-9)
-                    if share > best[nodes + a]:
-                        best[nodes + a], best[a] = share, c
+                    if share > best[1, a]:
+                        best[0, a], best[1, a] = c, share
         for a in range(nodes):
-            seen = best[a] < 0.0
+            seen = best[0, a] < 0.0
             for b in range(a):
-                seen = seen or best[b] == best[a]
+                seen = seen or best[0, b] == best[0, a]
             if not seen and count < len(chosen):
-                chosen[count, 0], chosen[count, 1] = n, int(best[a])
+                chosen[count, 0], chosen[count, 1] = n, int(best[0, a])
                 count += 1
     return count
 
@@ -238,7 +238,7 @@ def _loop(digest: str) -> Any:
         k, nodes, terms = len(parts), len(at), len(through)
         _wrenches(parts, mu, wrenches)
         _turns(wrenches, pairs, at, twists, most)
-        count = _best(loads, twists, most, chosen, table[0])
+        count = _best(loads, twists, most, chosen, table)
         if count == 0:
             return False
         _rows(loads, twists, most, chosen, count, weights, bent, left, gains, sizes)

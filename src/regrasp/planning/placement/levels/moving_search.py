@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from regrasp.planning.placement.search import Progress, Search
 COARSE = 0.1
 """Of the size: arcs of less are left to these twists."""
 _NARROW = 1e-6  # of the size, of arcs that are not split
+_RAISED = 0.1  # of the tolerance, the least that a placement in such an arc is better by
 _STRICT = 1e-9
 
 
@@ -52,7 +54,14 @@ class Moving:
         self.search, self.level, self.best, self.tolerance = search, level, best, tolerance
         self.limit = level.max_force * (1 + _STRICT)
         self.aim = level.beyond(best, tolerance)
+        self.room = self.memory(len(search.loads), search.fingers)
         level.put(search, self.aim)
+
+    def memory(self, loads: int, fingers: int) -> tuple[Any, ...]:
+        """That of the compiled search of twists."""
+        from regrasp.closed_form.compiled.places.moving_twists import room_to_move
+
+        return room_to_move(loads, fingers)
 
     def run(self, most: int, told: Callable[[], None]) -> None:
         """Exclude boxes or split them."""
@@ -77,6 +86,8 @@ class Moving:
                 if not inside:
                     break
                 waiting += inside
+            elif self.raised(arcs[:, 0].copy(), ends.mean(axis=1)):
+                waiting.append(node)
 
     def goes_on(self) -> bool:
         """Whether there is a better level."""
@@ -84,10 +95,28 @@ class Moving:
 
     def followed(self, node: int) -> bool:
         """Whether twists exclude a box; a placement that holds is gone on from."""
-        u = self.search.moved(node, self.limit)
+        u = self.search.moved(node, self.limit, self.room)
         if u is not None:
             self.better(self.search.box(node)[0][:, 0].copy(), u)
         return node in self.search.moving
+
+    def raised(self, places: np.ndarray, u: Array) -> bool:
+        """Whether a placement in a box that is not split is better, by less than what is asked.
+
+        The best is its neighbour where neither slides to the other, on a ridge.
+        """
+        search, level, before = self.search, self.level, self.best
+        if search.are_apart(places, u):
+            reached = level.reached(search, before, places, u)
+            if reached > before + _RAISED * (self.aim - before):
+                self._take(reached, places, u)
+        level.put(search, self.aim)
+        return self.best > before
+
+    def _take(self, best: float, places: np.ndarray, u: Array) -> None:
+        self.best = best
+        self.search.forget(best, places, u)
+        self.aim = self.level.beyond(best, self.tolerance)
 
     def better(self, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array] | None:
         """Go on from a placement where it is better, to the best near to it; None where it is not."""
@@ -95,8 +124,7 @@ class Moving:
         level.put(search, self.aim)
         if not search.are_apart(places, u) or search.norm_at(places, u) > level.max_force * (1 - SURE):
             return None
-        self.best, places, u = improved(search, level, self.aim, places, u)
-        search.forget(self.best, places, u)
-        self.aim = level.beyond(self.best, self.tolerance)
+        best, places, u = improved(search, level, self.aim, places, u)
+        self._take(best, places, u)
         level.put(search, self.aim)
         return places, u

@@ -3,6 +3,7 @@
 from contextlib import suppress
 from copy import deepcopy
 from math import log
+from typing import Any
 
 import numpy as np
 
@@ -63,6 +64,12 @@ class Turning(Moving):
         super().__init__(search, level, best, tolerance)
         self.top = level.top(search)
 
+    def memory(self, loads: int, fingers: int) -> tuple[Any, ...]:
+        """That of the compiled search of twists."""
+        from regrasp.closed_form.compiled.places.turning_twists import room_to_turn
+
+        return room_to_turn(loads, fingers)
+
     def close(self, begins: list[Placed], most: int, known: float, progress: Progress | None) -> bool:
         """Whether no box is left. The aim is a level that no placement is beyond, where the search is closed.
 
@@ -88,9 +95,23 @@ class Turning(Moving):
 
     def followed(self, node: int) -> bool:
         """Whether twists exclude a box, in whose middle no placement holds; else it is gone on from."""
-        arcs, ends = self.search.box(node)
+        from regrasp.closed_form.compiled.places.turning_twists import turned
+
+        search, size, k = self.search, self.search.sides.size, self.search.fingers
+        arcs, ends = search.box(node)
         self.better(arcs[:, 0].copy(), ends.mean(axis=1))
-        return self.search.turned(node, self.limit)
+        if not search.friction > 0:
+            return False
+        each = zip(arcs[:, 0].tolist(), ends.tolist(), strict=True)
+        parts = np.array([search.sides.part(j, lo, hi)[0] for j, (lo, hi) in each]) / size
+        terms, loads = (k + 1) * (k + 2) // 2, -search.loads / [1, 1, size] / self.limit
+        found = np.zeros((len(loads), 3 * terms + k * 3**k))
+        if not turned(parts, search.friction, loads, found, self.room):
+            return False
+        found[:, 2 * terms : 3 * terms] /= size
+        few = np.flatnonzero(found.any(axis=1))
+        search.leave(node, None, (few, found[few]))
+        return True
 
     def better(self, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array] | None:
         """Go on from a placement that is better, and from those that are better still."""

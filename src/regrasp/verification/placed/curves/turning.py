@@ -39,7 +39,7 @@ def numbers_of(fingers: int) -> int:
     Three polynomials of degree 2, by terms: one, each place, each product of two in turn; then coefficients
     of one of degree 2 in each place for each finger.
     """
-    return 3 * (fingers + 1) * (fingers + 2) // 2 + fingers * 3**fingers
+    return 3 * (fingers + 1) * (fingers + 2) // 2 + fingers * int(3**fingers)
 
 
 def is_excluded_in_turn(
