@@ -196,12 +196,12 @@ def choose_grasp(
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
         moving, curved = isinstance(level, FrictionLevel), isinstance(sides, CurvedSides)
-        if moving:
+        if moving and not (curved and fingers == 2):  # fixed twists leave two alone little
             search.narrow = max(WIDE if curved else COARSE, search.narrow)
         best, beyond = run_level(search, level, around * tolerance, most, progress)
-        if moving and best is None and not search.closed:  # places that hold are few
+        if search.narrow > narrow and best is None and not search.closed:  # places that hold are few
             search = search.anew()
-            search.narrow, moving = narrow, False
+            search.narrow, moving = narrow, curved
             best, beyond = run_level(search, level, around * tolerance, most, progress)
         wide = best is not None and beyond > level.beyond(best, 1.1 * around * tolerance)
         if best is not None and wide and not search.interrupted:

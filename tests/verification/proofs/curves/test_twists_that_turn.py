@@ -281,7 +281,7 @@ def test_of_a_search_cut_short_what_was_closed_is_left() -> None:
 
     given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "tolerance": 1e-5}
     cut = rg.choose_grasp(shape, 2, loads, most_boxes=2000, progress=noted, **given)
-    before, kept = sorted(set(bounds) - {0.0})
+    *_, before, kept = sorted(set(bounds) - {0.0})
     assert cut.bound == kept
     assert 1e-5 < cut.gap < 0.5 * (cut.value - before) / cut.value
     ended = rg.choose_grasp(shape, 2, loads, most_boxes=2000, progress=interrupting, **given)

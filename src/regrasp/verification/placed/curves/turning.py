@@ -23,9 +23,11 @@ from typing import Any
 
 import numpy as np
 
+from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.protocol import Point
 from regrasp.verification.placed.roots import root_above, root_below
 
+_ROUNDING = 3e-14  # of the terms of a sum of less than a hundred products of a few numbers
 _MORE = 2**64  # by which lengths are finer than points
 _POWERS = ((1, 2, 1), (0, 1, 1), (0, 0, 1))  # of 1, t and t^2
 
@@ -50,6 +52,8 @@ def is_excluded_in_turn(
     motions: of each load, the load; and terms of v_x, v_y and omega, then coefficients of each s_i.
     hulls: the control points of each finger's part, about the centre of mass.
     """
+    if _is_clear(motions, float(bound), hulls, friction):
+        return True
     k = len(hulls)
     values = _whole([Fraction(c) for _, motion in motions for c in motion])
     basis = np.array(_basis(k), dtype=object)
@@ -71,16 +75,61 @@ def is_excluded_in_turn(
         tangent = [(int(b[0] - a[0]), int(b[1] - a[1])) for a, b in pairwise(points)]
         speed = _slowest(tangent)
         ways = [[(-y, x) for x, y in tangent], tangent]
-        for twist, most in zip(twists, bounds, strict=True):
-            own = [np.moveaxis(c.reshape((3,) * k), i, 0).reshape(3, -1) for c in (*twist, most[i])]
-            ahead, aside = (_work(own[:3], unit, points, way) for way in ways)
-            done = _raised(_product(own[3], [speed[0], 2 * speed[1], speed[2]])) * unit
-            sharp = done * below - ahead * one
-            if not all((room >= 0).all() for room in (sharp - mu * aside, sharp + mu * aside)):
-                return False
-            if not (done * one >= ahead * above).all():
-                return False
+        done = _raised(_product(_own(bounds[:, i], k, i), [speed[0], 2 * speed[1], speed[2]])) * unit
+        own = [_own(twists[:, d], k, i) for d in range(3)]
+        ahead, aside = (_work(own, unit, points, way) for way in ways)
+        sharp = done * below - ahead * one
+        if not all((room >= 0).all() for room in (sharp - mu * aside, sharp + mu * aside)):
+            return False
+        if not (done * one >= ahead * above).all():
+            return False
     return True
+
+
+def _is_clear(
+    motions: list[tuple[list[float], list[float]]], bound: float, hulls: list[list[Point]], friction: float
+) -> bool:
+    """The same in doubles, where all is by more than what rounding adds: with signs, then without."""
+    k = len(hulls)
+    basis = np.array(_basis(k), dtype=float).reshape(-1, 3**k)
+    loads, values = np.array([w for w, _ in motions]), np.array([motion for _, motion in motions])
+    terms = 3 * len(basis)
+    polynomials = values[:, :terms].reshape(len(values), 3, -1)
+    both = [polynomials @ basis, np.abs(polynomials) @ basis]
+    bounds = values[:, terms:].reshape(len(values), k, -1) * basis[0]
+    work, size = (np.einsum("ld,ldc->c", *each) for each in ((-loads, both[0]), (np.abs(loads), both[1])))
+    done = bound * bounds.sum(axis=(0, 1))
+    if not (bounds >= 0).all() or not (work - done > _ROUNDING * (size + done)).all():
+        return False
+    slant = float(np.hypot(1.0, friction))
+    for i, hull in enumerate(hulls):
+        points = np.array([[float(x), float(y)] for x, y in hull])
+        tangent = np.array([[float(b[0] - a[0]), float(b[1] - a[1])] for a, b in pairwise(hull)])
+        normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+        speed = _slowest_clear(tangent) * [1, 2, 1]
+        each = [(points, normal, tangent), (np.abs(points) * [1, -1], np.abs(normal), np.abs(tangent))]
+        above = slant * _raised(_product(_own(bounds[:, i], k, i), speed.tolist()))
+        found = []
+        for polynomial, (at, *ways) in zip(both, each, strict=True):
+            own = [_own(polynomial[:, d], k, i) for d in range(3)]
+            found += [_work(own, 1, at, way.tolist()) for way in ways]
+        ahead, aside, far, wide = found
+        edge = np.maximum(ahead + friction * np.abs(aside), slant**2 * ahead)
+        if not (above - edge >= _ROUNDING * (above + slant**2 * far + friction * wide)).all():
+            return False
+    return True
+
+
+def _slowest_clear(tangent: Array) -> Array:
+    """The same as ``_slowest`` in doubles, lower by more than rounding."""
+    a, b, c = tangent
+    first, middle, last = np.hypot(*tangent.T)
+    early, late = a @ b - _ROUNDING * first * middle, b @ c - _ROUNDING * middle * last
+    square = 2 * b @ b + a @ c - first * last - _ROUNDING * (middle**2 + first * last)
+    if min(first, last, early, late, square) <= 0:
+        return np.zeros(3)
+    slow = [first, min(early / first, late / last, np.sqrt(square / 2)), last]
+    return np.array(slow) * (1 - _ROUNDING)
 
 
 def _whole(values: list[Fraction]) -> Numbers:
@@ -101,6 +150,11 @@ def _basis(k: int) -> list[Numbers]:
     return made
 
 
+def _own(coefficients: Numbers, k: int, i: int) -> Numbers:
+    """(3, ...) those of loads (L, 3^k), in the place of finger i first."""
+    return np.moveaxis(coefficients.reshape((-1,) + (3,) * k), 1 + i, 0).reshape(3, -1)
+
+
 def _work(own: list[Numbers], unit: int, points: Numbers, way: list[tuple[int, int]]) -> Numbers:
     """Coefficients of u . N or u . T times the unit, of degree 7 in the finger's own place."""
     scaled = [(x * c, y * c) for (x, y), c in zip(way, (1, 2, 1), strict=True)]
@@ -115,7 +169,7 @@ def _work(own: list[Numbers], unit: int, points: Numbers, way: list[tuple[int, i
 
 def _product(a: Numbers, b: list[int]) -> Numbers:
     """Of coefficients (n, ...) and those of a polynomial in the first place."""
-    made = np.zeros((len(a) + len(b) - 1, a.shape[1]), dtype=object)
+    made = np.zeros((len(a) + len(b) - 1, a.shape[1]), dtype=a.dtype)
     for i, factor in enumerate(b):
         made[i : i + len(a)] += a * factor
     return made
