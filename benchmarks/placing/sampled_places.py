@@ -19,12 +19,13 @@ from scipy.spatial import ConvexHull, QhullError
 
 import regrasp as rg
 from random_attack import on_outline
-from withstood_attack import FINE, withstood
+from withstood_attack import FINE, ROUGH, withstood
 
 Array = np.ndarray
 LARGEST = ("angle", "force", "answered", "wrench", "wrench_ball")
 FIRST = 100  # placements that are judged under all loads first: their best leaves others out
-STEP, HALVINGS = 1.1, 40  # of levels that are answered
+LOOKS = (0, 2, 8)  # numbers of loads, after which the best so far are
+HALVINGS = 40  # of levels that are answered
 CLOSE, CUTS = 1e-9, 60
 
 
@@ -97,15 +98,16 @@ def norms(places: Places, task: Task, *, whole: bool = False) -> Array:
     Those that are worse than the best may be given what they need for some loads, unless ``whole``.
     """
     count = len(places.positions)
-    worst, left = np.full(count, -np.inf), np.arange(count)
+    worst, left, enough = np.full(count, -np.inf), np.arange(count), np.inf
     for number, load in enumerate(task.loads):
         worst[left] = np.maximum(worst[left], _norms_of(places.some(left), task, load))
         left = left[worst[left] < np.inf]
-        if number == 0 and count > FIRST and not whole:
+        if whole or count <= FIRST:
+            continue
+        if number in LOOKS:
             first = left[np.argsort(worst[left], kind="stable")[:FIRST]]
-            enough = norms(places.some(first), task, whole=True).min(initial=np.inf)
-        if count > FIRST and not whole:
-            left = left[worst[left] <= enough]
+            enough = min(enough, norms(places.some(first), task, whole=True).min(initial=np.inf))
+        left = left[worst[left] <= enough]
     return worst
 
 
@@ -146,18 +148,21 @@ def _answered(held: Places, task: Task) -> float:
 
 
 def _withstood(held: Places, task: Task) -> float:
-    """The largest level that one withstands: those that answer most are judged first, by linear programs."""
-    levels, left, level = [], [np.arange(len(held.positions))], 0.05
-    while len(more := left[-1][_holds(held.some(left[-1]), task, level)]):
-        left.append(more)
-        levels.append(level)
-        level *= STEP
-    found = 0.0
-    for number in reversed(range(len(left))):
-        if number + 1 < len(left) and levels[number] <= found:
-            break
-        for i in left[number] if number + 1 == len(left) else np.setdiff1d(left[number], left[number + 1]):
-            found = max(found, withstood(*(a[i] for a in held), task.friction, task.deviations, FINE, True))
+    """The largest level that one withstands, by linear programs; those that do not answer more are left out.
+
+    Polygons around the circles of limits, of few sides, say first what none withstands more than.
+    """
+    found, left = 0.0, np.random.default_rng(0).permutation(len(held.positions))
+    while len(left):
+        each, left = [held.some(i) for i in left[:FIRST]], left[FIRST:]
+        most = np.array([withstood(*one, task.friction, task.deviations, ROUGH, False) for one in each])
+        before = found
+        for i in np.argsort(-most, kind="stable"):
+            if most[i] <= found:
+                break
+            found = max(found, withstood(*each[i], task.friction, task.deviations, FINE, True))
+        if found > before:
+            left = left[_holds(held.some(left), task, found)]
     return found
 
 

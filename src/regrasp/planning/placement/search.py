@@ -136,20 +136,28 @@ class Search:
 
     def excludes(self, boxes: np.ndarray, fixed: float) -> bool:
         """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
+        return self.excluded(boxes, fixed) == len(boxes)
+
+    def excluded(self, boxes: np.ndarray, fixed: float) -> int:
+        """How many of some boxes are excluded at a level of the norm [N], before one that is not."""
         from regrasp.closed_form.compiled.places.placement_search import search, spare
 
         law = self._law(self.friction, self.friction, self.law)
-        for box in boxes:
-            one = (*(values[box : box + 1] for values in self._boxes[:-1]), self._boxes[-1])
-            one[2][0], one[5][0] = 0.0, 0
+        bounds, kinds = self._boxes[2], self._boxes[5]
+        done, some = 0, 1
+        while done < len(boxes):
+            heap = boxes[done : done + some].copy()
+            bounds[heap], kinds[heap] = -1.0, 0  # to be bounded anew, which is all that is done with each
+            state = np.array([2, len(heap), 0])
             search(
-                self._table, self._wanted, law, fixed / self.unit, 0.0, 0.0, 0.0, one, np.zeros(1, np.int64),
-                np.array([1, 1, 0]), np.full(1 + 2 * self.fingers, inf), self._tried[:1], 0,
+                self._table, self._wanted, law, fixed / self.unit, 0.0, 0.0, 0.0, self._boxes, heap, state,
+                np.full(1 + 2 * self.fingers, inf), self._tried[:1], len(heap),
                 spare(self.fingers, len(self._wanted)),
             )  # fmt: skip
-            if one[5][0] == 0:
-                return False
-        return True
+            if state[1]:
+                return done + int(kinds[boxes[done : done + some]].argmin())
+            done, some = done + len(heap), min(2 * some, _AT_A_TIME)
+        return done
 
     def reopen(self) -> None:
         """Look again at what was excluded: another level is sought now, at which forces may be less."""

@@ -1,6 +1,6 @@
 """Climbing to the best level: placements found raise it, and boxes are excluded until none is left."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf, nan
 
 import numpy as np
@@ -11,7 +11,7 @@ from regrasp.planning.placement.search import Progress, Search
 from regrasp.planning.placement.sliding import Placed, moved, one_by_one, slid
 
 _STRICT = 1e-9  # of the limit, by which excluded boxes must be above it
-_SETTLING, _NEARER = 24, 2
+_SETTLING, _NEARER = 24, 4  # how often the way to the top is halved, and the steps of each half
 _LATE, _STARTS = 1024, 3  # boxes without a placement that holds, after which so many near to it slide
 _FIRST, _LARGEST, _SHORTEST, _NEAR = 0.125, 0.5, 1e-5, 1e-4  # steps of slides, as parts of an edge
 _GAPS = (0.03,)  # proven on the way, while less is asked; more of them cost half of the boxes again
@@ -79,9 +79,7 @@ def _next(level: Level, best: float, gaps: list[float], tolerance: float, top: f
     return level.beyond(best, (*gaps, tolerance)[0])
 
 
-def settled(
-    search: Search, level: Level, aim: float, fixed: float, passed: Sequence[float] = ()
-) -> float:  # fmt: skip
+def settled(search: Search, level: Level, aim: float, fixed: float, passed: Sequence[float] = ()) -> float:
     """A level at which boxes that are left, too small to be split or not looked at, are excluded, too.
 
     passed: levels that were closed, or nearly, before.
@@ -89,25 +87,39 @@ def settled(
     left, top = search.left, level.top(search)
     if aim >= top:
         return aim
-    # first how far to go, by steps that double, then how much less is enough
-    steps = [aim + 0.5**halvings * (top - aim) for halvings in range(_SETTLING, 0, -1)]
-    lo, hi = aim, top
-    for tried in sorted({aim, *(p for p in passed if aim < p < top), *steps}):
-        level.put(search, tried)
-        if search.excludes(left, fixed):
-            hi = tried
+    reached, search.closed = first_that_excludes(
+        outward(aim, top, passed),
+        left,
+        lambda at: level.put(search, at),
+        lambda boxes: search.excluded(boxes, fixed),
+    )
+    return reached
+
+
+def outward(aim: float, top: float, passed: Sequence[float] = ()) -> list[float]:
+    """Levels from an aim to the top, in steps that grow with the way, and those between that were passed."""
+    steps = (1 + np.arange(_NEARER) / _NEARER) * 0.5 ** np.arange(_SETTLING, 0, -1)[:, None]
+    return sorted({aim, *(p for p in passed if aim < p < top), *(aim + steps.ravel() * (top - aim)), top})
+
+
+def first_that_excludes(
+    levels: list[float],
+    boxes: np.ndarray,
+    put: Callable[[float], None],
+    excluded: Callable[[np.ndarray], int],
+) -> tuple[float, bool]:
+    """The first of rising levels at which all boxes are excluded, else the last; and whether they are there.
+
+    put: go to a level. excluded: how many boxes it excludes before one that it does not. What is excluded at
+    a level is at those beyond it, too, by twists of its own: so each box is looked at once or twice.
+    """
+    done = below = 0
+    for reached in levels:
+        put(reached)
+        below, done = done, done + excluded(boxes[done:])
+        if done == len(boxes):
             break
-        lo = tried
-    if hi == aim:
-        search.closed = True
-        return aim
-    for _ in range(_NEARER):
-        middle = 0.5 * (lo + hi)
-        level.put(search, middle)
-        lo, hi = (lo, middle) if search.excludes(left, fixed) else (middle, hi)
-    level.put(search, hi)
-    search.closed = search.excludes(left, fixed)
-    return hi
+    return reached, done == len(boxes) and excluded(boxes[:below]) == below
 
 
 def improved(

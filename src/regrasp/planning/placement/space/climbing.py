@@ -6,6 +6,7 @@ from math import inf, nan
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.levels.climbing import first_that_excludes, outward
 from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.surface_search import SurfaceSearch
@@ -14,7 +15,6 @@ SpaceLevel = FrictionLevel | AnsweredLevel
 _SURE = 1e-6  # of the limit, more than norms are uncertain by
 _HALVINGS, _EXACT = 40, 1e-9  # of a level of a placement
 _SLIDES, _SLOW = 8, 1e-4  # of a placement, while each gains so much of its level
-_SETTLING, _NEARER = 16, 2
 
 
 @dataclass
@@ -114,23 +114,10 @@ class Climb:
 
     def _settled(self, aim: float) -> float:
         """A level at which boxes that are left, too small to be split or not looked at, are excluded, too."""
-        left, lo, hi, search = self.search.left, aim, self.top, self.search
-        if aim >= hi:
+        search, top = self.search, self.top
+        if aim >= top:
             search.closed = False
-            return hi
-        self.put(aim)
-        search.closed = search.excludes(left)
-        if search.closed or self.best is None:
-            return aim
-        for halvings in range(_SETTLING, 0, -1):  # by steps that double, then how much less is enough
-            step = 0.5**halvings
-            self.put(aim + step * (hi - aim))
-            if search.excludes(left):
-                lo, hi = aim + 0.5 * step * (hi - aim), aim + step * (hi - aim)
-                break
-        for _ in range(_NEARER):
-            self.put(0.5 * (lo + hi))
-            lo, hi = (lo, 0.5 * (lo + hi)) if search.excludes(left) else (0.5 * (lo + hi), hi)
-        self.put(hi)
-        search.closed = search.excludes(left)
-        return hi
+            return top
+        levels = [aim] if self.best is None else outward(aim, top)
+        reached, search.closed = first_that_excludes(levels, search.left, self.put, search.excluded)
+        return reached

@@ -150,11 +150,11 @@ class SurfaceSearch:
         """Try no placement of the box that comes next: its fingers in one place are none."""
         self._boxes[6][self._heap[0]] = self._boxes[6][self._heap[0], :1]
 
-    def excludes(self, boxes: np.ndarray) -> bool:
-        """Whether each of some boxes holds no loads by forces up to the limit, as the search stands now."""
+    def excluded(self, boxes: np.ndarray) -> int:
+        """How many of some boxes hold no loads by forces up to the limit now, before one that may."""
         from regrasp.closed_form.compiled.patches.patch_search import search
 
-        for box in boxes:
+        for number, box in enumerate(boxes):
             one = tuple(values[box : box + 1] for values in self._boxes)
             one[1][0], one[4][0], one[8][0] = 0.0, 0, -1
             state = np.array([1, 1, 0, *self._state[3:5], 0, 0, 0, 0])
@@ -164,8 +164,8 @@ class SurfaceSearch:
                 0, self._spare, self._together, self._for_all,
             )  # fmt: skip
             if one[4][0] == 0:
-                return False
-        return True
+                return number
+        return len(boxes)
 
     @property
     def left(self) -> np.ndarray:
