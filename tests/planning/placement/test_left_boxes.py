@@ -1,9 +1,12 @@
-"""At which level boxes that are left are excluded: each is looked at once or twice, however many."""
+"""What boxes at the end of a search cost: each is looked at once or twice, however many, in little memory."""
+
+import tracemalloc
 
 import numpy as np
 import pytest
 
 from regrasp.planning.placement.levels.climbing import first_that_excludes, outward
+from regrasp.planning.placement.proofs.box_rows import strongest
 
 pytestmark = pytest.mark.laws
 
@@ -56,3 +59,16 @@ def test_where_one_is_not_excluded_at_the_top_none_is_said_to_be() -> None:
 
 def test_without_boxes_the_aim_is_reached() -> None:
     assert settled(np.zeros(0))[:2] == (AIM, True)
+
+
+def test_loads_of_twists_take_little_memory() -> None:
+    rng = np.random.default_rng(5)
+    twists, loads = rng.normal(size=(20_000, 3)), rng.normal(size=(500, 3))
+    tracemalloc.start()
+    found = strongest(twists, loads)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 0.25 * 8 * len(twists) * len(loads)
+    some = slice(None, None, 400)
+    assert (found[some] == (-twists[some] @ loads.T).argmax(axis=1)).all()
+    assert strongest(twists[:0], loads).shape == (0,)

@@ -354,5 +354,5 @@ class Search:
             rings=read_only(self.sides.rings.copy()) if isinstance(self.sides, RingSides) else None,
             tied=read_only(np.array(self.duals)) if self.tied else None,
             max_force=None if self.limits[0] == inf else self.limits[0], min_normal=self.limits[1],
-            **{name: read_only(values.copy()) for name, values in given.items()},
+            **{name: read_only(values) for name, values in given.items()},
         )  # fmt: skip

@@ -224,14 +224,8 @@ def _proof(search: SurfaceSearch, bound: float) -> PatchProof:
     return PatchProof(
         read_only(points[:, :, :3].copy()), read_only(points[:, 0, 3:].copy()), search.fingers,
         search.friction, read_only(search.loads.copy()), search.law.size, search.law.norm, search.apart,
-        bound, **{name: _frozen(values) for name, values in arrays.items()},
+        bound, **{name: read_only(values) for name, values in arrays.items()},
     )  # fmt: skip
-
-
-def _frozen(values: np.ndarray) -> np.ndarray:
-    copy = values.copy()
-    copy.setflags(write=False)
-    return copy
 
 
 def _none_holds(search: SurfaceSearch) -> Infeasible:

@@ -7,6 +7,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.laws import Law
+from regrasp.planning.placement.proofs.box_rows import strongest
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.patches import Patches
 
@@ -283,7 +284,7 @@ class SurfaceSearch:
         return [(norm, spots) for norm, spots in found if norm < inf]
 
     def arrays(self) -> dict[str, Array]:
-        """What a proof is made of: patches, boxes, and what bounds them."""
+        """What a proof is made of, arrays of their own: patches, boxes, and what bounds them."""
         n, p = self.count, int(self._state[3])
         patches, _, twists, critical, kinds, children, _, _, joined = (values[:n] for values in self._boxes)
         spans = self._spans[: len(self.patches.spans)] // 3
@@ -292,12 +293,11 @@ class SurfaceSearch:
         number = np.where(split, 0, np.where(kinds == 3, -1, critical))
         number[rows] = -2 - np.arange(len(rows))
         twists = np.where(split[:, None] | (number < -1)[:, None], 0.0, twists / self._unit)
-        strongest = (-twists @ self.loads.T).argmax(axis=1)
-        number = np.where(split | (number < 0), number, strongest)
+        number = np.where(split | (number < 0), number, strongest(twists, self.loads))
         return {
             "spans": spans,
-            "halves": self._tree[:p],
-            "boxes": patches,
+            "halves": self._tree[:p].copy(),
+            "boxes": patches.copy(),
             "children": np.where(split[:, None], children, 0),
             "number": number,
             "twists": twists,
