@@ -79,7 +79,7 @@ def test_a_search_finds_them() -> None:
     for friction in 0.75, 0.01, 0.0:
         sides = Sides(SQUARE, np.array([0]), np.array([[0.0, 1.0]]))
         search = Search(sides, 1, friction, LOADS, law_of("friction_use")[1], 1e-6, 10.0)
-        assert not search.excludes(np.array([0]), 1e6)
+        assert not search.excluded(np.array([0]), 1e6)
         assert search.moved(0, 1e6, room_to_move(2, 1)) is None
         numbers, twists = search.moving[0]
         assert sorted(numbers) == [0, 1]

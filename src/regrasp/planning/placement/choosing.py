@@ -30,13 +30,19 @@ from regrasp.planning.placement.loads import inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
 from regrasp.planning.placement.search import ANY_FORCE, MOST_BOXES, Progress, Search
+from regrasp.planning.placement.sliding import slide_best
 from regrasp.planning.placement.space.choosing import check_space, choose_on_mesh
 from regrasp.planning.states.objectives import Objective
 
 FROM_CORNERS = 1e-3
 """Default distance of fingers from corners, as a fraction of the length of the outline."""
 _SPARED = 1e-6  # of the friction, where placements on edges of cones are passed over
-_KEPT, _FEW = 10, 1000  # placements, however those were found; boxes at the least
+_KEPT = 10  # placements, however those were found
+_FEW, _FEWEST, _WORK = (
+    1000,
+    64,
+    2_000_000,
+)  # boxes at the least, of less work; sides of all boxes under all loads
 DISTINCT = 1e-6
 """Default distance of fingers, as a fraction of the object's farthest reach from its centre of mass."""
 
@@ -221,6 +227,8 @@ def choose_grasp(
         run_constrained(search, constraints, half, most, progress)
     else:
         search.run(half, most, progress)
+        if not search.closed:
+            slide_best(search)
         if not search.closed and mu > 0:
             _spare_friction(search, half, 0 if search.interrupted else most // 10)
     return _told(chosen_by_norm(search, asked), law, progress)
@@ -240,8 +248,10 @@ def _spare_friction(search: Search, tolerance: float, most: int) -> None:
     Where loads are on edges of cones, boxes lead to placements that rounding decides on, and past others.
     """
     less = search.anew((1 - _SPARED) * search.friction)
+    few = min(max(_WORK // (len(search.loads) * len(search.sides.ends)), _FEWEST), _FEW)
     with suppress(KeyboardInterrupt):
-        less.run(tolerance, max(most, _FEW), None)
+        less.run(tolerance, max(most, few), None)
+        slide_best(less)
     search.take(search.placements()[:_KEPT] + less.placements())
 
 

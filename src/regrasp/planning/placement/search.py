@@ -93,7 +93,7 @@ class Search:
         for few in map(list, combinations(range(len(u)), self.fingers)):
             norm = self.norm_at(on[few], u[few]) if self.are_apart(on[few], u[few]) else inf
             if norm < self.best:
-                self._found[0], self._found[1::2], self._found[2::2] = norm / self.unit, on[few], u[few]
+                self.note(norm, on[few], u[few])
 
     def goes_on(self, fixed: float, tolerance: float, most: int, *, only: bool = False) -> bool:
         """Some more boxes. False where none is left, or no room for more of them.
@@ -131,20 +131,15 @@ class Search:
     @property
     def left(self) -> np.ndarray:
         """Numbers of boxes not excluded: not looked at, or too small to be split; the least bound first."""
-        found = np.flatnonzero(self._boxes[5][: self.count] == 0)
-        return found[np.argsort(self._boxes[2][found], kind="stable")]
-
-    def excludes(self, boxes: np.ndarray, fixed: float) -> bool:
-        """Whether each of some boxes is excluded at a level of the norm [N], as the search stands now."""
-        return self.excluded(boxes, fixed) == len(boxes)
+        left = np.flatnonzero(self._boxes[5][: self.count] == 0)
+        return left[np.argsort(self._boxes[2][left], kind="stable")]
 
     def excluded(self, boxes: np.ndarray, fixed: float) -> int:
-        """How many of some boxes are excluded at a level of the norm [N], before one that is not."""
+        """How many of some boxes are excluded at a level of the norm [N] now, before one that is not."""
         from regrasp.closed_form.compiled.places.placement_search import search, spare
 
-        law = self._law(self.friction, self.friction, self.law)
+        law, done, some = self._law(self.friction, self.friction, self.law), 0, 1
         bounds, kinds = self._boxes[2], self._boxes[5]
-        done, some = 0, 1
         while done < len(boxes):
             heap = boxes[done : done + some].copy()
             bounds[heap], kinds[heap] = -1.0, 0  # to be bounded anew, which is all that is done with each
@@ -227,6 +222,10 @@ class Search:
     def accept(self, norm: float, places: np.ndarray, u: Array) -> None:
         """Take a placement for found, of this norm [N]."""
         self._kept.append((norm, places, u))
+        self.note(norm, places, u)
+
+    def note(self, norm: float, places: np.ndarray, u: Array) -> None:
+        """The best placement found, beside those tried, of this norm [N]."""
         self._found[0], self._found[1::2], self._found[2::2] = norm / self.unit, places, u
 
     def take(self, placements: list[tuple[float, np.ndarray, Array]]) -> None:
@@ -247,8 +246,7 @@ class Search:
 
         friction = kept_friction(self.friction, 2 * RESERVE)
         boxes = memory(1 + k + 1, k)
-        boxes[0][0] = places[:, None]
-        boxes[1][0] = u[:, None]
+        boxes[0][0], boxes[1][0] = places[:, None], u[:, None]
         found = np.full(1 + 2 * k, inf)
         search(
             self._table, self._wanted, self._law(friction, friction, law or self.law), inf, 0.0, 0.0, 0.0,
@@ -265,8 +263,7 @@ class Search:
         return (mu, usable, size, norm, _PRECISE, limit / self.unit, least / self.unit)
 
     def _grow(self, most: int) -> bool:
-        have = len(self._heap)
-        room = min(2 * have, most)
+        have, room = len(self._heap), min(2 * len(self._heap), most)
         if room <= have:
             return False
         larger = memory(room, self.fingers)
@@ -326,8 +323,7 @@ class Search:
         """
         if self._kept or self._only:
             return sorted(self._kept, key=lambda kept: kept[0])
-        rows = self._tried[: min(int(self._state[2]), _TRIED)]
-        return self._read(np.vstack([self._found, rows]))
+        return self._read(np.vstack([self._found, self._tried[: min(int(self._state[2]), _TRIED)]]))
 
     def _read(self, rows: Array) -> list[tuple[float, np.ndarray, Array]]:
         rows = rows[np.isfinite(rows[:, 0])]

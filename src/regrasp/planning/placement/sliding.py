@@ -13,6 +13,8 @@ Placed = tuple[float, np.ndarray, Array]
 """The value of a placement, of which less is better, and the sides and u of its fingers."""
 Value = Callable[[np.ndarray, Array, float], float]
 """Of a placement where it is better than a value given; infinite elsewhere."""
+_STARTS, _GAINED = 4, 1e-6  # placements, and of a norm, what is worth a step
+_FIRST, _LAST = 0.125, 1e-4  # steps, as parts of an edge
 
 
 def slid(
@@ -34,6 +36,22 @@ def slid(
                 best, places, u, helped = found, on, at, True
         step *= 1.0 if helped else 0.5
     return best, places, u
+
+
+def slide_best(search: Search) -> None:
+    """Let the best placements of a search that ended early slide to where they are better, for what is found.
+
+    Boxes that are wide lead to placements near their middles, far from the best of each.
+    """
+
+    def less(places: np.ndarray, u: Array, than: float) -> float:
+        norm = search.norm_at(places, u) if search.are_apart(places, u) else inf
+        return norm if norm < than * (1 - _GAINED) else inf
+
+    for placed in search.placements()[:_STARTS]:
+        better = slid(search, placed, less, _FIRST, _LAST, one_by_one(search.fingers))
+        if better[0] < search.best:
+            search.note(*better)
 
 
 def one_by_one(fingers: int) -> Callable[[], Array]:

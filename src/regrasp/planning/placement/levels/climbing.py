@@ -63,7 +63,7 @@ def run_level(
             raise
         search.closed, search.interrupted = False, True
     if best is None:
-        search.closed = search.closed and search.excludes(search.left, fixed)
+        search.closed = search.closed and search.excluded(search.left, fixed) == len(search.left)
         return best, aim
     try:
         beyond = settled(search, level, aim, fixed, passed)

@@ -77,7 +77,7 @@ class Moving:
             arcs, ends = search.box(node)
             if (arcs[:, 0] != arcs[:, 1]).any():
                 break
-            if search.excludes(np.array([node]), self.limit) or self.followed(node):
+            if search.excluded(np.array([node]), self.limit) or self.followed(node):
                 continue
             lengths = np.diff(ends, axis=1)[:, 0] * search.sides.lengths[search.sides.edges[arcs[:, 0]]]
             i = int(lengths.argmax())

@@ -78,7 +78,8 @@ class TiedSearch:
         for node in left:
             if (number := self.open[node][1]) >= 0:
                 self._leave(node, number)
-        search.closed = search.excludes(search.left, level.max_force * (1 + STRICT))
+        open_ones = search.left
+        search.closed = search.excluded(open_ones, level.max_force * (1 + STRICT)) == len(open_ones)
         return reached
 
     def _split_all(self, most: int, progress: Progress | None, beyond: float) -> None:
@@ -111,7 +112,7 @@ class TiedSearch:
         search, (arcs, ends) = self.search, self.search.box(node)
         alike = np.ones(len(arcs))
         self.level.put(search, self.aim)
-        if search.excludes(np.array([node]), self.level.max_force * (1 + STRICT)):
+        if search.excluded(np.array([node]), self.level.max_force * (1 + STRICT)):
             return None
         corners = self.boxes.corners(arcs, ends)
         if corners is None:
