@@ -142,7 +142,7 @@ def test_a_map_of_what_is_withstood_has_what_set_points_withstand_in_each_cell()
 @pytest.mark.parametrize(
     ("owner", "name", "call"),
     [
-        (Search, "halved", 1), (Search, "halved", 20), (Search, "leave", 3), (Search, "excludes", 40),
+        (Search, "halved", 1), (Search, "halved", 20), (Search, "leave", 3), (Search, "excluded", 40),
         (Ties, "answer", 1), (WithstoodLevel, "state", 4),
     ],
 )  # fmt: skip

@@ -37,12 +37,8 @@ from regrasp.planning.states.objectives import Objective
 FROM_CORNERS = 1e-3
 """Default distance of fingers from corners, as a fraction of the length of the outline."""
 _SPARED = 1e-6  # of the friction, where placements on edges of cones are passed over
-_KEPT = 10  # placements, however those were found
-_FEW, _FEWEST, _WORK = (
-    1000,
-    64,
-    2_000_000,
-)  # boxes at the least, of less work; sides of all boxes under all loads
+_KEPT, _FEW = 10, 1000  # placements, however those were found; boxes at the least
+_SHORT = 0.25  # of the work of sliding otherwise
 DISTINCT = 1e-6
 """Default distance of fingers, as a fraction of the object's farthest reach from its centre of mass."""
 
@@ -230,7 +226,7 @@ def choose_grasp(
         if not search.closed:
             slide_best(search)
         if not search.closed and mu > 0:
-            _spare_friction(search, half, 0 if search.interrupted else most // 10)
+            _spare_friction(search, half, max(most // 10, _FEW))
     return _told(chosen_by_norm(search, asked), law, progress)
 
 
@@ -248,10 +244,10 @@ def _spare_friction(search: Search, tolerance: float, most: int) -> None:
     Where loads are on edges of cones, boxes lead to placements that rounding decides on, and past others.
     """
     less = search.anew((1 - _SPARED) * search.friction)
-    few = min(max(_WORK // (len(search.loads) * len(search.sides.ends)), _FEWEST), _FEW)
     with suppress(KeyboardInterrupt):
-        less.run(tolerance, max(most, few), None)
-        slide_best(less)
+        if not search.interrupted:  # else nobody waits for boxes
+            less.run(tolerance, most, None)
+        slide_best(less, _SHORT)
     search.take(search.placements()[:_KEPT] + less.placements())
 
 

@@ -18,7 +18,7 @@ from regrasp.planning.placement.sides import RingSides, Sides
 MOST_BOXES = 200_000
 """Boxes of a search unless told otherwise: about 500 bytes each for three fingers."""
 _FIRST_BOXES = 2048
-_AT_A_TIME, _LOADS = 256, 100  # boxes, under so many loads
+_AT_A_TIME, _WORK = 256, 5000  # boxes, of so many sides times loads
 _TRIED = 4096
 _LATE = 4096  # boxes without any placement found, after which points are tried
 _POINTS = {2: 60, 3: 24, 4: 14}  # of so many fingers: about 2,000 placements
@@ -75,11 +75,12 @@ class Search:
         try:
             going, late = True, False
             while going:
-                going = self.goes_on(inf, tolerance, most)
+                going = self.goes_on(inf, tolerance, most) and self.count < most
                 lost = self.best == inf and not self.closed and (self.count >= _LATE or not going)
                 if lost and not late:
                     late = True
-                    self._try_points()
+                    for placed in self.on_points()[:1]:
+                        self.note(*placed)
                 if progress is not None:
                     progress(self.bound, self.best)
         except KeyboardInterrupt:
@@ -87,13 +88,12 @@ class Search:
             if self.best == inf:
                 raise
 
-    def _try_points(self) -> None:
-        """Take the best placement on some points spread evenly for found, where one holds."""
+    def on_points(self) -> list[tuple[float, np.ndarray, Array]]:
+        """Placements on some points spread evenly, the best first, as ``placements``."""
         on, u = self.sides.spread(_POINTS[self.fingers])
-        for few in map(list, combinations(range(len(u)), self.fingers)):
-            norm = self.norm_at(on[few], u[few]) if self.are_apart(on[few], u[few]) else inf
-            if norm < self.best:
-                self.note(norm, on[few], u[few])
+        each = [list(few) for few in combinations(range(len(u)), self.fingers)]
+        found = [(self.norm_at(on[i], u[i]), on[i], u[i]) for i in each if self.are_apart(on[i], u[i])]
+        return sorted((placed for placed in found if placed[0] < inf), key=lambda placed: placed[0])
 
     def goes_on(self, fixed: float, tolerance: float, most: int, *, only: bool = False) -> bool:
         """Some more boxes. False where none is left, or no room for more of them.
@@ -114,7 +114,8 @@ class Search:
                 spare(self.fingers, len(self._wanted)),
             ))  # fmt: skip
 
-        each = max(_AT_A_TIME * _LOADS // max(_LOADS, len(self._wanted)), 1)  # lest an interrupt waits
+        work = len(self._wanted) * len(self._table)
+        each = max(_AT_A_TIME * _WORK // max(_WORK, work), 1)  # lest an interrupt waits
         found = np.zeros_like(self._found) if only else self._found
         queue = Queue(self._boxes, self._heap, self._state, found, self._tried)
         if not only and queue.is_for_parts:

@@ -13,7 +13,8 @@ Placed = tuple[float, np.ndarray, Array]
 """The value of a placement, of which less is better, and the sides and u of its fingers."""
 Value = Callable[[np.ndarray, Array, float], float]
 """Of a placement where it is better than a value given; infinite elsewhere."""
-_STARTS, _GAINED = 4, 1e-6  # placements, and of a norm, what is worth a step
+_STARTS, _GAINED = 8, 1e-6  # placements, and of a norm, what is worth a step
+_WORK, _PLACEMENTS = 400_000, 2000  # norms for one load each, a second or two of a processor; on points
 _FIRST, _LAST = 0.125, 1e-4  # steps, as parts of an edge
 
 
@@ -38,17 +39,24 @@ def slid(
     return best, places, u
 
 
-def slide_best(search: Search) -> None:
-    """Let the best placements of a search that ended early slide to where they are better, for what is found.
+def slide_best(search: Search, share: float = 1.0) -> None:
+    """Let the best placements of a search that ended early, and of points, slide to where they are better.
 
-    Boxes that are wide lead to placements near their middles, far from the best of each.
+    Boxes that are wide lead to placements near their middles, far from the best of each. share: of the work.
     """
+    left = int(share * _WORK / len(search.loads))
 
     def less(places: np.ndarray, u: Array, than: float) -> float:
-        norm = search.norm_at(places, u) if search.are_apart(places, u) else inf
+        nonlocal left
+        left -= 1
+        norm = search.norm_at(places, u) if left > 0 and search.are_apart(places, u) else inf
         return norm if norm < than * (1 - _GAINED) else inf
 
-    for placed in search.placements()[:_STARTS]:
+    starts = search.placements()[:_STARTS]
+    if left > _PLACEMENTS:
+        left -= _PLACEMENTS
+        starts += search.on_points()[:_STARTS]
+    for placed in sorted(starts, key=lambda placed: placed[0]):
         better = slid(search, placed, less, _FIRST, _LAST, one_by_one(search.fingers))
         if better[0] < search.best:
             search.note(*better)
