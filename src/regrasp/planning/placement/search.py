@@ -18,7 +18,7 @@ from regrasp.planning.placement.sides import RingSides, Sides
 MOST_BOXES = 200_000
 """Boxes of a search unless told otherwise: about 500 bytes each for three fingers."""
 _FIRST_BOXES = 2048
-_AT_A_TIME, _WORK = 256, 5000  # boxes, of so many sides times loads
+_AT_A_TIME, _WORK = 256, 5000  # boxes, of so many sides times loads, lest an interrupt waits
 _TRIED = 4096
 _LATE = 4096  # boxes without any placement found, after which points are tried
 _POINTS = {2: 60, 3: 24, 4: 14}  # of so many fingers: about 2,000 placements
@@ -50,10 +50,8 @@ class Search:
         arcs, ends = self._boxes[:2]
         arcs[0, :, 1] = len(self._table) - 1
         ends[0] = sides.ends[0, 0], sides.ends[-1, 1]
-        self._heap = np.zeros(_FIRST_BOXES, np.int64)
-        self._state = np.array([1, 1, 0])
-        self._found = np.full(1 + 2 * fingers, inf)
-        self._tried = np.zeros((_TRIED, 1 + 2 * fingers))
+        self._heap, self._state = np.zeros(_FIRST_BOXES, np.int64), np.array([1, 1, 0])
+        self._found, self._tried = np.full(1 + 2 * fingers, inf), np.zeros((_TRIED, 1 + 2 * fingers))
         self.closed = self.interrupted = self._only = False
         self.narrow, self.limits, self._least = narrow, limits, apart / sides.size
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
@@ -73,12 +71,12 @@ class Search:
         An interrupt from the keyboard ends the search, too, and leaves what it has found.
         """
         try:
-            going, late = True, False
+            going, tried = True, False
             while going:
                 going = self.goes_on(inf, tolerance, most) and self.count < most
-                lost = self.best == inf and not self.closed and (self.count >= _LATE or not going)
-                if lost and not late:
-                    late = True
+                late = self.count >= _LATE or not going
+                if late and self.best == inf and not self.closed and not tried:
+                    tried = True
                     for placed in self.on_points()[:1]:
                         self.note(*placed)
                 if progress is not None:
@@ -114,8 +112,7 @@ class Search:
                 spare(self.fingers, len(self._wanted)),
             ))  # fmt: skip
 
-        work = len(self._wanted) * len(self._table)
-        each = max(_AT_A_TIME * _WORK // max(_WORK, work), 1)  # lest an interrupt waits
+        each = max(_AT_A_TIME * _WORK // max(_WORK, len(self._wanted) * len(self._table)), 1)
         found = np.zeros_like(self._found) if only else self._found
         queue = Queue(self._boxes, self._heap, self._state, found, self._tried)
         if not only and queue.is_for_parts:
@@ -157,9 +154,8 @@ class Search:
 
     def reopen(self) -> None:
         """Look again at what was excluded: another level is sought now, at which forces may be less."""
-        kinds, bounds = self._boxes[5], self._boxes[2]
-        again = np.flatnonzero(kinds[: self.count] == 1)
-        kinds[again], bounds[again] = 0, -1.0
+        again = np.flatnonzero(self._boxes[5][: self.count] == 1)
+        self._boxes[5][again], self._boxes[2][again] = 0, -1.0
         self._heap[: len(again)], self._state[1], self.closed = again, len(again), False
         self._found[:] = inf
 
@@ -217,8 +213,7 @@ class Search:
     def forget(self, level: float, places: np.ndarray, u: Array) -> None:
         """Look for a first placement again: one on these sides reaches a level, a better one is sought."""
         self._kept.append((-level, places, u))
-        self._found[:] = inf
-        self.closed = False
+        self._found[:], self.closed = inf, False
 
     def accept(self, norm: float, places: np.ndarray, u: Array) -> None:
         """Take a placement for found, of this norm [N]."""
