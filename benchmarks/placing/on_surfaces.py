@@ -2,6 +2,7 @@
 
     python benchmarks/placing/on_surfaces.py [--only bracket] [--attacks 100000] [--seconds 10]
     python benchmarks/placing/on_surfaces.py --only pebble --attacks 3000  # alone, for what its memory is
+    python benchmarks/placing/on_surfaces.py --table
 
 Rivals and attacks judge placements by the search's own compiled norm; an attack that seems to beat the bound
 is judged again by a cone program (cvxpy), and counts if that says so, too. The integer program (HiGHS) sees
@@ -17,6 +18,7 @@ from math import inf
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
 from time import perf_counter, process_time
+from typing import Any
 
 import cvxpy as cp
 import numpy as np
@@ -219,6 +221,24 @@ def integer_program(
     return inf if found.x is None else float(found.fun)
 
 
+def table(kept: dict[str, dict[str, Any]]) -> str:
+    """A line for each case, of rows that are kept; rivals by how much they are worse than the value."""
+    rivals = ("random", "all of 60 points", "multi-start", "integer program, 20 points")
+    names = ["mesh, fingers, objective", "value", "clock", "of a processor", "gap", "boxes", "`verify`"]
+    names += ["attacks", "best attack", "below the bound", *rivals]
+    lines = [f"| {' | '.join(names)} |", f"|---{'|--:' * (len(names) - 1)}|"]
+    for key, row in kept.items():
+        used = f"{row['processor_seconds']:.1f} s" if "processor_seconds" in row else ""
+        worse = [row["rivals"].get(rival) for rival in rivals]
+        shown = ["" if w is None else f"{w / row['value'] - 1:+.1%}" for w in worse]
+        lines.append(
+            f"| {key} | {row['value']:.5g} | {row['seconds']:.1f} s | {used} | {row['gap']:.2%} | "
+            f"{row['boxes']:,} | {row['verify_seconds']:.1f} s | {row['attacks']:,} | "
+            f"{row['best_attack'] / row['value'] - 1:+.2%} | {row['below_bound']} | {' | '.join(shown)} |"
+        )
+    return "\n".join(lines)
+
+
 def main() -> None:
     """A row of the table for each case."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -226,7 +246,11 @@ def main() -> None:
     parser.add_argument("--attacks", type=int, default=100_000)
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--table", action="store_true")
     given, rows = parser.parse_args(), {}
+    if given.table:
+        print(table(json.loads(RESULTS.read_text())))
+        return
     rg.choose_grasp(BOX, 3, rg.Wrench([0, 0, -1]), friction=0.5, tolerance=0.5)
     for name, mesh, loads, friction, fingers, objective in CASES:
         if given.only not in f"{name}, {fingers} fingers, {objective}":

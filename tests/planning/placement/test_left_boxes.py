@@ -88,7 +88,7 @@ def test_what_a_search_cut_short_found_slides_to_where_it_is_better(monkeypatch:
         )
 
     better = chosen()
-    monkeypatch.setattr(choosing, "slide_best", lambda search: None)
+    monkeypatch.setattr(choosing, "slide_best", lambda *_: None)
     assert better.value < 0.998 * chosen().value
     assert better.bound == chosen().bound
     assert rg.verify(better).ok

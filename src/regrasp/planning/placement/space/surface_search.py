@@ -12,7 +12,7 @@ from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.patches import Patches
 
 MOST_BOXES = 1_000_000
-"""Boxes of a search in space unless told otherwise: about 300 bytes each for three fingers."""
+"""Boxes of a search in space unless told otherwise: 500 bytes each for three fingers, with their proof."""
 MOST_LOOKS = 1_500_000_000
 """Corners and groups of faces looked at, unless told how many boxes."""
 _FIRST_BOXES = 4096
