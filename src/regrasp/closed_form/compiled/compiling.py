@@ -4,6 +4,7 @@ from hashlib import sha256
 from types import FunctionType, ModuleType
 from typing import Any
 
+import numpy as np
 from numba import njit
 
 INNER: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -19,7 +20,8 @@ def compiled(modules: tuple[ModuleType, ...], *, inline: bool = True, **options:
     """
     names: dict[str, Any] = {"__builtins__": __builtins__}
     for module in modules:
-        names.update(vars(module))
+        # a whole number of Python's would be a type of its own, and a function compiled for each it is given
+        names.update({k: np.int64(v) if type(v) is int else v for k, v in vars(module).items()})
     for module in modules:
         for name, function in vars(module).items():
             if isinstance(function, FunctionType) and function.__module__ == module.__name__:
