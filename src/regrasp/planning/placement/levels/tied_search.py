@@ -52,12 +52,16 @@ class TiedSearch:
         self.boxes = Boxes(search.sides, search.friction)
         self.tried = Boxes(search.sides, kept_friction(search.friction, 2 * RESERVE))
         self.known = KnownDuals(self.ties)
-        self.best = max((-placed[0] for placed in kept), default=-1.0)
-        self.aim = level.beyond(max(self.best, 0.0), tolerance)
         self.tolerance = tolerance
-        self.solved = 0
+        self.begin()
         self.open: dict[int, tuple[float, int]] = {}  # boxes' bounds, and the duals that prove them
         self._rows: dict[int, int] = {}  # of the proof, of duals known
+
+    def begin(self) -> None:
+        """Begin from the placements known."""
+        self.best = max((-placed[0] for placed in self.kept), default=-1.0)
+        self.aim = self.level.beyond(max(self.best, 0.0), self.tolerance)
+        self.solved = 0
 
     def run(self, most: int, progress: Progress | None, beyond: float) -> float:
         """Search; a level that no placement is beyond, at which the search is left.
@@ -170,7 +174,7 @@ class TiedSearch:
 
     def _tried(self, arcs: np.ndarray, ends: Array) -> Withstood | None:
         """What fingers in the middle of their arcs withstand."""
-        sides, search, k = self.search.sides, self.search, len(arcs)
+        sides, search = self.search.sides, self.search
         middle = [(arc[0], arc_ends.mean()) for arc, arc_ends in zip(arcs, ends, strict=True)]
         for i in np.flatnonzero(arcs[:, 0] < arcs[:, 1]).tolist():
             on = self.boxes.stretches(arcs[i], ends[i])
@@ -180,8 +184,7 @@ class TiedSearch:
         places, u = np.array([j for j, _ in middle]), np.array([v for _, v in middle])
         if not search.are_apart(places, u):
             return None
-        corner = self.tried.corners(places.repeat(2).reshape(k, 2), u.repeat(2).reshape(k, 2))
-        found = None if corner is None else self._answer(*corner.at(np.zeros((1, k), np.int64))[:2])
+        found = self.answered(places, u)
         if found is None or found.factor < 0:
             return found
         factor = found.factor * (1 - _GIVEN)
@@ -193,6 +196,12 @@ class TiedSearch:
         if factor >= 0:
             self.kept.append((-factor, places, u))
         return found
+
+    def answered(self, places: np.ndarray, u: Array) -> Withstood | None:
+        """What a placement withstands, but for what solvers are off by; None where they do not say."""
+        k = len(u)
+        corner = self.tried.corners(places.repeat(2).reshape(k, 2), u.repeat(2).reshape(k, 2))
+        return None if corner is None else self._answer(*corner.at(np.zeros((1, k), np.int64))[:2])
 
     def _answer(self, points: Array, rays: Array) -> Withstood | None:
         self.solved += 1

@@ -99,15 +99,18 @@ class WithstoodLevel(AnsweredLevel):
         for places, u in self._others(found, known):
             known.append((-self._factor(search, places, u), places, u))
         known[:] = sorted((p for p in known if p[0] <= 0), key=lambda placed: placed[0])
-        known += [self._climbed(search, placed, tolerance) for placed in known[:_CLIMBED]]
-        self.put(found, self.beyond(max((-placed[0] for placed in known), default=0.0), tolerance))
-        while going:
-            going = batch()
 
         def factor(places: np.ndarray, u: Array) -> float:
             return self._factor(search, places, u)
 
-        level = TiedSearch(self, found, factor, known, tolerance).run(most, progress, beyond)
+        tied = TiedSearch(self, found, factor, known, tolerance)
+        known += [self._climbed(search, placed, tolerance, tied) for placed in known[:_CLIMBED]]
+        tied.begin()
+        self.put(found, self.beyond(max((-placed[0] for placed in known), default=0.0), tolerance))
+        while going:
+            going = batch()
+
+        level = tied.run(most, progress, beyond)
         search.take(found.placements())
         return (found, level) if found.closed else (search, beyond)
 
@@ -124,7 +127,7 @@ class WithstoodLevel(AnsweredLevel):
                 shown.append(points)
         return found
 
-    def _climbed(self, search: Search, placed: Placed, tolerance: float) -> Placed:
+    def _climbed(self, search: Search, placed: Placed, tolerance: float, tied: TiedSearch) -> Placed:
         """The best placement that fingers find by sliding, one at a time."""
 
         def less(places: np.ndarray, u: Array, than: float) -> float:
@@ -133,6 +136,8 @@ class WithstoodLevel(AnsweredLevel):
             self.put(search, wanted)
             if not search.are_apart(places, u) or search.norm_at(places, u) > self.max_force:
                 return inf  # it does not even answer more
+            if (roughly := tied.answered(places, u)) is not None and roughly.factor < wanted:
+                return inf
             factor = self._factor(search, places, u)
             return -factor if factor > wanted else inf
 
