@@ -10,6 +10,7 @@ import regrasp as rg
 from box import BOX, GOAL, MU, WEIGHT
 from box import START as FOUR
 from refusals import refusal
+from regrasp.planning.placement import choosing
 
 pytestmark = pytest.mark.laws
 
@@ -35,6 +36,13 @@ def test_of_several_goals_the_one_of_fewest_moves_and_widest_margin_is_taken() -
     assert len({rank(plan) for plan in each}) > 1
     found = rg.plan_regrasp(ELLIPSE, START, GOALS, LOAD, **OPTIONS)  # type: ignore[arg-type]
     assert found == min(each, key=rank)
+
+
+def test_a_torque_is_refused_before_an_end_is_searched(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(choosing, "choose_grasp", None)
+    for load in rg.Wrench([0, -3], 0.1), rg.Wrench([0, 0]):
+        said = refusal(lambda load=load: rg.plan_regrasp(ELLIPSE, START, None, load, **OPTIONS))  # type: ignore[arg-type, misc]
+        assert "a force through the centre of mass" in str(said)
 
 
 def test_of_several_starts_too_and_those_without_a_way_do_not_count() -> None:

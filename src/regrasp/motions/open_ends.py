@@ -49,6 +49,8 @@ def best_between(
             "weights compare sequences between two grasps; give one start and one goal with them"
         )
     turn = number(options.get("goal_orientation", 0.0), "goal_orientation")
+    if isinstance(load, Wrench) and (load.torque.any() or not load.force.any()):
+        raise InvalidInput(f"load of a regrasp must be a force through the centre of mass, got {shown(load)}")
     starts = _grasps(start, "start", shape, load, options)
     goals = _grasps(goal, "goal", shape, _seen_at_the_end(load, turn, options), options)
     if len(starts) * len(goals) > MOST_ENDS:

@@ -204,7 +204,13 @@ def _check_proof(proof: Any, where: str) -> None:
     _check(proof, where, pairs=_or_none(_WHOLE), seconds=_or_none(_TABLE), control=_or_none(_TABLE))
     _check(proof, where, rings=_or_none(_WHOLE), margin=_DOUBLE, tied=_or_none(_TABLE))
     _check(proof, where, movers=_or_none(_WHOLE), motions=_or_none(_TABLE))
-    _check(proof, where, max_force=_or_none(_DOUBLE), min_normal=_DOUBLE)
+    _check(
+        proof,
+        where,
+        max_force=_or_none(_DOUBLE),
+        min_normal=_DOUBLE,
+        turned=((lambda v: isinstance(v, bool)), "True or False"),
+    )
 
 
 def _check_regions(regions: Any) -> None:

@@ -260,3 +260,27 @@ def test_four_fingers_without_friction_hold_every_orientation(max_force: float |
     assert found.bound <= 1 <= found.value <= 1 + 1e-3
     assert found.gap <= 1e-3
     assert rg.verify(found).ok
+
+
+@pytest.mark.parametrize(
+    ("load", "friction", "words"),
+    [
+        (rg.Wrench([0, -1]), 1e12, "friction must be at most 10000 here"),
+        (rg.Wrench([0, -1e120]), 0.5, "loads must be from 1e-60 to 1e+60"),
+        (rg.LoadSet.turned(rg.Wrench([0, -1e-70])), 0.5, "loads must be from 1e-60 to 1e+60"),
+    ],
+)
+def test_numbers_that_leave_nothing_proven_are_refused(
+    load: rg.Wrench | rg.LoadSet, friction: float, words: str
+) -> None:
+    with pytest.raises(rg.InvalidInput, match=words.replace("+", r"\+")):
+        rg.choose_grasp(BRACKET, 2, load, friction=friction)
+
+
+@pytest.mark.parametrize("size", [1e-60, 1e60])
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_numbers_at_the_limits_are_proven(objective: str, size: float) -> None:
+    for mu in 0.5, 1e4:
+        found = rg.choose_grasp(BRACKET, 2, rg.Wrench([0, -size]), friction=mu, objective=objective)
+        assert rg.verify(found).ok
+        assert found.gap <= 1e-3

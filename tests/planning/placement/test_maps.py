@@ -101,6 +101,8 @@ def test_maps_of_other_numbers_of_fingers_are_refused() -> None:
         ({"count": 5000}, "placements; give fewer"),
         ({"max_force": 1.0}, "max_force is for"),
         ({"fixed": [float("nan")]}, "fixed"),
+        ({"fixed": [100.0]}, "fixed must be arc lengths of the outer boundary, 0 to 14; got [100.0]"),
+        ({"fixed": [-0.1]}, "fixed must be arc lengths of the outer boundary"),
     ):
         said = refusal(lambda given=given: rg.placement_map(BRACKET, LOADS, friction=0.5, **given))  # type: ignore[misc]
         assert words in str(said)

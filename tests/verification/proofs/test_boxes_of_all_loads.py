@@ -5,6 +5,7 @@ import pytest
 
 import regrasp as rg
 from proofs import everything, planar
+from regrasp.verification.placed import placements
 
 pytestmark = pytest.mark.oracle
 
@@ -104,6 +105,13 @@ def test_boxes_of_many_corners_are_not_judged() -> None:
         proof.tied = np.array([[*UP, *UP, 0.0]])
         many = "proof: box 0 has more than 4096 corners, too many for duals of all loads"
         assert said(proof) == ("" if count == 32 else many)
+
+
+def test_boxes_of_many_loads_are_refused_before_they_take_memory(monkeypatch) -> None:
+    proof = tied([[*UP, *UP, 0.0]], bound=0.1)  # two loads at four corners
+    assert "at corners" not in said(proof)
+    monkeypatch.setattr(placements, "MOST_AT_CORNERS", 7)
+    assert said(proof) == "proof: box 0 has more than 7 loads at corners, too many for duals of all loads"
 
 
 @pytest.mark.parametrize(

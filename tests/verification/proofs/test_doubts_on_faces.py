@@ -30,6 +30,15 @@ def flat(nodes, patches=WHOLE, **changes):
     return solid(corners, NORMALS[:1] * count, loads, patches, nodes, **changes)
 
 
+def test_broken_proofs_on_meshes_are_refused_in_a_line() -> None:
+    for name in ("corners", "spans", "boxes", "twists", "fingers"):
+        proof = flat([([0], (0, 0), 0, UP)])
+        assert surfaces.check_surface_proof(proof) == []
+        setattr(proof, name, None)
+        (words,) = surfaces.check_surface_proof(proof)
+        assert words.startswith("proof: its"), name
+
+
 def limit_on(proof, patches) -> float:
     return limit(proof, lambda b, f: patches.corners(int(proof.boxes[b][f]), proof.corners, proof.normals))
 

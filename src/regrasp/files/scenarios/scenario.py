@@ -321,6 +321,10 @@ def scenario_of(data: dict[str, Any], file: str | Path = "scenario") -> AnyScena
         if "object" in data:
             return validated(SpaceRegraspScenario, data, file)
         return validated(RegraspScenario, data, file)
+    if "task" not in data and "contacts" not in data:
+        raise InvalidInput(
+            f"{file}: task: a required key is missing: a table with a kind, as grasp or regrasp"
+        )
     return validated(Scenario, data, file)
 
 

@@ -26,7 +26,7 @@ from regrasp.planning.placement.levels.level import FrictionLevel, Level
 from regrasp.planning.placement.levels.moving_search import COARSE, closed_by_moving
 from regrasp.planning.placement.levels.turning_search import WIDE, closed_by_turning
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
-from regrasp.planning.placement.loads import inner_and_outer, offset_by
+from regrasp.planning.placement.loads import check_sizes, inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
 from regrasp.planning.placement.search import ANY_FORCE, MOST_BOXES, Progress, Search
@@ -81,7 +81,8 @@ def choose_grasp(
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
             forces for each load, has to hold; the value is that of the worst load [N, N m]. Under none all
             placements are worth 0, unless fingers squeeze with ``min_normal``.
-        friction: coefficient of all fingers [-].
+        friction: coefficient of all fingers, 1e4 at most [-]. The largest component of loads is from 1e-60 to
+            1e60, or 0: beyond, rounding leaves nothing proven.
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
             ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor
             of a ``disturbance`` for which forces exist; ``wrench``, that for which one set of forces does and
@@ -136,6 +137,8 @@ def choose_grasp(
         raise InvalidInput(f"progress must be a function of bound and value, got {shown(progress)}")
     whole(fingers, "fingers", least=2, most=4)
     mu = number(friction, "friction", least=0)
+    if isinstance(load, Wrench | LoadSet):
+        check_sizes(mu, load)
     goal, law = law_of(objective)
     if number(tolerance, "tolerance", above=0) >= 1:
         raise InvalidInput(f"tolerance is a fraction below 1, got {shown(tolerance)}")

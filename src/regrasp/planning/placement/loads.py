@@ -9,6 +9,7 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 
+_MOST_FRICTION, _LEAST_LOAD, _LARGEST_LOAD = 1e4, 1e-60, 1e60
 _MOST = 1000  # loads of a round set: every box looks at all of them
 
 
@@ -18,6 +19,22 @@ def check_planar(load: Wrench | LoadSet) -> None:
         raise InvalidInput(f"load must be a Wrench or a LoadSet, got {shown(load)}")
     if load.dimension != 2:
         raise InvalidInput("load is in space and the shape in the plane; give a planar load")
+
+
+def check_sizes(friction: float, load: Wrench | LoadSet) -> None:
+    """Raise ``InvalidInput`` for what doubles have no room to prove anything of."""
+    if friction > _MOST_FRICTION:
+        raise InvalidInput(f"friction must be at most {_MOST_FRICTION:g} here, got {friction:g}")
+    if isinstance(load, Wrench):
+        sizes = np.abs(load.vector)
+    else:
+        axes = np.eye(3 * load.dimension - 3)
+        sizes = np.array([max(load.support(axis), load.support(-axis)) for axis in axes])
+    size = float(sizes.max())
+    if size and not _LEAST_LOAD <= size <= _LARGEST_LOAD:
+        raise InvalidInput(
+            f"loads must be from {_LEAST_LOAD:g} to {_LARGEST_LOAD:g} N or N m here, or 0; got {size:g}"
+        )
 
 
 def inner_and_outer(load: Wrench | LoadSet, tolerance: float) -> tuple[Array, Array]:

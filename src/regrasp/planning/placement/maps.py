@@ -7,7 +7,7 @@ from math import comb, inf
 
 import numpy as np
 
-from regrasp.errors import InvalidInput
+from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, array, number, read_only, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.value import ArrayValue
@@ -17,7 +17,7 @@ from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.laws import LARGEST, LEVELS, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import Level
-from regrasp.planning.placement.loads import inner_and_outer
+from regrasp.planning.placement.loads import check_sizes, inner_and_outer
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
 from regrasp.planning.states.objectives import Objective
@@ -93,7 +93,7 @@ def placement_map(
         load: external wrench on the object about its centre of mass, or a set of them; the value is that of
             the worst load [N, N m].
         friction: coefficient of all fingers [-].
-        fixed: arc lengths of the fingers that stay, up to three [m].
+        fixed: arc lengths of the fingers that stay, up to three, from 0 to the length of the outline [m].
         free: how many fingers move, 1 or 2.
         objective: as of ``choose_grasp``.
         max_force: limit on every force, as of ``choose_grasp`` [N].
@@ -107,6 +107,11 @@ def placement_map(
     check_task(shape, load, "an Outline (surface_map is for meshes)")
     mu, goal = number(friction, "friction", least=0), law_of(objective)
     stays = array(fixed, "fixed", (None,))
+    check_sizes(mu, load)
+    if ((stays < 0) | (stays > shape.length)).any():
+        raise InvalidInput(
+            f"fixed must be arc lengths of the outer boundary, 0 to {shape.length:.6g}; got {shown(fixed)}"
+        )
     whole(free, "free", least=1, most=2)
     if not 2 <= len(stays) + free <= 4:
         raise InvalidInput(

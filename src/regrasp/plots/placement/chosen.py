@@ -106,8 +106,9 @@ def plot_contact_regions(
         words = f"{name} {short(float(f'{width:.3g}'))} {units.length}"
         handles.append(_bar(colour, words))
     half = f"{short(float(f'{regions.half_width:.3g}'))} {units.length}"
+    ended = ", or to its side's end" if regions.ended.any() else ""
     handles += [
-        _bar(GREY, f"all off by {half} at once"),
+        *([_bar(GREY, f"all off by {half} at once{ended}")] if regions.half_width else []),
         _bar(GREY, "one finger alone", linewidth=7, alpha=0.3),
     ]
     legend(ax, handles, ncols=2)

@@ -19,8 +19,8 @@ from regrasp.verification.placed.protocol import Point
 from regrasp.verification.placed.protocol import Proof as Placements
 from regrasp.verification.placed.whole_sets import ties_of, works
 
-MOST, CUTS = 4096, 8
-"""Corners of a box, and parts of a stretch of a curve."""
+MOST, MOST_AT_CORNERS, CUTS = 4096, 2**22, 8
+"""Corners of a box, loads at all of these together, and parts of a stretch of a curve."""
 _ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
 _SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them
 _TERMS = 24.0  # of a tie: three fingers moved to and fro by two differences of places, two coordinates each

@@ -33,7 +33,7 @@ from regrasp.verification.placed.curves.circles import play_of
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn, numbers_of
 from regrasp.verification.placed.forces.limited import is_excluded as is_excluded_within
 from regrasp.verification.placed.forces.limited import is_least, wrong_limits
-from regrasp.verification.placed.groups import MOST, Groups, Stretch
+from regrasp.verification.placed.groups import MOST, MOST_AT_CORNERS, Groups, Stretch
 from regrasp.verification.placed.protocol import Point, Proof
 from regrasp.verification.placed.roots import root_above
 from regrasp.verification.placed.straight import StraightEdges
@@ -257,8 +257,10 @@ class _Checked:
     def _tied(self, box: int, row: Array, arcs: list[Arc]) -> list[str]:
         """The same by all loads together."""
         ways = prod(b - a + 1 for a, b, *_ in arcs)
-        if ways * self.groups.points ** len(arcs) > MOST:
-            return [f"proof: box {box} has more than {MOST} corners, too many for duals of all loads"]
+        corners = ways * self.groups.points ** len(arcs)
+        if corners > MOST or corners * len(self.proof.loads) > MOST_AT_CORNERS:
+            more = f"{MOST} corners" if corners > MOST else f"{MOST_AT_CORNERS} loads at corners"
+            return [f"proof: box {box} has more than {more}, too many for duals of all loads"]
         if not self.groups.excludes(row, [self._stretches(arc) for arc in arcs]):
             return [f"proof: the duals of box {box} do not exclude it"]
         return []

@@ -208,3 +208,22 @@ def test_what_is_not_held_and_what_is_held_on_an_edge_alone_are_told_apart(
         assert rg.choose_state(grasp, load, "peak").value > 0
     with pytest.raises(rg.Infeasible, match=re.escape(words)):
         rg.contact_regions(square, grasp, load)
+
+
+def test_a_side_that_ends_is_said() -> None:
+    short = rg.Outline([[0, 0], [4, 0], [4.3, 0.3], [4.3, 3], [0, 3]])
+    places = (2.0, 4.2, 8.7)
+    grasp = rg.Grasp(short.contact_at(s, friction=0.9, name=f"{s:g}") for s in places)
+    regions = rg.contact_regions(short, grasp, rg.Wrench([0.0, -1.0]), max_force=9.0)
+    assert regions.ended[1].all()
+    assert "or to the end of the side" in repr(regions)
+    side = (4.0, 4.0 + np.hypot(0.3, 0.3))
+    assert regions.arcs[1] == pytest.approx(side, abs=1e-5)
+    assert max(abs(regions.arcs[1] - places[1])) < regions.half_width
+    assert "end of the side" not in repr(replace(regions, half_width=0.01))
+
+
+def test_a_half_width_of_none_is_not_said() -> None:
+    least = rg.contact_regions(BRACKET, GRASP, RING, widest="least")
+    said = repr(replace(least, half_width=0.0))
+    assert said.startswith("ContactRegions(widths ")

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Self
 
+import numpy as np
+
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, number
 from regrasp.mechanics.grasp import Grasp
@@ -11,6 +13,8 @@ from regrasp.mechanics.state import GraspState
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.proofs.sealed import Sealed
 from regrasp.planning.placement.regions.widest_proof import WidestProof
+
+_ENDED = 1e-5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,9 +59,18 @@ class ContactRegions(Sealed):
         result: Array = self.arcs[:, 1] - self.arcs[:, 0]
         return result
 
+    @property
+    def ended(self) -> np.ndarray:
+        """(k, 2) whether the side of a finger ends, back and ahead, before it is ``half_width`` off."""
+        away = np.abs(self.arcs - self.places[:, None])
+        return np.asarray(away < self.half_width * (1 - _ENDED))
+
     def __repr__(self) -> str:
         widths = ", ".join(f"{w:.4g}" for w in self.widths)
-        return f"ContactRegions(all off by {self.half_width:.4g}, widths {widths})"
+        ended = " or to the end of the side" if self.ended.any() else ""
+        # a finger is at an end of its arc where other arcs were to be wide
+        off = f"all off by {self.half_width:.4g}{ended}, " if self.half_width else ""
+        return f"ContactRegions({off}widths {widths})"
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:

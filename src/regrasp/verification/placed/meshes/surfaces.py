@@ -50,11 +50,13 @@ class SurfaceProof(Protocol):
 
 def check_surface_proof(proof: SurfaceProof) -> list[str]:
     """What is wrong with the tree of boxes or with what excludes them, in words; nothing for a proof."""
-    broken = _shapes(proof)
-    if broken:
-        return broken
-    patches = _Patches(proof)
-    return patches.wrong() or _boxes_wrong(proof) or _exclusions_wrong(proof, patches)
+    try:
+        if broken := _shapes(proof):
+            return broken
+        patches = _Patches(proof)
+        return patches.wrong() or _boxes_wrong(proof) or _exclusions_wrong(proof, patches)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        return [f"proof: its numbers are none to compute with: {error}"]
 
 
 def _shapes(proof: SurfaceProof) -> list[str]:
