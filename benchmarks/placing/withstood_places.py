@@ -1,6 +1,6 @@
 """What is withstood where fingers are put best: the gap of its bound, and what free answers would make of it.
 
-python benchmarks/placing/withstood_places.py NAME FINGERS [TOLERANCE]: one outline, a line of figures, processor times.
+python benchmarks/placing/withstood_places.py NAME FINGERS [TOLERANCE]: one outline, one line, in CPU time.
 """
 
 import sys
