@@ -101,12 +101,11 @@ def test_a_search_finds_a_placement_instead() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"movers": ((0, 0), (0, 2))}, "there is no load"),
-        ({"movers": ((0, 0), (0, -1))}, "there is no load"),
+        ({"movers": ((0, 0), (0, 2))}, "box 0 has no load"),
+        ({"movers": ((0, 0), (0, -1))}, "box 0 has no load"),
         ({"movers": ((0, 0),)}, "motions must have shape"),
-        ({"norm": "sum"}, "a largest force and no margin"),
-        ({"sides": ((0, 0, 1.0), (1, 1, 2.0))}, "more than one side"),
-        ({"size": "margin", "margin": 0.1}, "a largest force and no margin"),
+        ({"norm": "sum"}, "boxes and a largest force"),
+        ({"sides": ((0, 0, 1.0), (1, 1, 2.0))}, "the twists of box 0 do not exclude it"),
     ],
 )
 def test_what_they_cannot_be(changes, words) -> None:
@@ -123,7 +122,7 @@ def test_each_finger_has_one_side() -> None:
         proof.arcs[0] = [[0, 1], [0, 1]]
         proof.arcs[0][one] = [0, 0]
         proof.ends[0][one] = [0, 1]
-        assert "more than one side" in _Checked(proof)._excluded(0)[0]
+        assert "the twists of box 0 do not exclude it" in _Checked(proof)._excluded(0)[0]
 
 
 def _changes(proof, sides) -> dict[str, object]:
@@ -197,22 +196,23 @@ def test_an_interrupt_of_the_last_progress_ends_no_search_with_nothing() -> None
 @pytest.mark.parametrize("objective", ["friction_use", "force"])
 def test_a_search_that_is_cut_short_has_a_bound_that_stands(objective: str) -> None:
     """Levels that were closed on the way are one, while what was asked is left open."""
-    told = [0.0]
+    told, stop = list[float](), [0]
 
-    def progress(*_: float) -> None:
-        told.append(0.0)
-        if told[0] == len(told):
+    def progress(_: float, best: float) -> None:
+        told.append(best)
+        if stop[0] == len(told):
             raise KeyboardInterrupt
 
     shape, loads = rg.Outline(TRIANGLE), rg.LoadSet.hull([rg.Wrench([x, 1], 0.1 * x) for x in (1, 0, -1)])
     asked = {"friction": 0.4, "max_force": 4, "tolerance": 1e-4, "objective": objective, "progress": progress}
     whole = rg.choose_grasp(shape, 3, loads, **asked)
-    every, gaps = len(told) - 1, []
-    for after in sorted({1 if objective == "force" else 2, every // 2, every - 1}):
-        told[:] = [after + 1.0]
+    every, first, gaps = len(told), int(np.isnan(told).sum()) + 1, []
+    for after in sorted({first, max(first, every - 1), every}):
+        told.clear()
+        stop[0] = after
         chosen = rg.choose_grasp(shape, 3, loads, **asked)
         assert rg.verify(chosen).ok
         value, bound = (-1 if objective == "friction_use" else 1) * np.array([whole.value, chosen.bound])
         assert value <= bound
         gaps.append(chosen.gap)
-    assert objective == "friction_use" or 0.03 > gaps[0] > gaps[1] >= whole.gap
+    assert objective == "friction_use" or gaps[0] > 0.03 > gaps[1] > gaps[2] == whole.gap

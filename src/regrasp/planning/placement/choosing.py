@@ -22,7 +22,8 @@ from regrasp.planning.placement.curves.curved_sides import CurvedSides
 from regrasp.planning.placement.laws import LEVELS, Law, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.climbing import run_level
-from regrasp.planning.placement.levels.level import FrictionLevel, Level
+from regrasp.planning.placement.levels.joined_search import MOST_LOADS, run_joined
+from regrasp.planning.placement.levels.level import ForceLevel, FrictionLevel, Level
 from regrasp.planning.placement.levels.moving_search import COARSE, closed_by_moving
 from regrasp.planning.placement.levels.turning_search import WIDE, closed_by_turning
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
@@ -200,11 +201,16 @@ def choose_grasp(
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.unbounded)
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
-        moving, curved = isinstance(level, FrictionLevel), isinstance(sides, CurvedSides)
+        curved = isinstance(sides, CurvedSides)
+        # of three fingers with little friction boxes go down to single edges either way
+        kinds = ForceLevel | FrictionLevel if fingers == 2 else ForceLevel
+        joined = not curved and len(inner) <= MOST_LOADS and isinstance(level, kinds)
+        moving = isinstance(level, FrictionLevel) and not joined
         if moving and not (curved and fingers == 2):  # fixed twists leave two alone little
             search.narrow = max(WIDE if curved else COARSE, search.narrow)
-        best, beyond = run_level(search, level, around * tolerance, most, progress)
-        if search.narrow > narrow and best is None and not search.closed:  # places that hold are few
+        run = run_joined if joined else run_level
+        best, beyond = run(search, level, around * tolerance, most, progress)
+        if (joined or search.narrow > narrow) and best is None and not search.closed:  # few places hold
             search = search.anew()
             search.narrow, moving = narrow, curved
             best, beyond = run_level(search, level, around * tolerance, most, progress)

@@ -136,16 +136,15 @@ class Search:
         """How many of some boxes are excluded at a level of the norm [N] now, before one that is not."""
         from regrasp.closed_form.compiled.places.placement_search import search, spare
 
-        law, done, some = self._law(self.friction, self.friction, self.law), 0, 1
+        done, some = 0, 1
         bounds, kinds = self._boxes[2], self._boxes[5]
         while done < len(boxes):
             heap = boxes[done : done + some].copy()
             bounds[heap], kinds[heap] = -1.0, 0  # to be bounded anew, which is all that is done with each
-            state = np.array([2, len(heap), 0])
+            state, none = np.array([2, len(heap), 0]), np.full(1 + 2 * self.fingers, inf)
             search(
-                self._table, self._wanted, law, fixed / self.unit, 0.0, 0.0, 0.0, self._boxes, heap, state,
-                np.full(1 + 2 * self.fingers, inf), self._tried[:1], len(heap),
-                spare(self.fingers, len(self._wanted)),
+                *self.terms(fixed), 0.0, 0.0, 0.0, self._boxes, heap, state, none,
+                self._tried[:1], len(heap), spare(self.fingers, len(self._wanted)),
             )  # fmt: skip
             if state[1]:
                 return done + int(kinds[boxes[done : done + some]].argmin())
@@ -189,15 +188,16 @@ class Search:
             self.moving[node] = moving
         self._boxes[5][node] = 3 if row is None and moving is None else 1
 
+    def terms(self, fixed: float) -> tuple[Any, ...]:
+        """Sides, loads, law and a level [N] as compiled loops take them."""
+        return self._table, self._wanted, self._law(self.friction, self.friction, self.law), fixed / self.unit
+
     def moved(self, node: int, fixed: float, room: tuple[Any, ...]) -> Array | None:
         """Exclude a box at a level [N] by twists that move with fingers, or say where a placement holds."""
         from regrasp.closed_form.compiled.places.moving_twists import GONE, HELD, moved
 
         u, twists = np.zeros(self.fingers), np.zeros((len(self.loads), 3 + 2 * self.fingers))
-        how = moved(
-            self._table, self._wanted, self._law(self.friction, self.friction, self.law), fixed / self.unit,
-            *self.box(node), u, twists, room,
-        )  # fmt: skip
+        how = moved(*self.terms(fixed), *self.box(node), u, twists, room)
         if how == GONE:
             few, twists[:, 2] = np.flatnonzero(twists.any(axis=1)), twists[:, 2] / self.sides.size
             self.leave(node, None, (few, twists[few]))

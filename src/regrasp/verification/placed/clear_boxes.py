@@ -45,7 +45,9 @@ def clear_boxes(proof: Proof, boundary: Edges, play: float = 0.0) -> np.ndarray:
             found[some] = _clear(proof, boundary, some, play)
         if proof.movers is not None and proof.control is None:
             found[np.unique(np.asarray(proof.movers)[:, 0])] = False
-            found |= told & _clear_of_movers(proof, boundary, told)
+            found |= told & (
+                _clear_of_movers(proof, boundary, told) | _clear_of_groups(proof, boundary, told)
+            )
     return found
 
 
@@ -59,8 +61,6 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray, play: float) -> np.
     lost = _ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
     room = _room(proof, np.abs(y) + np.abs(z)) * (1 + (1 + _ROUNDING) * play / _ROUNDING)
-    if proof.size == "margin":
-        room *= 4 * proof.bound
     told = np.minimum(room, lost) > _SMALL
     if proof.max_force is not None or proof.min_normal > 0:
         stretches = _stretches(proof, boxes)
@@ -86,7 +86,12 @@ def _room(proof: Proof, sizes: Array) -> Array:
     points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
     reach = np.hypot(*np.abs(points).max(axis=0)) + np.hypot(*proof.centre_of_mass)
     result: Array = _ROUNDING * (sizes @ [1.0, 1.0, reach]) * (1 + proof.friction)
-    return result
+    return result * (4 * proof.bound if proof.size == "margin" else 1)
+
+
+def _times(proof: Proof) -> float:
+    """How often the most work of what a finger can do counts."""
+    return 1.0 if proof.size == "margin" else proof.bound * (1 + _ROUNDING)
 
 
 def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndarray:
@@ -117,9 +122,46 @@ def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
             most = (
                 boundary.roughly(edge.ravel(), u, u, np.repeat(y, k, axis=0)).reshape(-1, k) + room[:, None]
             )
-            gain = (w * y).sum(axis=1) - lost - proof.bound * (1 + _ROUNDING) * most.sum(axis=1)
+            gain = (w * y).sum(axis=1) - lost - _times(proof) * most.sum(axis=1)
             np.add.at(left[:, c], at, gain)
     return np.asarray(sure & (left > 0).all(axis=1))
+
+
+def _clear_of_groups(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndarray:
+    """(n,) whether twists of all loads that stay exclude each box with an arc of several straight sides."""
+    arcs, movers, found = np.asarray(proof.arcs), np.asarray(proof.movers), np.zeros(len(proof.arcs), bool)
+    rows = np.argsort(movers[:, 0], kind="stable")
+    rows = rows[(movers[rows, 0] >= 0) & (movers[rows, 0] < len(arcs))]
+    (box, load), motions = movers[rows].T, np.asarray(proof.motions)
+    bad = (load < 0) | (load >= len(proof.loads)) | motions[rows, 3:].any(axis=1) | ~told[box]
+    bad |= (arcs[box, :, 0] == arcs[box, :, 1]).all(axis=1)
+    left = np.ones(len(arcs), bool)
+    left[box[bad]] = False
+    left[np.bincount(box, minlength=len(arcs)) > _ADDED] = False
+    rows = rows[left[box]]
+    each, starts, counts = np.unique(movers[rows, 0], return_index=True, return_counts=True)
+    sides = (arcs[each, :, 1] - arcs[each, :, 0] + 1).sum(axis=1)
+    parts = np.flatnonzero(np.diff(np.cumsum(sides * counts) // _AT_ONCE)) + 1
+    for some in np.split(np.arange(len(each)), parts):
+        if not len(some):
+            continue
+        on = rows[starts[some[0]] : starts[some[-1]] + counts[some[-1]]]
+        y, w = motions[on, :3], -np.asarray(proof.loads)[movers[on, 1]]
+        stretches, own = _stretches(proof, movers[on, 0]), _stretches(proof, each[some])
+        # the same stretches once for each load
+        first = np.repeat(np.cumsum(own.of_each) - own.of_each, counts[some])
+        begins = np.cumsum(stretches.of_each) - stretches.of_each
+        at = np.arange(stretches.of_each.sum()) + np.repeat(first - begins, stretches.of_each)
+        edges, *ends = stretches.at
+        along = np.repeat(y, stretches.of_each, axis=0)
+        done = [np.asarray(np.bincount(at, boundary.roughly(edges, u, u, along)), float) for u in ends]
+        lost, room = _ROUNDING * np.abs(w * y).sum(axis=1), _room(proof, np.abs(y))
+        of = np.repeat(np.arange(len(some)), counts[some])
+        sure = np.bincount(of, np.minimum(room, lost) <= _SMALL) == 0
+        most = own.largest(done).sum(axis=1) + proof.fingers * np.bincount(of, room)
+        work = np.bincount(of, (w * y).sum(axis=1) - lost)
+        found[each[some]] = sure & (work > _times(proof) * most)
+    return found
 
 
 def _seconds(proof: Proof, boxes: np.ndarray) -> tuple[Array, Array]:

@@ -40,6 +40,8 @@ from regrasp.verification.placed.straight import StraightEdges
 from regrasp.verification.placed.whole_sets import Most, is_excluded, ties_of
 
 Arc = tuple[int, int, float, float]
+Motion = tuple[list[float], list[float]]
+"""A load, and its twist with what fingers add to it."""
 
 _MOST_MOVING = 7  # fingers: 2^7 corners, or 3^7 coefficients of a polynomial of degree 2
 
@@ -75,8 +77,8 @@ def _shapes(proof: Proof) -> list[str]:
         wanted += [("movers", proof.movers, (q, 2)), ("motions", proof.motions, (q, columns))]
         if k > _MOST_MOVING:
             return [f"proof: twists that move go with up to {_MOST_MOVING} fingers"]
-        if proof.motions is None or proof.norm != "largest" or proof.size == "margin":
-            return ["proof: twists that move go with boxes, a largest force and no margin"]
+        if proof.motions is None or proof.norm != "largest":
+            return ["proof: twists that move go with boxes and a largest force"]
         if proof.control is not None and proof.size != "force":
             return ["proof: twists that turn with fingers on curves are for the length of a force"]
     if wrong := wrong_limits(proof):
@@ -268,19 +270,36 @@ class _Checked:
     def _moved(self, box: int, arcs: list[Arc]) -> list[str]:
         """The same by twists of some loads that move with the fingers."""
         loads = self.proof.loads.tolist()
-        if any(a != b for a, b, *_ in arcs) or not all(0 <= n < len(loads) for n, _ in self.moving[box]):
-            return [f"proof: a finger of box {box} has more than one side, or there is no load"]
+        if not all(0 <= n < len(loads) for n, _ in self.moving[box]):
+            return [f"proof: box {box} has no load"]
         motions = [(loads[n], motion) for n, motion in self.moving[box]]
-        bound, hulls = Fraction(self.proof.bound), [self._hull(*arc) for arc in arcs]
+        bound = Fraction(self.proof.bound)
         if bound <= 0:
             return []
-        if self.proof.control is None:
-            excluded = is_excluded(motions, bound, hulls, self._along(arcs))
+        # forces below the limit that keep a margin do no more than what is given, of size 1 as often as it is
+        times = Fraction(1) if self.proof.size == "margin" else bound
+        if any(a != b for a, b, *_ in arcs):
+            excluded = self._joined(motions, times, arcs)
+        elif self.proof.control is None:
+            excluded = is_excluded(motions, times, [self._hull(*arc) for arc in arcs], self._along(arcs))
         else:
+            hulls = [self._hull(*arc) for arc in arcs]
             excluded = is_excluded_in_turn(motions, bound, hulls, self.proof.friction)
         if excluded:
             return []
         return [f"proof: the twists of box {box} do not exclude it"]
+
+    def _joined(self, motions: list[Motion], times: Fraction, arcs: list[Arc]) -> bool:
+        """The same on arcs of several straight sides, by twists that stay."""
+        if self.proof.control is not None or any(c != 0 for _, motion in motions for c in motion[3:]):
+            return False
+        twists = [[Fraction(c) for c in motion[:3]] for _, motion in motions]
+        work = -sum(
+            Fraction(w) * c
+            for (load, _), y in zip(motions, twists, strict=True)
+            for w, c in zip(load, y, strict=True)
+        )
+        return work > times * sum((self._most(arc, twists) for arc in arcs), start=Fraction(0))
 
     def _along(self, arcs: list[Arc]) -> Most:
         """The most along a velocity of a finger anywhere on its arc, of one side."""
@@ -293,7 +312,7 @@ class _Checked:
         return most
 
     def _most(self, arc: Arc, twists: list[list[Fraction]]) -> Fraction:
-        """An upper bound of sigma over an arc, or of the sum of that of two twists."""
+        """An upper bound of sigma over an arc, or of the sum of those of several twists."""
         parts = self._stretches(arc)
         if len(twists) > 1:  # the sum is convex along a side
             parts = [(edge, u, u) for edge, *ends in parts for u in ends]

@@ -117,7 +117,7 @@ def _support_of_box(sides, arcs, ends, law, y, g, force, out):  # type: ignore[n
 
 
 @njit(**VIEWS)
-def _solve(g, b, y, x):  # type: ignore[no-untyped-def]
+def solved(g, b, y, x):  # type: ignore[no-untyped-def]
     """The y with g_j . y = 1 and x with sum x_j g_j = b; False for rows on a plane through the origin."""
     p0, p1, p2 = (
         g[1, 1] * g[2, 2] - g[1, 2] * g[2, 1],
@@ -223,7 +223,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
         g[c, c] = (1.0 if b[c] >= 0.0 else -1.0) / _ARTIFICIAL
     lower = 0.0
     for _ in range(_MOST):
-        if not _solve(g, b, y, x):
+        if not solved(g, b, y, x):
             break
         upper = b[0] * y[0] + b[1] * y[1] + b[2] * y[2]
         h = _support_of_box(sides, arcs, ends, law, y, new, forces[3], out)
@@ -236,7 +236,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
             best[0], best[1], best[2] = y[0], y[1], y[2]
         if lower >= enough or h <= 1.0 + _CLOSE or lower >= per * upper * (1.0 - precision):
             break
-        if not _solve(g, new, spare, d):  # new = sum d_j g_j; the row whose weight vanishes first leaves
+        if not solved(g, new, spare, d):  # new = sum d_j g_j; the row whose weight vanishes first leaves
             break
         leaving, ratio = -1, np.inf
         least = _PIVOT * (abs(new[0]) + abs(new[1]) + abs(new[2]))

@@ -1,0 +1,194 @@
+"""Boxes of groups of edges, excluded by twists of all loads together (``all_loads``), for levels of forces.
+
+The widest boxes come first, so that placements from all over raise the level early. Fingers on one short side
+each are left to twists that move with them (``moving_twists``).
+"""
+
+from collections import deque
+from collections.abc import Callable
+from math import nan
+
+import numpy as np
+
+from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.levels.climbing import improved, settled
+from regrasp.planning.placement.levels.level import SURE, Level
+from regrasp.planning.placement.search import Progress, Search
+
+MOST_LOADS = 64
+"""Loads that are looked at together."""
+_SIDES = 400  # of an arc, from which on it is split without a look
+_COARSE = 0.1  # of the size: arcs of less are left to twists that move
+_NARROW = 1e-6  # of the size, of arcs that are not split
+_STRICT = 1e-9
+_LEAST = 0.15  # of an arc, that each part has
+_GAPS = (0.03,)  # proven on the way, while less is asked
+
+Twists = tuple[np.ndarray, Array]
+"""Loads, and their twists with what each finger adds."""
+
+
+def run_joined(
+    search: Search, level: Level, tolerance: float, most: int, progress: Progress | None
+) -> tuple[float | None, float]:
+    """As ``run_level``, of a search on straight sides."""
+    joined = _Joined(search, level, tolerance, most)
+
+    def told() -> None:
+        if progress is not None:
+            best = nan if joined.best is None else level.value(joined.best)
+            progress(level.value(level.top(search)), best)
+
+    try:
+        joined.run(told)
+    except KeyboardInterrupt:
+        if joined.best is None:
+            raise
+        search.interrupted = True
+        return joined.best, joined.cut_short()
+    if joined.best is None:
+        left = search.left
+        search.closed = not joined.waiting and search.excluded(left, joined.limit) == len(left)
+        return None, joined.aim
+    if joined.waiting:
+        return joined.best, joined.cut_short()
+    passed = [] if joined.passed is None else [joined.passed]
+    try:
+        return joined.best, settled(search, level, joined.aim, joined.limit, passed)
+    except KeyboardInterrupt:
+        search.interrupted, search.closed = True, False
+        return joined.best, level.top(search)
+
+
+class _Joined:
+    """Boxes not looked at, ``waiting``, the widest first."""
+
+    def __init__(self, search: Search, level: Level, tolerance: float, most: int) -> None:
+        from regrasp.closed_form.compiled.places.all_loads import room_for_all
+        from regrasp.closed_form.compiled.places.moving_twists import room_to_move
+
+        self.search, self.level, self.most = search, level, most
+        self.limit = level.max_force * (1 + _STRICT)
+        self.best: float | None = None
+        self.aim = level.start
+        self.waiting = deque([0])
+        self.passed: float | None = None  # a level at which all was excluded, by ``_loose``
+        self._loose: dict[int, Twists] = {}
+        self._parent: dict[int, int] = {}
+        self._gaps = [*(t for t in _GAPS if t > tolerance), tolerance]
+        loads, k = len(search.loads), search.fingers
+        self._rooms = room_for_all(loads, k), room_to_move(loads, k)
+        self._out = np.zeros((loads, 3)), np.zeros((k, 5, 2)), np.zeros(k)
+
+    def run(self, told: Callable[[], None]) -> None:
+        """Exclude boxes or split them, at one gap after the other."""
+        search = self.search
+        self._put(self.aim)
+        while self._emptied(told) and self.best is not None and len(self._gaps) > 1:
+            self._gaps.pop(0)
+            if not len(search.left):
+                self.passed, self._loose = self.aim, dict(search.moving)
+            self._put(self.level.beyond(self.best, self._gaps[0]))
+            search.reopen()
+            search.moving.clear()
+            self.waiting.extend(search.left.tolist())
+
+    def cut_short(self) -> float:
+        """The level that was passed, at which the search is left; else the largest there is."""
+        search = self.search
+        left = [(node, self._known(node)) for node in search.left.tolist()]
+        search.closed = self.passed is not None and all(twists is not None for _, twists in left)
+        if self.passed is None or not search.closed:
+            return self.level.top(search)
+        for node, twists in left:
+            search.leave(node, None, twists)
+        self.level.put(search, self.passed)
+        return self.passed
+
+    def _put(self, aim: float) -> None:
+        self.aim = min(aim, self.level.top(self.search))
+        self.level.put(self.search, self.aim)
+
+    def _emptied(self, told: Callable[[], None]) -> bool:
+        """Whether all boxes were looked at."""
+        while self.waiting and self.aim < self.level.top(self.search):
+            inside = self._looked_at(self.waiting[0])
+            if inside is None:
+                return False
+            self._parent.update(dict.fromkeys(inside, self.waiting.popleft()))
+            self.waiting.extend(inside)
+            told()
+        return not self.waiting
+
+    def _looked_at(self, node: int) -> range | None:
+        """The boxes that one is split into: none where it is excluded or narrow; None without room."""
+        from regrasp.closed_form.compiled.places.all_loads import GONE, NEAR, joined
+
+        search, sides = self.search, self.search.sides
+        arcs, ends = search.box(node)
+        counts = arcs[:, 1] - arcs[:, 0] + 1
+        i = int(counts.argmax())
+        if counts[i] > _SIDES:
+            return self._halved(node, i, 0.0, int(arcs[i].sum()) // 2)
+        twists, seen, spread = self._out
+        apart = search.apart / sides.size
+        how = joined(*search.terms(self.limit), arcs, ends, apart, twists, seen, spread, self._rooms[0])
+        if how == NEAR:
+            search.leave(node, None)
+            return range(0)
+        if how == GONE:
+            few = np.flatnonzero(twists.any(axis=1))
+            moving = np.zeros((len(few), 3 + 2 * search.fingers))
+            moving[:, :3] = twists[few] / [1, 1, sides.size]
+            search.leave(node, None, (few, moving))
+            return range(0)
+        pressed = seen[:, 0].mean(axis=1)
+        self._try(*self._nearest(arcs, ends, pressed))
+        if counts[i] > 1:
+            i = int(np.where(counts > 1, spread, -1.0).argmax())
+            first, last = arcs[i].tolist()
+            at = int(np.searchsorted(sides.ends[:, 1], pressed[i]))
+            least = int(_LEAST * counts[i])
+            return self._halved(node, i, 0.0, min(max(at, first + least), last - 1 - least))
+        lengths = np.diff(ends, axis=1)[:, 0] * sides.lengths[sides.edges[arcs[:, 0]]]
+        i = int(lengths.argmax())
+        if lengths[i] < _COARSE * sides.size:
+            u = search.moved(node, self.limit, self._rooms[1])
+            if node in search.moving:
+                return range(0)
+            if u is not None:
+                self._try(arcs[:, 0].copy(), u)
+        narrow = lengths[i] <= _NARROW * sides.size
+        return range(0) if narrow else self._halved(node, i, float(ends[i].mean()), None)
+
+    def _halved(self, node: int, finger: int, u: float, after: int | None) -> range | None:
+        return self.search.halved(node, finger, u, self.most, after) or None
+
+    def _nearest(self, arcs: np.ndarray, ends: Array, u: Array) -> tuple[np.ndarray, Array]:
+        """Places on sides near to u."""
+        sides = self.search.sides
+        places = np.clip(np.searchsorted(sides.ends[:, 1], u), arcs[:, 0], arcs[:, 1])
+        return places, np.clip(np.clip(u, *sides.ends[places].T), *ends.T)
+
+    def _try(self, places: np.ndarray, u: Array) -> None:
+        """Go on from a placement that is better."""
+        search, level = self.search, self.level
+        if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
+            self.best, *at = improved(search, level, self.aim, places, u)
+            search.forget(self.best, *at)
+            self._put(level.beyond(self.best, self._gaps[0]))
+
+    def _known(self, node: int) -> Twists | None:
+        """What excluded a box, or one around it, at the level that was passed."""
+        around = node
+        while around not in self._loose:
+            if around not in self._parent:
+                return None
+            around = self._parent[around]
+        few, twists = self._loose[around]
+        (lo, hi), (begin, end) = (self.search.box(box)[1].T for box in (around, node))
+        wide = np.where(hi > lo, hi - lo, 1.0)
+        adds = twists[:, 3:].reshape(len(few), 2, -1)
+        still = twists[:, :2] + adds @ ((begin - lo) / wide)
+        more = adds * ((end - begin) / wide)
+        return few, np.column_stack([still, twists[:, 2], more.reshape(len(few), -1)])
