@@ -165,6 +165,17 @@ def test_a_degenerate_outline_has_an_answer_or_a_refusal_with_a_proof(name: str,
         assert rg.verify(proven).ok
 
 
+def test_a_load_that_is_held_is_no_refusal_where_no_deviation_is_answered() -> None:
+    """Two fingers without friction, side by side below: they hold the load, and nothing across it."""
+    across = rg.LoadSet.hull([rg.Wrench([0.3, 0]), rg.Wrench([-0.3, 0])])
+    chosen = rg.choose_grasp(
+        DEGENERATE["needle"], 2, rg.Wrench([0, -1]), friction=0.0, objective="answered", max_force=3.0,
+        disturbance=across, from_corners=0.0,
+    )  # fmt: skip
+    assert 0 <= chosen.value <= chosen.bound < 1e-5
+    assert rg.verify(chosen).ok
+
+
 def test_fingers_that_do_nothing_in_the_worst_load_are_on_the_outline_too() -> None:
     """Four fingers on chords: each stands on a side that the proof is about, whatever loads it answers."""
     chords = DEGENERATE["chords of an ellipse"]

@@ -188,7 +188,8 @@ class AnsweredLevel(Level):
 
     def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
         """The states of the load and of the deviations at the level, or a little before it."""
-        for back in AT_THE_EDGE:
+        nothing = (1.0,) if level <= _STEP else ()  # where the load alone is held, up to rounding
+        for back in AT_THE_EDGE + nothing:
             factor = level * (1 - back)
             given = map(Wrench.from_vector, self.loads(factor))
             with suppress(Infeasible):
