@@ -7,13 +7,15 @@
 Needles, collinear points, tiny edges, pockets, holes, spikes, symmetric shapes whose corners are best, and
 coordinates far from zero, under every objective. Each search ends after ``--cap`` seconds of processor time
 by an interrupt; what goes on for more than 20 s after it *hangs*. Answers are verified and judged against
-all pairs of 40 points and triples of 16. A row is kept when it is done, in a random order. ``--circles`` is
-of a unit force of every orientation on ellipses of half axes 1 and this.
+all pairs of 40 points and triples of 16. A row is kept when it is done; next is one whose shape, objective,
+number of fingers and friction, two by two, are least among those kept. ``--circles`` is of a unit force of
+every orientation on ellipses of half axes 1 and this.
 """
 
 import argparse
 import json
-from itertools import product
+from collections import Counter
+from itertools import combinations, product
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
@@ -101,6 +103,26 @@ def row(
     return result
 
 
+def spread(every: list[tuple[str, ...]], kept: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Those that are not kept in an order whose every beginning has all pairs of choices about as often."""
+    counts = Counter(
+        pair for choice in every if key_of(choice) in kept for pair in combinations(enumerate(choice), 2)
+    )
+    left, order = [choice for choice in every if key_of(choice) not in kept], []
+    while left:
+        rarest = min(left, key=lambda choice: sum(counts[p] for p in combinations(enumerate(choice), 2)))
+        left.remove(rarest)
+        order.append(rarest)
+        counts.update(combinations(enumerate(rarest), 2))
+    return order
+
+
+def key_of(choice: tuple[str, ...]) -> str:
+    """What a row is called."""
+    shape, objective, fingers, friction = choice
+    return f"{shape}; {objective}, {fingers}; {friction}"
+
+
 def table(kept: dict[str, Any]) -> str:
     """A line for each shape."""
     ends = ("answer", "refusal, proven", "refusal", "refused as input", "nothing at the cap")
@@ -157,13 +179,15 @@ def main() -> None:
         print(table(kept))
         return
     begin = perf_counter()
-    every = list(product((2, 3), FRICTIONS.items(), enumerate(SHAPES.items()), enumerate(OBJECTIVES)))
+    every = list(product(SHAPES, OBJECTIVES, "23", FRICTIONS))
     np.random.default_rng(0).shuffle(every)
-    for fingers, (called, friction), (i, (name, outline)), (j, objective) in every:
-        key = f"{name}; {objective}, {fingers}; {called}"
-        if key in kept or perf_counter() - begin > given.seconds:
-            continue
-        found = row(outline, objective, fingers, friction, (i + j) % 3, given.cap)
+    for choice in spread([tuple(map(str, one)) for one in every], kept):
+        if perf_counter() - begin > given.seconds:
+            break
+        shape, objective, fingers, friction = choice
+        kind = (list(SHAPES).index(shape) + list(OBJECTIVES).index(objective)) % 3
+        key = key_of(choice)
+        found = row(SHAPES[shape], objective, int(fingers), FRICTIONS[friction], kind, given.cap)
         kept[key] = {k: float(f"{v:.7g}") if isinstance(v, float) else v for k, v in found.items()}
         print(key, kept[key], flush=True)
         given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
