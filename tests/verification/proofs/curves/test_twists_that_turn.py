@@ -65,6 +65,20 @@ def test_along_the_normal_it_is_that_of_the_polygon() -> None:
         assert excluded(moved, [[0, -2.0, 0]], part=FLOOR, bound=1) == good
 
 
+def test_what_doubles_lose_excludes_nothing() -> None:
+    """Products too small for doubles, and many loads of which each is lost in the sum of all."""
+    for size in (1.0, 1e-60, 1e-170):
+        for s, good in (1.25 + 2**-40, True), (1.25 - 2**-40, False), (0.0, False):
+            moved = (size * np.array([[*NONE, 1, 0, 0, *NONE, s, s, s]])).tolist()
+            load = [[0, -2.0 / size, 0]]
+            assert excluded(moved, load, part=size * FLOOR, bound=1 / size) == good, (size, s)
+    few = 1200
+    loads = [[-1.0, 0, 0], *[[2.0**-54, 0, 0]] * few]  # work 1 - 1200 / 2^54 along the floor
+    for work, good in (1 - 0.95 * few / 2**54, False), (1 - few / 2**53, True):
+        moved = [[1.0, 0, 0, *NONE, *NONE, *[s] * 3] for s in (work, *[0.0] * few)]
+        assert excluded(moved, loads, part=FLOOR, bound=1, friction=0.0) == good
+
+
 def test_polynomials_count_between_the_ends() -> None:
     """Work t (1 - t) (a - 1) + t^2 + (1 - t)^2 for the load, by terms 1 + (a - 3) t + (3 - a) t^2."""
     for a, good in (1.0, False), (1.5, True), (0.5, False), (0.99, False), (1.01, True):

@@ -28,6 +28,7 @@ from regrasp.verification.placed.protocol import Point
 from regrasp.verification.placed.roots import root_above, root_below
 
 _ROUNDING = 3e-14  # of the terms of a sum of less than a hundred products of a few numbers
+_PLAIN = 1e40  # of numbers from one over this to this, or 0, no such product is too large or loses digits
 _MORE = 2**64  # by which lengths are finer than points
 _POWERS = ((1, 2, 1), (0, 1, 1), (0, 0, 1))  # of 1, t and t^2
 
@@ -93,21 +94,25 @@ def _is_clear(
     k = len(hulls)
     basis = np.array(_basis(k), dtype=float).reshape(-1, 3**k)
     loads, values = np.array([w for w, _ in motions]), np.array([motion for _, motion in motions])
+    points = np.array(hulls, dtype=float)
+    tangents = np.array(
+        [[(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(hull)] for hull in hulls], dtype=float
+    )
+    if not all(map(_is_plain, (loads, values, points, tangents, np.array([bound, friction])))):
+        return False
     terms = 3 * len(basis)
     polynomials = values[:, :terms].reshape(len(values), 3, -1)
     both = [polynomials @ basis, np.abs(polynomials) @ basis]
     bounds = values[:, terms:].reshape(len(values), k, -1) * basis[0]
     work, size = (np.einsum("ld,ldc->c", *each) for each in ((-loads, both[0]), (np.abs(loads), both[1])))
-    done = bound * bounds.sum(axis=(0, 1))
-    if not (bounds >= 0).all() or not (work - done > _ROUNDING * (size + done)).all():
+    done, lost = bound * bounds.sum(axis=(0, 1)), _ROUNDING * len(values)
+    if not (bounds >= 0).all() or not (work - done > lost * (size + done)).all():
         return False
     slant = float(np.hypot(1.0, friction))
-    for i, hull in enumerate(hulls):
-        points = np.array([[float(x), float(y)] for x, y in hull])
-        tangent = np.array([[float(b[0] - a[0]), float(b[1] - a[1])] for a, b in pairwise(hull)])
+    for i, tangent in enumerate(tangents):
         normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
         speed = _slowest_clear(tangent) * [1, 2, 1]
-        each = [(points, normal, tangent), (np.abs(points) * [1, -1], np.abs(normal), np.abs(tangent))]
+        each = [(points[i], normal, tangent), (np.abs(points[i]) * [1, -1], np.abs(normal), np.abs(tangent))]
         above = slant * _raised(_product(_own(bounds[:, i], k, i), speed.tolist()))
         found = []
         for polynomial, (at, *ways) in zip(both, each, strict=True):
@@ -118,6 +123,11 @@ def _is_clear(
         if not (above - edge >= _ROUNDING * (above + slant**2 * far + friction * wide)).all():
             return False
     return True
+
+
+def _is_plain(numbers: Array) -> bool:
+    sizes = np.abs(numbers[numbers != 0])
+    return bool(((sizes >= 1 / _PLAIN) & (sizes <= _PLAIN)).all())
 
 
 def _slowest_clear(tangent: Array) -> Array:
