@@ -5,6 +5,7 @@ import numpy as np
 from regrasp.errors import InvalidInput, shown
 from regrasp.mechanics.checks import Array, number
 from regrasp.mechanics.loads.load_set import LoadSet
+from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.laws import LEVELS
@@ -46,8 +47,11 @@ def level_of(
             )
         return BallLevel(limit, friction, length)
     if disturbance is None:
-        if friction == 0:
-            raise InvalidInput(f"objective {goal!r} needs friction above 0")
+        if friction <= NEGLIGIBLE:
+            raise InvalidInput(
+                f"objective {goal!r} needs friction above {NEGLIGIBLE:g}: what is less counts as none; got "
+                f"{friction:g}"
+            )
         loads = load.vector[None] if isinstance(load, Wrench) else load.vertices
         if loads is not None and not loads.any() and goal != "force":
             raise InvalidInput(f"objective {goal!r} needs a load other than zero: without force none is used")

@@ -82,8 +82,9 @@ def choose_grasp(
         load: external wrench on the object about its centre of mass, or a set of them that one grasp, with
             forces for each load, has to hold; the value is that of the worst load [N, N m]. Under none all
             placements are worth 0, unless fingers squeeze with ``min_normal``.
-        friction: coefficient of all fingers, 1e4 at most [-]. The largest component of loads is from 1e-60 to
-            1e60, or 0: beyond, rounding leaves nothing proven.
+        friction: coefficient of all fingers, 1e4 at most, and above 1e-9 for ``friction_use``, ``angle`` and
+            ``force`` [-]. The largest component of loads is from 1e-60 to 1e60, or 0: beyond, rounding leaves
+            nothing proven.
         objective: ``sum_normal``, ``peak_normal``, ``peak``, ``effort``; with ``max_force`` also
             ``friction_use``, ``angle``, ``force``, as of ``choose_state``; ``answered``, the largest factor
             of a ``disturbance`` for which forces exist; ``wrench``, that for which one set of forces does and
