@@ -153,3 +153,19 @@ def test_the_map_of_a_mesh_has_the_colours_of_the_nearest_points() -> None:
     drawn = {artist.get_gid(): artist for artist in ax.collections}
     assert len(np.unique(drawn["values"].get_facecolor(), axis=0)) > 2
     assert ax.figure.axes[1].get_ylabel() == "peak [N]"
+
+
+def test_a_legend_ends_within_the_figure() -> None:
+    bracket = rg.Outline([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])
+    below = rg.Grasp(bracket.contact_at(s, friction=0.4) for s in (0.02, 0.5, 3.98))
+    regions = rg.contact_regions(bracket, below, rg.Wrench([0, -1]))
+    assert regions.ended.any()  # of the longest words
+    found = rg.choose_grasp(
+        SQUARE_OUTLINE, 2, WEIGHT_IN_PLANE, friction=0.4, objective="friction_use", max_force=6
+    )
+    for ax in (plots.plot_contact_regions(regions), plots.plot_chosen_grasp(found)):
+        figure = ax.figure
+        figure.draw_without_rendering()
+        legend = ax.get_legend()
+        assert legend is not None
+        assert legend.get_window_extent().x1 <= figure.bbox.x1

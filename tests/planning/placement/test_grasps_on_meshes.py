@@ -168,6 +168,13 @@ def test_where_none_holds_the_proof_says_so() -> None:
     assert len(caught.value.certificate.number) < 1000
 
 
+def test_two_fingers_that_hold_on_a_knifes_edge_alone_are_refused_as_such() -> None:
+    with pytest.raises(rg.Infeasible, match="on a knife's edge alone, where rounding decides: two") as caught:
+        rg.choose_grasp(rg.Mesh.box(4, 3, 5), 2, rg.Wrench([0, 0, -1.8]), friction=0.4)
+    assert rg.verify(caught.value.certificate).ok
+    assert caught.value.certificate.bound == pytest.approx(1.8)
+
+
 def test_without_friction_or_load_nothing_is_held_beside_a_load() -> None:
     resting = rg.choose_grasp(BOX, 3, rg.Wrench([0, 0, -1]), friction=0.0, objective="peak", most_boxes=1000)
     assert resting.value == pytest.approx(1 / 3, rel=1e-4)

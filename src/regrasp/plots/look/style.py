@@ -33,6 +33,9 @@ TEXT, SMALL = 8.0, 7.0
 """Font sizes [pt]."""
 DPI = 150
 
+_BESIDE_TICKS = 0.78
+"""Of a figure's width, what is left beside the ticks and the name of the vertical axis."""
+
 Colours = Mapping[str, str]
 """The colour of each contact, by name."""
 
@@ -166,3 +169,14 @@ def legend(ax: Axes, handles: list[Line2D] | None = None, **where: Any) -> None:
     if handles is not None:
         options["handles"] = handles
     ax.legend(fontsize=SMALL, frameon=False, handletextpad=0.4, **options)
+
+
+def legend_in_columns(ax: Axes, handles: list[Line2D]) -> None:
+    """A legend in two columns above the axes, or in one where two would end beyond the figure."""
+    legend(ax, handles, ncols=2)
+    figure, made, place = ax.get_figure(root=True), ax.get_legend(), ax.get_subplotspec()
+    if figure is None or made is None:
+        return
+    beside = place.get_gridspec().ncols if place is not None else 1
+    if made.get_window_extent().width > _BESIDE_TICKS * figure.bbox.width / beside:
+        legend(ax, handles, ncols=1)

@@ -13,7 +13,7 @@ from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.plots.grasps.outline import plot_outline
 from regrasp.plots.look.space_axes import equal_scale
-from regrasp.plots.look.style import GREY, INK, contact_colours, legend, note, short
+from regrasp.plots.look.style import GREY, INK, contact_colours, legend, legend_in_columns, note, short
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.placement.on_meshes import draw_chosen, draw_regions
 from regrasp.plots.placement.values import unit_of
@@ -44,7 +44,7 @@ def plot_chosen_grasp(chosen: ChosenGrasp, ax: Axes | None = None, *, units: Uni
         passed = Line2D([], [], marker="o", linestyle="none", color="white", markersize=3.5, label="others")
         passed.set_markeredgecolor(GREY)
         handles.append(passed)
-    legend(ax, handles, ncols=2)
+    legend_in_columns(ax, handles)
     return ax
 
 
@@ -111,7 +111,7 @@ def plot_contact_regions(
         *([_bar(GREY, f"all off by {half} at once{ended}")] if regions.half_width else []),
         _bar(GREY, "one finger alone", linewidth=7, alpha=0.3),
     ]
-    legend(ax, handles, ncols=2)
+    legend_in_columns(ax, handles)
     return ax
 
 

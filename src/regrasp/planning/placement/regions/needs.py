@@ -30,7 +30,8 @@ def limit_of(least: float, given: float | None, grasp: Grasp, loads: Array) -> f
         raise InvalidInput("no force follows from a zero load: give max_force")
     limit = PEAK_RATIO * least if given is None else given * (1 - LESS)
     if least > limit:
-        raise Infeasible(f"the grasp itself needs a force of {least:.6g} N, above max_force {limit:.6g} N")
+        asked = limit if given is None else given
+        raise Infeasible(f"the grasp itself needs a force of {least:.6g} N, above max_force {asked:.6g} N")
     return limit
 
 

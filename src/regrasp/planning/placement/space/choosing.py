@@ -51,7 +51,7 @@ def check_space(
     if goal in LEVELS and goal not in SPACE_LEVELS:
         raise InvalidInput(
             f"objective {goal!r} has no bound on meshes: sum_normal, peak_normal, peak, effort, "
-            f"{' and '.join(SPACE_LEVELS)} have"
+            f"{', '.join(SPACE_LEVELS)} have"
         )
     if shape.smooth:
         raise InvalidInput(
@@ -239,6 +239,13 @@ def _none_holds(search: SurfaceSearch) -> Infeasible:
             _proof(search, most),
         )
     proof = _proof(search, min(search.bound, most))
+    if search.best < inf:
+        two = ": two hold no torque about the line between them, three would" if search.fingers == 2 else ""
+        return Infeasible(
+            f"the best placements of {search.fingers} fingers that were found hold the loads on a knife's "
+            f"edge alone, where rounding decides{two}; none needs less than {proof.bound:.6g} N",
+            proof,
+        )
     return Infeasible(
         f"no placement was found whose forces hold the loads, and none needs less than {proof.bound:.6g} N; "
         f"it is not proven that there is none: {search.count} boxes were looked at, allow more by most_boxes",
