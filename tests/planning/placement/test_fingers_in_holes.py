@@ -38,6 +38,30 @@ def cost(grasp: rg.Grasp) -> float:
         return np.inf
 
 
+def test_a_finger_at_the_end_of_a_ring_is_not_at_the_beginning_of_the_next() -> None:
+    """The last vertex of a ring is the first again; its length around is where the next ring begins."""
+    pocket = rg.Outline(
+        [[0, 0], [5, 0], [5, 3], [3, 3], [3, 1], [2, 1], [2, 3], [0, 3]],
+        holes=[[[0.4, 0.4], [0.4, 0.8], [0.8, 0.4]]],
+    )
+    chosen = rg.choose_grasp(
+        pocket, 3, rg.Wrench([0, 0]), friction=1.0, objective="wrench_ball", max_force=3.0,
+        length=0.5 * float(np.hypot(*pocket.polygon().T).max()), in_holes=True, from_corners=0.0,
+    )  # fmt: skip
+    assert chosen.places[-1] >= pocket.length
+    assert rg.verify(chosen).ok
+
+
+def test_the_end_of_a_ring_is_its_beginning() -> None:
+    sides = sides_of(WEDGE, 0.0, None, 0.0, True)
+    lasts, firsts, lengths = [2, 6, 9], [0, 3, 7], [0.0, WEDGE.length, WEDGE.length + 2.8]
+    for last, first, along in zip(lasts, firsts, lengths, strict=True):
+        (before,), (after,) = (np.flatnonzero(sides.edges == edge) for edge in (last, first))
+        for u in (last + 1.0, last + 1 - 1e-15):
+            assert sides.arc_length(before, u) == sides.arc_length(after, first) == pytest.approx(along)
+        assert sides.arc_length(before, last + 0.5) > along
+
+
 def test_what_hangs_on_a_ceiling_needs_least_and_no_sampled_pair_less() -> None:
     outside = rg.choose_grasp(WEDGE, 2, LOADS, friction=0.3)
     found = rg.choose_grasp(WEDGE, 2, LOADS, friction=0.3, in_holes=True)

@@ -9,6 +9,8 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.value import ArrayValue
 
+_AT_END = 1e-12  # of an edge, which no sum of lengths tells from its end
+
 
 @dataclass(frozen=True, eq=False)
 class Sides(ArrayValue):
@@ -140,3 +142,11 @@ class RingSides(Sides):
         """(k, 2) of the edges [m]."""
         parts = np.split(self.vertices, self.rings[1:])
         return np.concatenate([np.roll(part, -1, axis=0) - part for part in parts])
+
+    def arc_length(self, side: int, u: float) -> float:
+        """Along the rings [m]; the end of one is said as its beginning, for there the next one begins."""
+        edge = int(self.edges[side])
+        first = self.rings[self.rings <= edge][-1]
+        is_last = edge + 1 in (*self.rings, len(self.vertices))
+        at_end = is_last and u - edge > 1 - _AT_END
+        return float(self.starts[first]) if at_end else super().arc_length(side, u)
