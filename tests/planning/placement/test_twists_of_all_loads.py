@@ -121,3 +121,13 @@ def test_a_search_finds_them_and_each_is_needed() -> None:
             assert not rg.verify(replace(proof, movers=proof.movers[rows], motions=proof.motions[rows])).ok
             turned = np.where(rows[:, None], proof.motions, -proof.motions)
             assert not rg.verify(replace(proof, motions=turned)).ok
+
+
+def test_near_the_largest_margin_what_is_asked_is_excluded_at_once() -> None:
+    """The best is within 3 % of the top, sqrt(0.8) N, so that nothing there is to be proven on the way."""
+    angle = np.arange(12) * np.pi / 6
+    shape = rg.Outline(np.column_stack([2 * np.cos(angle), np.sin(angle)]))
+    chosen = rg.choose_grasp(shape, 3, rg.Wrench([0, -1], 0.1), friction=0.5, objective="force", max_force=2)
+    assert 1 < np.sqrt(0.8) / chosen.value < 1.03
+    assert chosen.gap <= 1e-3
+    assert rg.verify(chosen).ok

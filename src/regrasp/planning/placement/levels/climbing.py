@@ -40,7 +40,7 @@ def run_level(
                 # nothing is that much better; boxes go on from there to what is left to be asked
                 passed.append(aim)
                 gaps.pop(0)
-                aim = _next(level, best, gaps, tolerance, top)
+                aim = next_level(level, best, gaps, tolerance, top)
                 level.put(search, aim)
                 search.reopen()
             at = search.found if search.best <= level.max_force else None
@@ -51,7 +51,7 @@ def run_level(
                 due, before = search.count + _LATE, search.tries
                 reached, places, u = improved(search, level, aim, *at)
                 best = reached if best is None else max(best, reached)
-                aim = _next(level, best, gaps, tolerance, top)
+                aim = next_level(level, best, gaps, tolerance, top)
                 level.put(search, aim)
                 search.forget(reached, places, u)
                 if aim >= top:
@@ -72,7 +72,7 @@ def run_level(
     return best, beyond
 
 
-def _next(level: Level, best: float, gaps: list[float], tolerance: float, top: float) -> float:
+def next_level(level: Level, best: float, gaps: list[float], tolerance: float, top: float) -> float:
     """The level to exclude, of the first gap that leaves one below the largest; others are dropped."""
     while gaps and level.beyond(best, gaps[0]) >= top:
         gaps.pop(0)

@@ -11,7 +11,7 @@ from math import nan
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.placement.levels.climbing import improved, settled
+from regrasp.planning.placement.levels.climbing import improved, next_level, settled
 from regrasp.planning.placement.levels.level import SURE, Level
 from regrasp.planning.placement.search import Progress, Search
 
@@ -75,7 +75,7 @@ class _Joined:
         self.passed: float | None = None  # a level at which all was excluded, by ``_loose``
         self._loose: dict[int, Twists] = {}
         self._parent: dict[int, int] = {}
-        self._gaps = [*(t for t in _GAPS if t > tolerance), tolerance]
+        self._gaps, self._tolerance = [t for t in _GAPS if t > tolerance], tolerance
         loads, k = len(search.loads), search.fingers
         self._rooms = room_for_all(loads, k), room_to_move(loads, k)
         self._out = np.zeros((loads, 3)), np.zeros((k, 5, 2)), np.zeros(k)
@@ -84,11 +84,11 @@ class _Joined:
         """Exclude boxes or split them, at one gap after the other."""
         search = self.search
         self._put(self.aim)
-        while self._emptied(told) and self.best is not None and len(self._gaps) > 1:
+        while self._emptied(told) and self.best is not None and self._gaps:
             self._gaps.pop(0)
             if not len(search.left):
                 self.passed, self._loose = self.aim, dict(search.moving)
-            self._put(self.level.beyond(self.best, self._gaps[0]))
+            self._put_beyond(self.best)
             search.reopen()
             search.moving.clear()
             self.waiting.extend(search.left.tolist())
@@ -108,6 +108,10 @@ class _Joined:
     def _put(self, aim: float) -> None:
         self.aim = min(aim, self.level.top(self.search))
         self.level.put(self.search, self.aim)
+
+    def _put_beyond(self, best: float) -> None:
+        top = self.level.top(self.search)
+        self._put(next_level(self.level, best, self._gaps, self._tolerance, top))
 
     def _emptied(self, told: Callable[[], None]) -> bool:
         """Whether all boxes were looked at."""
@@ -176,7 +180,7 @@ class _Joined:
         if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
             self.best, *at = improved(search, level, self.aim, places, u)
             search.forget(self.best, *at)
-            self._put(level.beyond(self.best, self._gaps[0]))
+            self._put_beyond(self.best)
 
     def _known(self, node: int) -> Twists | None:
         """What excluded a box, or one around it, at the level that was passed."""
