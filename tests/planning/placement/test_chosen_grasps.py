@@ -88,6 +88,16 @@ def test_on_a_knifes_edge_the_gap_says_so() -> None:
         assert value_of(robust.grasp, load[None], "sum_normal") <= robust.value * (1 + 1e-6)
 
 
+def test_round_loads_beside_their_lines_are_held_by_mixtures_of_states() -> None:
+    """Those of the bound are within the outer ones, between no two of them."""
+    loads = rg.LoadSet.turned(rg.Wrench([0, -1]))
+    chosen = rg.choose_grasp(BRACKET, 3, loads, friction=0.5, load_offset=0.1, tolerance=0.1, most_boxes=200)
+    assert rg.verify(chosen).ok
+    for states in chosen.states[1:], chosen.states[:-1], ():
+        said = rg.verify(replace(chosen, states=states)).violations
+        assert "a load of the proof has no state" in said
+
+
 @pytest.mark.parametrize("fingers", [2, 3])
 def test_at_critical_friction_what_rounding_decides_hides_no_placement_that_holds(fingers: int) -> None:
     """Two loads at the friction angle of the lowest side: fingers on it hold by exact arithmetic alone."""

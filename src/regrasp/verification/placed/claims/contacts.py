@@ -95,17 +95,21 @@ def _nearest(positions: Array) -> float:
 
 
 def _all_shown(chosen: Chosen, loads: Array) -> bool:
-    """Whether states hold all loads: each is that of a state, or lies between those of two."""
+    """Whether states hold all loads: each is that of a state, or lies between those of two.
+
+    Its last component may also be between what two such mixtures have.
+    """
     shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, loads.shape[1])
     size = np.abs(loads).max(axis=0)
     scale = np.where(size > 0, size, size.max() or 1.0)  # forces and torques have units of their own
     shown, loads = shown / scale, loads / scale
     sides = shown[None] - shown[:, None]
-    squares = np.maximum((sides**2).sum(axis=2), np.finfo(float).tiny)
+    squares = np.maximum((sides[..., :-1] ** 2).sum(axis=2), np.finfo(float).tiny)
     for load in loads:
         away = load - shown
-        share = np.clip((away[:, None] * sides).sum(axis=2) / squares, 0.0, 1.0)
-        off = np.abs(away[:, None] - share[..., None] * sides).max(axis=2)
-        if not off.min(initial=inf) <= CLOSE:
+        share = np.clip((away[:, None, :-1] * sides[..., :-1]).sum(axis=2) / squares, 0.0, 1.0)
+        left = away[:, None] - share[..., None] * sides
+        last = left[..., -1][(np.abs(left[..., :-1]) <= CLOSE).all(axis=2)]
+        if not last.min(initial=inf) <= CLOSE or not last.max(initial=-inf) >= -CLOSE:
             return False
     return True
