@@ -204,6 +204,21 @@ def test_a_search_ends_where_no_friction_is_needed(monkeypatch: pytest.MonkeyPat
     assert rg.verify(found).ok
 
 
+def test_three_fingers_that_need_no_friction_are_found_to_the_last() -> None:
+    """Normals through the centre of mass: simplexes a thousandth of the boundary wide had ended before."""
+    t = np.arange(16) * np.pi / 8
+    rng = np.random.default_rng(1)
+    waves = [0.3 / (j + 1) * rng.normal() * np.cos(j * t + rng.uniform(0, 6)) for j in (2, 3, 4)]
+    radii = 1 + sum(waves)
+    blob = rg.Outline.smooth(radii[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1))
+    around = rg.LoadSet.hull([rg.Wrench([np.cos(a), np.sin(a)]) for a in np.arange(6) * np.pi / 3 + 0.2])
+    asked: dict[str, Any] = {"objective": "friction_use", "max_force": 4, "most_boxes": 6000}
+    found = rg.choose_grasp(blob, 3, around, friction=0.5, **asked)
+    assert found.gap <= 1e-3
+    assert found.bound == 0
+    assert rg.verify(found).ok
+
+
 @pytest.mark.parametrize("radius", [0.6, 2.0])
 def test_round_tips_touch_nothing_else(radius: float) -> None:
     """Against distances of the tip's centre to points of the curve, which closes in on itself in a mouth."""

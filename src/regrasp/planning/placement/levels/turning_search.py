@@ -19,6 +19,7 @@ WIDE = 0.2
 _FAR, _NEARER = 0.5, 64  # of the best level, the first searches are so far from it, then so many times nearer
 _BEGINS = 8  # placements that the first of them begins from
 _TRIES, _STEP = 300, 1e-3  # of a simplex of placements, its size as a part of the boundary
+_NEAR_TOP = 10  # of what is left to the level without friction, the size of the simplex near it
 
 
 def closed_by_turning(
@@ -136,6 +137,10 @@ class Turning(Moving):
             at = moved(ways)
             return min(search.norm_at(*at), far) if search.are_apart(*at) else far
 
-        simplex = _STEP * np.vstack([np.zeros(len(u)), np.eye(len(u))])
-        options = {"initial_simplex": simplex, "maxfev": _TRIES, "xatol": 1e-9, "fatol": 1e-9}
-        return moved(minimize(norm, simplex[0], method="Nelder-Mead", options=options).x)
+        ways = np.zeros(len(u))
+        steps = {_STEP, min(_STEP, _NEAR_TOP * (self.top - self.best))}  # as near to the top as levels are
+        for step in sorted(steps, reverse=True):
+            simplex = ways + step * np.vstack([np.zeros(len(u)), np.eye(len(u))])
+            options = {"initial_simplex": simplex, "maxfev": _TRIES, "xatol": 1e-6 * step, "fatol": 1e-9}
+            ways = minimize(norm, ways, method="Nelder-Mead", options=options).x
+        return moved(ways)
