@@ -67,10 +67,11 @@ def row(
 ) -> dict[str, Any]:
     """How a search of at most ``cap`` seconds of processor time went, and what ``verify`` says."""
     begin, (ended, progress) = perf_counter(), within(cap)
+    more = asked(outline, objective) | ({} if most is None else {"most_boxes": most})
     try:
         chosen = rg.choose_grasp(
             outline, fingers, friction=FRICTION, objective=objective, tolerance=TOLERANCE, from_corners=0.0,
-            progress=progress, **asked(outline, objective),
+            progress=progress, **more,
         )  # fmt: skip
     except rg.Infeasible as refusal:
         seconds, proof = perf_counter() - begin, refusal.certificate

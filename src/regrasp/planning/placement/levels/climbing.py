@@ -19,21 +19,27 @@ _SLOW = 1e-5  # of a level, the least gain of one
 
 
 def run_level(
-    search: Search, level: Level, tolerance: float, most: int, progress: Progress | None
+    search: Search,
+    level: Level,
+    tolerance: float,
+    most: int,
+    progress: Progress | None,
+    best: float | None = None,
 ) -> tuple[float | None, float]:
     """The best level found, None where no placement was, and a level that no placement is beyond.
 
     ``search`` is left at that level, which its boxes exclude where it is ``closed``; where it was cut short
-    it is the largest there is.
+    it is the largest there is. best: a level that was reached before.
     """
-    best: float | None = None
     due, before = _LATE, 0
     aim, top = level.start, level.top(search)
     gaps, passed = [t for t in _GAPS if t > tolerance], list[float]()
     fixed = level.max_force * (1 + _STRICT)
+    if best is not None:
+        aim = next_level(level, best, gaps, tolerance, top)
     level.put(search, aim)
     try:
-        while True:
+        while best is None or aim < top:
             if not (search.goes_on(fixed, 0.0, most) or search.best <= level.max_force):
                 if best is None or not (search.closed and gaps):
                     break
