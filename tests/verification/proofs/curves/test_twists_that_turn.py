@@ -13,6 +13,7 @@ from proofs import planar
 from regrasp.closed_form.compiled.places.matrix_game import play
 from regrasp.closed_form.compiled.places.turning_bounds import least_above, slowest
 from regrasp.closed_form.compiled.places.turning_twists import room_to_turn, turned
+from regrasp.planning.placement.levels import turning_search
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn
 
 pytestmark = pytest.mark.oracle
@@ -303,3 +304,14 @@ def test_of_a_search_cut_short_what_was_closed_is_left() -> None:
     for chosen in (cut, ended):
         assert chosen.certificate.motions is not None
         assert rg.verify(chosen).ok
+
+
+def test_twists_take_so_much_memory_at_most(monkeypatch: pytest.MonkeyPatch) -> None:
+    shape, loads = flower()
+    monkeypatch.setattr(turning_search, "_NUMBERS", 2)
+    given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "tolerance": 1e-5}
+    cut = rg.choose_grasp(shape, 2, loads, most_boxes=4000, **given)
+    motions = cut.certificate.motions
+    assert cut.gap > 1e-5
+    assert motions is None or motions.size < 2 * 4000 + 6 * motions.shape[1]
+    assert rg.verify(cut).ok

@@ -17,6 +17,7 @@ from regrasp.planning.placement.sliding import Placed
 WIDE = 0.2
 """Of the size: arcs of less are left to these twists."""
 _FAR, _NEARER = 0.5, 64  # of the best level, the first searches are so far from it, then so many times nearer
+_NUMBERS = 100  # of twists, for each box that may be
 _BEGINS = 8  # placements that the first of them begins from
 _TRIES, _STEP = 300, 1e-3  # of a simplex of placements, its size as a part of the boundary
 _NEAR_TOP = 10  # of what is left to the level without friction, the size of the simplex near it
@@ -50,9 +51,10 @@ def closed_by_turning(
                 search, beyond = turning.search, turning.aim
             if not closed:
                 break
+            moving, turning.search.moving = turning.search.moving, {}
             begun = deepcopy(turning.search)
+            turning.search.moving = moving
             begun.take([])
-            begun.moving.clear()
     search.take(kept)
     level.put(search, beyond)
     return search, beyond
@@ -63,7 +65,7 @@ class Turning(Moving):
 
     def __init__(self, search: Search, level: Level, best: float, tolerance: float) -> None:
         super().__init__(search, level, best, tolerance)
-        self.top = level.top(search)
+        self.top, self.free = level.top(search), 0
 
     def memory(self, loads: int, fingers: int) -> tuple[Any, ...]:
         """That of the compiled search of twists."""
@@ -76,6 +78,7 @@ class Turning(Moving):
 
         begins: placements to go on from. known: a level that no placement is beyond.
         """
+        self.free = _NUMBERS * most
         for _, places, u in begins:
             self.better(*self._nearby(places, u))
         if not self.goes_on():
@@ -91,8 +94,8 @@ class Turning(Moving):
         return self.search.closed and self.aim == aim
 
     def goes_on(self) -> bool:
-        """Not at the top, without friction: that level is held, as is each beyond it."""
-        return self.aim < self.top
+        """Not at the top, without friction: that level is held, as is each beyond it. Nor without memory."""
+        return self.aim < self.top and self.free > 0
 
     def followed(self, node: int) -> bool:
         """Whether twists exclude a box, in whose middle no placement holds; else it is gone on from."""
@@ -112,6 +115,7 @@ class Turning(Moving):
         found[:, 2 * terms : 3 * terms] /= size
         few = np.flatnonzero(found.any(axis=1))
         search.leave(node, None, (few, found[few]))
+        self.free -= found[few].size
         return True
 
     def better(self, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array] | None:
