@@ -310,8 +310,9 @@ def test_twists_take_so_much_memory_at_most(monkeypatch: pytest.MonkeyPatch) -> 
     shape, loads = flower()
     monkeypatch.setattr(turning_search, "_NUMBERS", 2)
     given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "tolerance": 1e-5}
-    cut = rg.choose_grasp(shape, 2, loads, most_boxes=4000, **given)
+    cut = rg.choose_grasp(shape, 2, loads, most_boxes=2000, **given)
     motions = cut.certificate.motions
-    assert cut.gap > 1e-5
-    assert motions is None or motions.size < 2 * 4000 + 6 * motions.shape[1]
+    assert motions is not None
+    assert cut.gap > 1e-4
+    assert motions.size < 2 * 2000 + 6 * motions.shape[1]
     assert rg.verify(cut).ok
