@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# One more than cores: some tests wait for a browser, a cluster or a clock.
+WORKERS = $(shell $(PYTHON) -c "import os; print((os.cpu_count() or 1) + 1)")
 # Asserts that pytest rewrites are kept beside the tests; writing them anew costs a sixth of the inner loop.
 export PYTHONDONTWRITEBYTECODE :=
 
@@ -15,7 +17,7 @@ test: checked tested
 
 tested: $(VENV)/installed-dev
 	$(BIN)/regrasp warm-up
-	$(BIN)/pytest -n auto --nbmake --nbmake-timeout=300 tests notebooks
+	$(BIN)/pytest -n $(WORKERS) --nbmake --nbmake-timeout=300 tests notebooks
 
 checked: $(VENV)/installed-dev
 	$(BIN)/ruff check .

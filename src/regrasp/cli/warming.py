@@ -94,7 +94,7 @@ def _regrasps_in_space() -> None:
 
 def _places() -> None:
     import regrasp as rg
-    from regrasp.planning.placement import choosing
+    from regrasp.planning.placement.levels import searching
 
     square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     rg.choose_grasp(square, 2, rg.Wrench([0.1, -1.0]), friction=0.6)
@@ -106,11 +106,20 @@ def _places() -> None:
     corners = ((1.0, 0.6), (-0.9, 0.0), (-0.4, -0.9))
     loads = rg.LoadSet.hull([rg.Wrench(at, turn) for at in corners for turn in (0.05, -0.05)])
     rg.choose_grasp(rg.Outline(corners), 3, loads, friction=0.4, objective="friction_use", max_force=4.0)
-    many, choosing.MANY = choosing.MANY, 0
+    many, searching.MANY = searching.MANY, 0
     try:
         rg.choose_grasp(rg.Outline(corners), 3, loads, friction=0.4, objective="friction_use", max_force=4.0)
     finally:
-        choosing.MANY = many
+        searching.MANY = many
+    rg.choose_grasp(
+        rg.Outline.ellipse(2, 1),
+        3,
+        loads,
+        friction=0.4,
+        objective="friction_use",
+        max_force=4.0,
+        most_boxes=512,
+    )
     rg.choose_grasp(rg.Mesh.box(1, 1, 1), 3, rg.Wrench([0, 0, -1.0]), friction=0.6, tolerance=0.1)
 
 

@@ -52,7 +52,7 @@ def test_a_search_starts_there_and_ends_as_without(monkeypatch) -> None:
     loads = rg.LoadSet.hull([rg.Wrench(at, turn) for at in corners for turn in (0.05, -0.05)])
     found = []
     for many in 1000, 2:
-        monkeypatch.setattr("regrasp.planning.placement.choosing.MANY", many)
+        monkeypatch.setattr("regrasp.planning.placement.levels.searching.MANY", many)
         chosen = rg.choose_grasp(
             rg.Outline(corners), 3, loads, friction=0.4, objective="friction_use", max_force=4, tolerance=1e-2
         )
@@ -64,7 +64,7 @@ def test_a_search_starts_there_and_ends_as_without(monkeypatch) -> None:
 
 
 def test_where_no_friction_is_needed_nothing_is_searched(monkeypatch) -> None:
-    monkeypatch.setattr("regrasp.planning.placement.choosing.MANY", 2)
+    monkeypatch.setattr("regrasp.planning.placement.levels.searching.MANY", 2)
     shape = rg.Outline([[-2, -1], [2, -1], [0, 2]])
     for objective in "friction_use", "angle":
         chosen = rg.choose_grasp(

@@ -18,15 +18,10 @@ from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.circles import turned
 from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
-from regrasp.planning.placement.curves.curved_sides import CurvedSides
 from regrasp.planning.placement.laws import LEVELS, Law, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
-from regrasp.planning.placement.levels.climbing import run_level
-from regrasp.planning.placement.levels.joined_search import MOST_LOADS, run_joined
-from regrasp.planning.placement.levels.level import ForceLevel, FrictionLevel, Level
-from regrasp.planning.placement.levels.moving_search import COARSE, closed_by_moving
-from regrasp.planning.placement.levels.starts import best_start
-from regrasp.planning.placement.levels.turning_search import WIDE, closed_by_turning
+from regrasp.planning.placement.levels.level import Level
+from regrasp.planning.placement.levels.searching import best_level
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import check_sizes, inner_and_outer, offset_by
 from regrasp.planning.placement.reachable import sides_of
@@ -41,8 +36,6 @@ FROM_CORNERS = 1e-3
 _SPARED = 1e-6  # of the friction, where placements on edges of cones are passed over
 _KEPT, _FEW = 10, 1000  # placements, however those were found; boxes at the least
 _SHORT = 0.25  # of the work of sliding otherwise
-MANY = 1000
-"""Sides from which on a search of three fingers with little friction starts where normals meet."""
 DISTINCT = 1e-6
 """Default distance of fingers, as a fraction of the object's farthest reach from its centre of mass."""
 
@@ -205,32 +198,7 @@ def choose_grasp(
     asked = Asked(shape, goal, law, mu, outer, limit, constraints.min_normal, constraints.unbounded)
     if level is not None:
         around = 1.0 if np.array_equal(inner, outer) else 0.5  # the rest is for loads around a round set
-        curved = isinstance(sides, CurvedSides)
-        # of three fingers with little friction boxes go down to single edges either way
-        kinds = ForceLevel | FrictionLevel if fingers == 2 else ForceLevel
-        joined = not curved and len(inner) <= MOST_LOADS and isinstance(level, kinds)
-        moving = isinstance(level, FrictionLevel) and not joined
-        if moving and not (curved and fingers == 2):  # fixed twists leave two alone little
-            search.narrow = max(WIDE if curved else COARSE, search.narrow)
-        given = search, level, around * tolerance, most, progress
-        if joined:
-            best, beyond = run_joined(*given)
-        else:
-            start, many = None, fingers == 3 and len(sides.edges) > MANY and not curved
-            if many and isinstance(level, FrictionLevel):
-                start = best_start(search, level)
-            best, beyond = run_level(*given, start)
-        if (joined or search.narrow > narrow) and best is None and not search.closed:  # few places hold
-            search = search.anew()
-            search.narrow, moving = narrow, curved
-            best, beyond = run_level(search, level, around * tolerance, most, progress)
-        wide = best is not None and beyond > level.beyond(best, 1.1 * around * tolerance)
-        if best is not None and wide and not search.interrupted:
-            found = search, level, best, beyond, around * tolerance, most, progress
-            if moving and curved:
-                search, beyond = closed_by_turning(*found)
-            elif moving:
-                beyond = closed_by_moving(*found)
+        search, best, beyond = best_level(search, level, around * tolerance, most, progress)
         if isinstance(level, WithstoodLevel) and best is not None and not search.interrupted:
             search, beyond = level.climb(search, tolerance, most, progress, beyond)
         return _told(chosen_at_level(search, asked, level, best, beyond), law, progress)
