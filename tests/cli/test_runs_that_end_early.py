@@ -73,6 +73,8 @@ def test_an_interrupt_at_any_moment_is_one_line(delay: float, tmp_path: Path) ->
         out, err = process.communicate(timeout=60)
     if "regrasp" not in err and process.returncode in (1, -signal.SIGINT):
         return  # Python itself had not come to us
+    if process.returncode == 0 and "in: <function _get_module_lock" in err:
+        return  # a callback of Python's imports heard it, and what is raised there goes no further
     assert (process.returncode, err.strip()) in [(130, "Interrupted."), (0, "")]
     assert json.loads(out)["exit"] == process.returncode
     assert not left(tmp_path)

@@ -21,11 +21,7 @@ SCENARIOS: dict[str, tuple[str, int, list[str | re.Pattern[str]]]] = {
     "empty": (
         "",
         2,
-        [
-            "load: a required key is missing",
-            "contacts: a required key is missing",
-            "task: a required key is missing",
-        ],
+        ["task: a required key is missing: a table with a kind, as grasp or regrasp"],
     ),
     "key given twice": (
         edited(("torque = 0.0 ", "torque = 0.0\ntorque = 1.0 ")),
