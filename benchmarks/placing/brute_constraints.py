@@ -10,7 +10,6 @@ Which samples keep them is decided here; forces with least normals come from lin
 """
 
 import argparse
-import json
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
@@ -22,6 +21,7 @@ import numpy as np
 import regrasp as rg
 from brute_force import LIMIT
 from fifty_outlines import polygon
+from kept_rows import keep, rows_in, short
 from placement_outlines import within
 from sampled_places import LARGEST, Places, Task, best, least, norms, points_of
 
@@ -261,7 +261,7 @@ def main() -> None:
     parser.add_argument("--table", action="store_true")
     parser.add_argument("-o", "--output", type=Path, default=RESULTS)
     given = parser.parse_args()
-    kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    kept = rows_in(given.output)
     if given.table:
         print(table(kept))
         return
@@ -270,9 +270,7 @@ def main() -> None:
         if str(seed) in kept or perf_counter() - begin > given.seconds:
             continue
         found = row(seed, given.cap)
-        kept[str(seed)] = {k: float(f"{v:.7g}") if isinstance(v, float) else v for k, v in found.items()}
-        print(seed, kept[str(seed)], flush=True)
-        given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        keep(given.output, kept, str(seed), short(found))
 
 
 if __name__ == "__main__":

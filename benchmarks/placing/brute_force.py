@@ -15,7 +15,6 @@ asked for, fingers at edges allowed, against all triples of 40 points drawn even
 """
 
 import argparse
-import json
 from itertools import product
 from pathlib import Path
 from time import perf_counter
@@ -25,6 +24,7 @@ import numpy as np
 
 import regrasp as rg
 from fifty_outlines import outlines
+from kept_rows import keep, rows_in, short
 from on_surfaces import BOX, BRACKET, SIX, THREE, Surface
 from placement_outlines import within
 from sampled_places import LARGEST, Places, Task, all_of, best, norms, points_of
@@ -223,7 +223,7 @@ def main() -> None:
     if given.space:
         in_space(given.cap)
         return
-    kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    kept = rows_in(given.output)
     if given.table:
         print(table(kept))
         return
@@ -235,9 +235,7 @@ def main() -> None:
         if key in kept or perf_counter() - begin > given.seconds:
             continue
         found = row(outline, objective, fingers, (i + OBJECTIVES.index(objective)) % 3, given.cap)
-        kept[key] = {k: float(f"{v:.7g}") if isinstance(v, float) else v for k, v in found.items()}
-        print(key, kept[key], flush=True)
-        given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        keep(given.output, kept, key, short(found))
 
 
 if __name__ == "__main__":

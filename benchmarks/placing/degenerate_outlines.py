@@ -13,7 +13,6 @@ every orientation on ellipses of half axes 1 and this.
 """
 
 import argparse
-import json
 from collections import Counter
 from itertools import combinations, product
 from pathlib import Path
@@ -24,6 +23,7 @@ import numpy as np
 
 import regrasp as rg
 from brute_force import OBJECTIVES, asked, judged_again, lies
+from kept_rows import keep, rows_in, short
 from placement_outlines import within
 from sampled_places import all_of, best, points_of
 
@@ -171,7 +171,7 @@ def main() -> None:
     parser.add_argument("--circles", type=float, nargs="?", const=1.0)
     parser.add_argument("-o", "--output", type=Path, default=RESULTS)
     given = parser.parse_args()
-    kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    kept = rows_in(given.output)
     if given.circles:
         circles(given.circles)
         return
@@ -188,9 +188,7 @@ def main() -> None:
         kind = (list(SHAPES).index(shape) + list(OBJECTIVES).index(objective)) % 3
         key = key_of(choice)
         found = row(SHAPES[shape], objective, int(fingers), FRICTIONS[friction], kind, given.cap)
-        kept[key] = {k: float(f"{v:.7g}") if isinstance(v, float) else v for k, v in found.items()}
-        print(key, kept[key], flush=True)
-        given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        keep(given.output, kept, key, short(found))
 
 
 if __name__ == "__main__":

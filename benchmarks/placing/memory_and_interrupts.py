@@ -22,6 +22,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
@@ -31,6 +32,7 @@ import numpy as np
 import regrasp as rg
 from brute_force import asked
 from fifty_outlines import outlines
+from kept_rows import keep, rows_in
 from on_surfaces import BOX, THREE
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.space.surface_search import SurfaceSearch
@@ -246,24 +248,20 @@ def main() -> None:
     parser.add_argument("--boxes", type=int)
     parser.add_argument("-o", "--output", type=Path, default=RESULTS)
     given = parser.parse_args()
-    kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    kept = rows_in(given.output)
 
-    def keep(key: str, row: dict[str, Any]) -> None:
-        print(key, row, flush=True)
-        kept[key] = row
-        given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-
+    kept_now = partial(keep, given.output, kept)
     cases = tuple(CASES) if given.case is None else (given.case,)
     if given.what == "child":
         child(given.case, given.most, given.boxes)
     elif given.what == "memory":
-        memory(keep, cases)
+        memory(kept_now, cases)
     elif given.what == "interrupts":
-        interrupts(keep, cases, given.count)
+        interrupts(kept_now, cases, given.count)
     elif given.what == "late":
-        late(keep, cases, given.boxes or MANY)
+        late(kept_now, cases, given.boxes or MANY)
     elif given.what == "threads":
-        threads(keep, cases)
+        threads(kept_now, cases)
     else:
         print(tables(kept))
 

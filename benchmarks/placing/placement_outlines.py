@@ -24,6 +24,7 @@ import numpy as np
 
 import regrasp as rg
 from fifty_outlines import outlines
+from kept_rows import keep, rows_in
 from random_attack import attack
 
 OBJECTIVES = ("sum_normal", "peak_normal", "peak", "friction_use", "force", "answered")
@@ -154,20 +155,11 @@ def main() -> None:
         "-o", "--output", type=Path, default=Path(__file__).parents[1] / "results" / "outlines.json"
     )
     given = parser.parse_args()
-    kept: dict[str, Any] = (
-        json.loads(given.output.read_text(encoding="utf-8")) if given.output.exists() else {}
-    )
+    kept = rows_in(given.output)
     if given.table:
         print(table(kept))
         return
     begin, shapes = perf_counter(), list(outlines())[: given.count]
-
-    def keep(key: str, found: dict[str, Any]) -> None:
-        kept[key] = found
-        print(key, found, flush=True)
-        part = given.output.with_suffix(".part")
-        part.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-        part.replace(given.output)
 
     for fingers in given.fingers:
         for objective in given.objectives:
@@ -176,9 +168,10 @@ def main() -> None:
                 if perf_counter() - begin > given.seconds:
                     return
                 if key not in kept and not given.attack:
-                    keep(key, row(outline, objective, fingers, given.cap, given.most))
+                    keep(given.output, kept, key, row(outline, objective, fingers, given.cap, given.most))
                 elif given.attack and kept.get(key, {"random": np.inf})["random"] < given.attack:
-                    keep(key, kept[key] | attacked(outline, objective, fingers, kept[key], given.attack))
+                    more = attacked(outline, objective, fingers, kept[key], given.attack)
+                    keep(given.output, kept, key, kept[key] | more)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ Nothing of it is part of the search.
 """
 
 import argparse
-import json
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
@@ -20,6 +19,7 @@ from scipy.optimize import linprog
 
 import regrasp as rg
 from fifty_outlines import outlines
+from kept_rows import keep, rows_in, short
 
 LIMIT, WEIGHT = 3.0, np.array([0.0, -1.0, 0.0])
 ROUGH, FINE = 24, 480  # sides of polygons around a circle
@@ -135,7 +135,7 @@ def main() -> None:
     parser.add_argument("--table", action="store_true")
     parser.add_argument("-o", "--output", type=Path, default=RESULTS)
     given = parser.parse_args()
-    kept: dict[str, Any] = json.loads(given.output.read_text()) if given.output.exists() else {}
+    kept = rows_in(given.output)
     if given.table:
         print(table(kept))
         return
@@ -145,9 +145,7 @@ def main() -> None:
         if key in kept or given.only not in key:
             continue
         found = row(shapes[name], fingers, mu, COUNTS[fingers])
-        kept[key] = {k: float(f"{v:.7g}") if isinstance(v, float) else v for k, v in found.items()}
-        print(key, kept[key], flush=True)
-        given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        keep(given.output, kept, key, short(found))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from scipy.optimize import linprog
 
 import regrasp as rg
 from proofs import planar
-from regrasp.closed_form.compiled.places.matrix_game import play
+from regrasp.closed_form.compiled.places.simplex import play
 from regrasp.closed_form.compiled.places.turning_bounds import least_above, slowest
 from regrasp.closed_form.compiled.places.turning_twists import room_to_turn, turned
 from regrasp.planning.placement.levels import turning_search

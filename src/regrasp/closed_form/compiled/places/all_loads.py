@@ -24,13 +24,14 @@ from regrasp.closed_form.compiled.places import (
     cubic_arcs,
     eroded,
     placement_boxes,
+    simplex,
     twist_weights,
     wrench_gauge,
 )
 from regrasp.closed_form.compiled.places.eroded import add_middle
 from regrasp.closed_form.compiled.places.placement_boxes import too_near
 from regrasp.closed_form.compiled.places.twist_weights import mix
-from regrasp.closed_form.compiled.places.wrench_gauge import ERODED, solved, support_of_arc
+from regrasp.closed_form.compiled.places.wrench_gauge import ERODED, row_that_leaves, solved, support_of_arc
 from regrasp.compilation import kept
 
 LEFT, GONE, NEAR = 0, 1, 2
@@ -40,7 +41,6 @@ _PLACES = 12  # of a finger
 _JOINS = 12  # of places to one linear program
 _MOST = 80
 _ARTIFICIAL = 1e9
-_PIVOT = 1e-13
 _CLOSE = 1e-7
 _SURE = 1e-9  # of the terms, more than rounding adds
 _WHOLE = 0.05  # of how far places differ, that counts where forces press alike
@@ -105,14 +105,9 @@ def _against(sides, law, level, b, at, us, shares, count, pressed, x, work):  # 
             lower = upper / h if h > 0.0 else np.inf
             for c in range(3):
                 best[c] = y[c]
-        if h <= 1.0 or lower >= upper * (1.0 - _CLOSE) or not solved(g, new, spare, d):
+        if h <= 1.0 or lower >= upper * (1.0 - _CLOSE):
             break
-        leaving, ratio = -1, np.inf
-        least = _PIVOT * (abs(new[0]) + abs(new[1]) + abs(new[2]))
-        for c in range(3):
-            part = d[c] * (abs(g[c, 0]) + abs(g[c, 1]) + abs(g[c, 2]))
-            if part > least and max(x[c], 0.0) < ratio * d[c]:
-                leaving, ratio = c, max(x[c], 0.0) / d[c]
+        leaving = row_that_leaves(g, new, x, spare, d)
         if leaving < 0:
             break
         for c in range(3):
@@ -200,23 +195,9 @@ def _loop(digest: str) -> Any:
         mu, _, size, norm, _, limit, margin = law
         bounding = (mu, size, norm, limit, margin)
         (
-            at,
-            us,
-            shares,
-            count,
-            pressed,
-            x,
-            means,
-            rows,
-            of,
-            gains,
-            lifted,
-            most,
-            weights,
-            table,
-            names,
+            at, us, shares, count, pressed, x, means, rows, of, gains, lifted, most, weights, table, names,
             work,
-        ) = room
+        ) = room  # fmt: skip
         best, out, y = work[5], work[8], work[3]
         k, made = len(arcs), 0
         for i in range(k):
@@ -306,4 +287,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-joined = _loop(digest((cubic_arcs, eroded, placement_boxes, twist_weights, wrench_gauge)))
+joined = _loop(digest((cubic_arcs, eroded, placement_boxes, simplex, twist_weights, wrench_gauge)))

@@ -20,8 +20,8 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.places import cubic_arcs, eroded, matrix_game, wrench_gauge
-from regrasp.closed_form.compiled.places.matrix_game import play
+from regrasp.closed_form.compiled.places import cubic_arcs, eroded, simplex, wrench_gauge
+from regrasp.closed_form.compiled.places.simplex import play
 from regrasp.closed_form.compiled.places.wrench_gauge import (
     ERODED,
     LARGEST,
@@ -184,4 +184,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-moved = _loop(digest((cubic_arcs, eroded, matrix_game, wrench_gauge)))
+moved = _loop(digest((cubic_arcs, eroded, simplex, wrench_gauge)))

@@ -27,8 +27,8 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
-from regrasp.closed_form.compiled.places import matrix_game, turning_bounds
-from regrasp.closed_form.compiled.places.matrix_game import play
+from regrasp.closed_form.compiled.places import simplex, turning_bounds
+from regrasp.closed_form.compiled.places.simplex import play
 from regrasp.closed_form.compiled.places.turning_bounds import (
     binomials,
     bounds_along,
@@ -286,4 +286,4 @@ def _loop(digest: str) -> Any:
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-turned = _loop(digest((matrix_game, turning_bounds)))
+turned = _loop(digest((simplex, turning_bounds)))

@@ -4,8 +4,9 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
+from regrasp.closed_form.compiled.places.simplex import step
 
-_PIVOTS = 400
+_EXACT, _PIVOTS = 1e-11, 400
 
 
 @njit(**VIEWS)
@@ -40,29 +41,8 @@ def mix(gains, most, rows, count, lifted, weights, shares, table, names):  # typ
     for c in range(n + m):
         names[c] = c
     for _ in range(_PIVOTS):
-        s, r, least, ratio = -1, -1, -1e-11, np.inf
-        for c in range(n):
-            if table[m, c] < least:
-                s, least = c, table[m, c]
-        if s < 0:
+        if not step(table, names, m, n, _EXACT):
             break
-        for j in range(m):
-            if table[j, s] > 1e-11 and table[j, n] < ratio * table[j, s]:
-                r, ratio = j, table[j, n] / table[j, s]
-        if r < 0:
-            break
-        per = 1.0 / table[r, s]
-        for j in range(m + 1):
-            part = table[j, s] * per
-            if j != r and part != 0.0:
-                for c in range(n + 1):
-                    if c != s:
-                        table[j, c] -= part * table[r, c]
-                table[j, s] = -part
-        for c in range(n + 1):
-            table[r, c] *= per
-        table[r, s] = per
-        names[s], names[n + r] = names[n + r], names[s]
     for j in range(rows):
         weights[j] = 0.0
     for j in range(m):

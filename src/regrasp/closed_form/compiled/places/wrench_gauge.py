@@ -193,6 +193,23 @@ def bound_by(sides, arcs, ends, law, b, y, work):  # type: ignore[no-untyped-def
     return per * proven(b, y, done, h, mu, len(arcs), most)
 
 
+@njit(**VIEWS, forceinline=True)
+def row_that_leaves(g, new, x, spare, d):  # type: ignore[no-untyped-def]
+    """The row of g (3, 3) in whose place another comes: of those with shares x the first to vanish; or -1.
+
+    new = sum d_j g_j, which is written to d.
+    """
+    if not solved(g, new, spare, d):
+        return -1
+    leaving, ratio = -1, np.inf
+    least = _PIVOT * (abs(new[0]) + abs(new[1]) + abs(new[2]))
+    for c in range(3):
+        part = d[c] * (abs(g[c, 0]) + abs(g[c, 1]) + abs(g[c, 2]))
+        if part > least and max(x[c], 0.0) < ratio * d[c]:
+            leaving, ratio = c, max(x[c], 0.0) / d[c]
+    return leaving
+
+
 @njit(**VIEWS)
 def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ignore[no-untyped-def]
     """A lower bound of the gauge of b on a box, its twist in ``best``, and what its forces reach.
@@ -236,14 +253,7 @@ def gauge(sides, arcs, ends, law, b, enough, precision, best, work):  # type: ig
             best[0], best[1], best[2] = y[0], y[1], y[2]
         if lower >= enough or h <= 1.0 + _CLOSE or lower >= per * upper * (1.0 - precision):
             break
-        if not solved(g, new, spare, d):  # new = sum d_j g_j; the row whose weight vanishes first leaves
-            break
-        leaving, ratio = -1, np.inf
-        least = _PIVOT * (abs(new[0]) + abs(new[1]) + abs(new[2]))
-        for c in range(3):
-            part = d[c] * (abs(g[c, 0]) + abs(g[c, 1]) + abs(g[c, 2]))
-            if part > least and max(x[c], 0.0) < ratio * d[c]:
-                leaving, ratio = c, max(x[c], 0.0) / d[c]
+        leaving = row_that_leaves(g, new, x, spare, d)
         if leaving < 0:
             break
         for c in range(3):

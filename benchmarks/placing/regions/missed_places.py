@@ -1,6 +1,6 @@
 """Random choices within regions on faces, and within wider ones: what holds the loads, by cvxpy's cones.
 
-    python benchmarks/placing/missed_places.py [--count 100000] [--only box]
+    python benchmarks/placing/regions/missed_places.py [--count 100000] [--only box]
 
 Each placement of fingers, anywhere within the regions, is asked once whether forces within cones and limits
 balance all loads: first by mixing the corners' forces and repairing what is left, which shows that it holds;
