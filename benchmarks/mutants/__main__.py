@@ -68,16 +68,22 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "boxes": (
         [
             f"verification/placed/{name}.py"
-            for name in ("placements", "straight", "cubic", "eroded", "clear_boxes", "roots")
+            for name in ("placements", "straight", "cubic", "forces/*", "clear_boxes", "roots", "groups")
         ],
         [
-            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "planar*", "proofs*", "trees*")),
+            *(
+                f"verification/proofs/test_{name}.py"
+                for name in ("boxes*", "planar*", "proofs*", "trees*", "twists*")
+            ),
+            "verification/limits/test_proofs_of_limits.py",
+            "verification/by_hand/test_tied_by_hand.py",
             "verification/test_placement_proofs.py",
         ],
         0.95,
     ),
+    "curves": (["verification/placed/curves/*.py"], ["verification/proofs/curves/test_[ct]*.py"], 0.95),
     "faces": (
-        ["verification/placed/faces/*.py", "verification/placed/surfaces.py", "verification/placed/areas.py"],
+        ["verification/placed/faces/*.py", "verification/placed/meshes/*.py"],
         [
             *(f"verification/proofs/test_{name}.py" for name in ("solid*", "what_choices*", "doubts*")),
             "verification/proofs/regions/test_faces*.py",

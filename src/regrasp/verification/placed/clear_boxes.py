@@ -9,7 +9,9 @@ from regrasp.verification.placed.forces.limited import roughly_excluded
 from regrasp.verification.placed.protocol import Proof
 
 _ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
-_SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them
+_SMALL = (
+    1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them; of 1 / it overflow
+)
 _AT_ONCE = 20_000  # stretches of sides
 _ADDED = 200  # gains of a box: their sum loses less than what is taken from each
 
@@ -22,6 +24,17 @@ class Edges(Protocol):
 
     def roughly_parts(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> list[tuple[Array, Array]]:
         """Of points whose hulls contain stretches a and c of ``limited`` (m,), but for rounding."""
+
+    def lengths(self) -> Array:
+        """(k,) about those of all edges [m]."""
+
+
+def is_plain(proof: Proof, boundary: Edges) -> bool:
+    """Whether doubles lose no digits of the lengths and limits of a proof, nor of their squares."""
+    edges = np.unique(proof.sides[:, 0]).astype(int)
+    limits = proof.bound, proof.margin, proof.min_normal, proof.max_force or 0.0
+    sizes = [*boundary.lengths()[edges].tolist(), *(limit for limit in limits if limit != 0)]
+    return all(_SMALL < size < 1 / _SMALL for size in sizes)
 
 
 def clear_boxes(proof: Proof, boundary: Edges, play: float = 0.0) -> np.ndarray:
@@ -61,7 +74,7 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray, play: float) -> np.
     lost = _ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
     room = _room(proof, np.abs(y) + np.abs(z)) * (1 + (1 + _ROUNDING) * play / _ROUNDING)
-    told = np.minimum(room, lost) > _SMALL
+    told = lost > _SMALL
     if proof.max_force is not None or proof.min_normal > 0:
         stretches = _stretches(proof, boxes)
         parts = boundary.roughly_parts(*stretches.at, np.repeat(y, stretches.of_each, axis=0))
@@ -82,11 +95,15 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray, play: float) -> np.
 
 
 def _room(proof: Proof, sizes: Array) -> Array:
-    """(b,) what rounding may add to the most work along twists of which these are the sizes (b, 3)."""
+    """(b,) what rounding may add to the most work along twists of which these are the sizes (b, 3).
+
+    No bound where twists are so slow that they lose digits.
+    """
     points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
     reach = np.hypot(*np.abs(points).max(axis=0)) + np.hypot(*proof.centre_of_mass)
-    result: Array = _ROUNDING * (sizes @ [1.0, 1.0, reach]) * (1 + proof.friction)
-    return result * (4 * proof.bound if proof.size == "margin" else 1)
+    lost = _ROUNDING * (sizes @ [1.0, 1.0, reach])
+    times = (1 + proof.friction) * (4 * proof.bound if proof.size == "margin" else 1)
+    return np.where(lost > _SMALL, lost * times, np.inf)
 
 
 def _times(proof: Proof) -> float:
@@ -113,7 +130,7 @@ def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
         sizes = np.abs(motions[:, :3])
         sizes[:, :2] += np.abs(adds).sum(axis=2)
         lost, room = _ROUNDING * (np.abs(w) * sizes).sum(axis=1), _room(proof, sizes)
-        sure[at[~(np.minimum(room, lost) > _SMALL)]] = False
+        sure[at[~(lost > _SMALL)]] = False
         edge = np.asarray(proof.sides)[arcs[at, :, 0], 0].astype(int)
         for c, corner in enumerate(corners):
             y = motions[:, :3].copy()
@@ -157,7 +174,7 @@ def _clear_of_groups(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
         done = [np.asarray(np.bincount(at, boundary.roughly(edges, u, u, along)), float) for u in ends]
         lost, room = _ROUNDING * np.abs(w * y).sum(axis=1), _room(proof, np.abs(y))
         of = np.repeat(np.arange(len(some)), counts[some])
-        sure = np.bincount(of, np.minimum(room, lost) <= _SMALL) == 0
+        sure = np.bincount(of, lost <= _SMALL) == 0
         most = own.largest(done).sum(axis=1) + proof.fingers * np.bincount(of, room)
         work = np.bincount(of, (w * y).sum(axis=1) - lost)
         found[each[some]] = sure & (work > _times(proof) * most)

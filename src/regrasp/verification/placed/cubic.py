@@ -45,6 +45,10 @@ class CubicEdges:
         """How many edges."""
         return len(self.control)
 
+    def lengths(self) -> Array:
+        """(k,) of the longest leg of all edges, in doubles [m]."""
+        return np.asarray(np.hypot(self._legs[..., 0], self._legs[..., 1]).max(axis=1))
+
     def turns_little(self, edge: int, lo: Fraction, hi: Fraction) -> bool:
         """Whether tangents of a stretch are all less than a quarter of a turn from one another."""
         found = self._tangents(edge, lo, hi)

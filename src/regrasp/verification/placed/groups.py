@@ -47,7 +47,7 @@ class Groups:
 
     def __init__(self, proof: Placements, boundary: Edges) -> None:
         self.proof, self.boundary = proof, boundary
-        self.loads = proof.loads.tolist()
+        self.loads, self.plain = proof.loads.tolist(), False  # whether doubles may tell
         self.bound = Fraction(proof.bound)
         self.points = 2 if proof.control is None else 4
         points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
@@ -63,7 +63,7 @@ class Groups:
             return True
         parts = [[part for stretch in on for part in self._cut(stretch, box)] for on in box]
         with np.errstate(all="ignore"):
-            clear, worst = self._roughly(row, parts)
+            clear, worst = self._roughly(row, parts) if self.plain else (False, None)
         if clear:
             return True
         numbers = row.tolist()
@@ -121,8 +121,8 @@ class Groups:
         sizes = k * np.abs(twists) @ [1.0, 1.0, self.reach]
         lost = _ROUNDING * np.abs(terms).sum()
         sizes = sizes.sum() + _TERMS * self.reach * np.abs(ties).sum()
-        room = _ROUNDING * (1 + self.proof.friction) * sizes
-        most = self.proof.bound * (done.max() + room) * (1 + _ROUNDING)
+        room = _ROUNDING * sizes
+        most = self.proof.bound * (done.max() + (1 + self.proof.friction) * room) * (1 + _ROUNDING)
         clear = bool(terms.sum() - lost > most and min(lost, room) > _SMALL)
         if not np.isfinite(done).all():
             return False, None

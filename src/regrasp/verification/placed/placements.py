@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.verification.placed.clear_boxes import clear_boxes
+from regrasp.verification.placed.clear_boxes import clear_boxes, is_plain
 from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.curves.circles import play_of
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn, numbers_of
@@ -157,7 +157,9 @@ class _Checked:
             self.play, self.reach = found
         if self._arcs(0) != root:
             return ["proof: box 0 must give every finger the whole boundary"]
-        self.clear = clear_boxes(self.proof, self.boundary, float(self.play))
+        if is_plain(self.proof, self.boundary):
+            self.clear = clear_boxes(self.proof, self.boundary, float(self.play))
+            self.groups.plain = True
         left, waiting = set(range(1, len(self.proof.children))), [0]
         while waiting:
             box = waiting.pop()

@@ -43,6 +43,10 @@ class StraightEdges:
         """How many edges."""
         return len(self.points)
 
+    def lengths(self) -> Array:
+        """(k,) of all edges, in doubles [m]."""
+        return np.asarray(np.hypot(*self._along.T))
+
     def turns_little(self, edge: int, lo: Fraction, hi: Fraction) -> bool:
         """Whether a bound of a stretch is one."""
         return True

@@ -10,7 +10,6 @@ within a sector of less than half a turn: what keeps the distance from their edg
 """
 
 from fractions import Fraction
-from math import sqrt
 
 import numpy as np
 
@@ -42,7 +41,7 @@ def most_eroded(a: Point, b: Point, limit: Fraction, margin: Fraction, v: Point)
         return -s * da - t * db
     best = limit * root_above(v[0] * v[0] + v[1] * v[1])
     across = float(margin)
-    along = sqrt(float(limit) ** 2 - across**2)
+    along = float(root_below(limit * limit - margin * margin))
     for m, edge, least in ((ma, a, da), (mb, b, db)):
         # at the corner of an edge and the circle v + s m is along it
         fx, fy = (along * float(e) + across * float(c) for e, c in zip(edge, m, strict=True))
