@@ -75,7 +75,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
                 f"verification/proofs/test_{name}.py"
                 for name in ("boxes*", "planar*", "proofs*", "trees*", "twists*")
             ),
-            "verification/limits/test_proofs_of_limits.py",
+            "verification/limits/test_*.py",
             "verification/by_hand/test_tied_by_hand.py",
             "verification/test_placement_proofs.py",
         ],

@@ -1,4 +1,4 @@
-"""Proofs in numbers of which doubles lose digits: sides, places and limits too small or too large for them."""
+"""Proofs in numbers of which doubles lose digits: sides, places and limits too small or too large."""
 
 from fractions import Fraction
 from math import sqrt
