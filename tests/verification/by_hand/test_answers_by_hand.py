@@ -22,7 +22,7 @@ def test_what_is_withstood_is_judged_whoever_says_it() -> None:
     verdict = rg.verify(good)
     assert (verdict.ok, verdict.excluded, verdict.bound) == (True, 9, good.bound)
     share = " on the 0.0% of the outline that was asked about"  # 3 / 512 of 12 m
-    assert verdict.asked == f" of fingers that answer by equal stiffness{share}"
+    assert verdict.asked == f" of fingers that answer by equal stiffness{share}, fingers 0.5 apart or more,"
     assert verdict.asked == rg.verify(good.certificate).asked
     first, second, third = good.states
     for off in 5e-9, -5e-9:  # of a load of 5.5 N

@@ -1,5 +1,7 @@
 """What doubles settle of proofs on meshes, to a tenth of their doubt, and parts of their trees one by one."""
 
+from fractions import Fraction
+from math import inf, nextafter
 from types import SimpleNamespace
 
 import numpy as np
@@ -90,7 +92,7 @@ def test_slow_forces_within_the_cone() -> None:
 @pytest.mark.parametrize(("size", "norm"), KINDS)
 def test_normals_need_not_be_of_length_one_to_the_last_digit(size, norm) -> None:
     rng, corners = np.random.default_rng(8), np.array(CORNERS[:1], dtype=float)
-    for length in (1 - 9e-13, 1 + 9e-13):
+    for length in (1 - 4e-13, 1 + 4e-13):
         normal = length * np.array([[2.0, -1, 2]]) / 3
         for mu in 0.0, 0.5, 3.0:
             y = [*rng.uniform(-1, 1, size=2), 1.0, *rng.uniform(-0.2, 0.2, size=3)]
@@ -101,7 +103,7 @@ def test_normals_need_not_be_of_length_one_to_the_last_digit(size, norm) -> None
                 proof.bound = most * factor
                 assert (said(proof) == "") == good, (length, mu)
     proof.normals, proof.bound = np.array([[0, 0, 1.0]]), 0.0
-    for off, good in (0.9e-12, True), (1.1e-12, False):
+    for off, good in (0.4e-12, True), (0.6e-12, False):
         for sign in -1, 1:
             proof.normals[0, 2] = 1 + sign * off
             assert (said(proof) == "") == good
@@ -110,12 +112,12 @@ def test_normals_need_not_be_of_length_one_to_the_last_digit(size, norm) -> None
     assert "of length 1" in said(two)
 
 
-def test_fingers_are_near_to_a_tenth_of_the_doubt() -> None:
-    for reach in 1.0, 1e-3, 1e3:
+def test_fingers_are_near_where_all_their_places_are() -> None:
+    for reach in 1.0, 2.0**-10, 2.0**400:
         corners = reach * np.array([[[1, 1, 0], [5, 1, 0], [1, 4, 0]]])
         proof = flat([([0, 0], (0, 0), -1, UP)], corners=corners, bound=1.0)
-        for part, good in (0.9, True), (1.1, False):
-            proof.min_distance = 5 * reach - part * 1e-12 * 5 * reach
+        for least, good in (nextafter(5, inf), True), (5, False), (nextafter(5, 0), False):
+            proof.min_distance = least * reach
             assert (said(proof) == "") == good
             assert good or "fingers of box 0 may be far enough apart" in said(proof)
 
@@ -140,6 +142,23 @@ def test_each_half_is_where_it_is_said_to_be() -> None:
             proof.bound = most * factor
             assert (said(proof) == "") == good, (edge, box)
     assert len(seen) > 9
+
+
+def test_halves_are_where_doubles_are_not() -> None:
+    """A lever of 5 of the least numbers is halved to 5/2, not to 2."""
+    corners = 5e-324 * np.array([[[0, 0, 0], [5, 0, 0], [0, 5, 0]]])
+    turn = [0, 0, 0, 0, -1e300, 0]  # at x it lifts by that times x
+    patches = Patches([(0, 1)], [[1, 2, 0], [3, 4, 2], NONE, NONE, NONE])
+    nodes = [([0], (1, 2), 0, UP), ([1], (3, 2), 0, UP), *(([patch], (0, 0), 0, UP) for patch in (2, 3, 4))]
+    nodes[3] = (*nodes[3][:3], turn)
+    limit = float(Fraction(1e-30) / (Fraction(5e-324) * 5 / 2))
+    for count in 1, 2:
+        loads = np.array([[0, 0, -1e300, 0, 1e-30, 0]] * count)
+        proof = flat(nodes, patches, loads=loads, corners=corners, friction=0.0, norm="largest")
+        if count == 2:
+            proof.together, proof.number[3] = np.array([[turn] * 2]), -2
+        for proof.bound, good in (limit * (1 - 2.0**-51), True), (limit * (1 + 2.0**-51), False):
+            assert (said(proof) == "") == good, count
 
 
 def test_boxes_are_split_as_they_must_be() -> None:

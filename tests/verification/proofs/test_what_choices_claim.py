@@ -152,6 +152,27 @@ def test_contacts_are_on_the_boundary_to_a_part_of_its_size(scale) -> None:
             assert (rg.Contact(contact.position, normal, 0.5) in touching) == fine, turn
 
 
+def test_soft_fingers_hold_more_than_proofs_are_about() -> None:
+    good = on_box()
+    soft = rg.Grasp([replace(c, torsion=0.01) for c in good.grasp])
+    states = tuple(rg.choose_state(soft, s.load, "peak") for s in good.states)
+    for changes in {"grasp": soft}, {"grasp": soft, "states": states}:
+        assert (
+            said(replace(good, **changes)) == "contact F1 is a soft finger, proofs are about point contacts"
+        )
+
+
+def test_the_distance_that_a_proof_counts_on_is_said() -> None:
+    """A proof about fingers far apart says nothing of others, but for those so near that they are one."""
+    for good, extent in (chosen(), 2.0), (on_box(), 0.05):
+        for part, shown in (0.0, False), (0.99e-5, False), (1.01e-5, True), (0.1, True):
+            proof = replace(good.certificate, min_distance=part * extent)
+            words = f", fingers {part * extent:.6g} apart or more, is better than"
+            for found in proof, replace(good, certificate=proof):
+                assert (words in str(rg.verify(found))) == shown
+                assert ("apart" in str(rg.verify(found))) == shown
+
+
 def test_contacts_are_on_the_faces_that_were_asked_about() -> None:
     """Beside the triangles, in their plane, near the edge of the box; and off them."""
     good = on_box()

@@ -26,6 +26,8 @@ from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.touching import Touching
 from regrasp.verification.verdict import Verification
 
+_LITTLE = 1e-5  # of an extent: fingers as near as that count as one
+
 
 def verify_chosen(chosen: Chosen) -> Verification:
     """The verdict on a chosen grasp, proof included."""
@@ -34,6 +36,9 @@ def verify_chosen(chosen: Chosen) -> Verification:
     proof = chosen.certificate
     if chosen.objective not in MEANINGS:
         return Verification((f"objective {chosen.objective!r} has no bound",), inf, 0.0, -inf)
+    if soft := [contact.name for contact in chosen.grasp if contact.torsion is not None]:
+        words = f"contact {soft[0]} is a soft finger, proofs are about point contacts"
+        return Verification((words,), inf, 0.0, -inf)
     if (proof.size, proof.norm) != MEANINGS[chosen.objective] and not _is_without_margin(chosen, proof):
         broken.append(f"the proof is of a {proof.norm} of {proof.size}, not of {chosen.objective}")
     for i, state in enumerate(chosen.states, 1):
@@ -61,6 +66,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
         broken += check_spots(chosen, cast(Any, proof), share) if in_space else check_places(chosen, proof)
     broken += [] if in_space else others_limits(chosen, proof, chosen.objective in LEVELS)
     asked = "" if broken else part_of_surface(share) if in_space else _part(proof, chosen.shape)
+    asked += "" if broken else _apart(proof)
     return Verification(
         tuple(broken), max(residuals), min(angles), min(slacks), excluded=_leaves(proof), bound=chosen.bound,
         asked=asked,
@@ -71,6 +77,7 @@ def verify_proof(proof: Proof) -> Verification:
     """The verdict on a proof alone."""
     broken = _check_proof(proof)
     part = "" if broken or hasattr(proof, "normals") else _part(proof)
+    part += "" if broken else _apart(proof)
     return Verification(tuple(broken), 0.0, inf, inf, excluded=_leaves(proof), bound=proof.bound, asked=part)
 
 
@@ -98,6 +105,13 @@ def _part(proof: Proof, shape: Any = None) -> str:
     if proof.rings is None and len(getattr(shape, "hole_polygons", tuple)()):
         tied += " outside of holes"
     return tied if share > 1 - CLOSE else f"{tied} on the {share:.1%} of the outline that was asked about"
+
+
+def _apart(proof: Any) -> str:
+    """How far apart the fingers are that a proof is about, where that is more than not to be one."""
+    points = np.reshape(proof.corners, (-1, 3)) if hasattr(proof, "normals") else proof.vertices
+    is_little = proof.min_distance <= _LITTLE * np.ptp(points, axis=0).max()
+    return "" if is_little else f", fingers {proof.min_distance:.6g} apart or more,"
 
 
 def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:

@@ -34,6 +34,7 @@ from regrasp.compilation import kept
 _CORNERS = 3  # rows of a triangle
 _MANY = 1000  # rows of a patch that take time
 _OFTEN = 16  # boxes of which one at least is excluded by all loads together
+_DOUBT = 1e-12  # of the size of a mesh, by which distances may be off
 _AGREE = 1e-6  # of a norm, by which what forces reach and a bound agree
 
 
@@ -166,7 +167,7 @@ def _too_near(rows, first, count, least):  # type: ignore[no-untyped-def]
             for a in range(count[i]):
                 for b in range(count[j]):
                     far = max(far, _apart(rows[first[i] + a], rows[first[j] + b]))
-            if far < least:
+            if far < least - _DOUBT:
                 return True
     return False
 

@@ -12,6 +12,7 @@ where more than all of their rounding is left, and rationals, roots rounded up, 
 """
 
 from fractions import Fraction
+from itertools import product
 from math import inf
 from typing import Any, Protocol
 
@@ -20,6 +21,7 @@ import numpy as np
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.contact import Contact
 from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.meshes.patches import Patches
 from regrasp.verification.placed.meshes.together import together_wrong
 from regrasp.verification.placed.meshes.work import ROUNDING, SMALL, sigma_above, sigmas
 from regrasp.verification.placed.roots import root_above
@@ -53,7 +55,7 @@ def check_surface_proof(proof: SurfaceProof) -> list[str]:
     try:
         if broken := _shapes(proof):
             return broken
-        patches = _Patches(proof)
+        patches = Patches(proof)
         return patches.wrong() or _boxes_wrong(proof) or _exclusions_wrong(proof, patches)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         return [f"proof: its numbers are none to compute with: {error}"]
@@ -78,58 +80,7 @@ def _shapes(proof: SurfaceProof) -> list[str]:
     if not 0 <= proof.min_distance < inf or proof.bound < 0:
         return ["proof: min_distance and bound must be 0 or more"]
     lengths = np.linalg.norm(proof.normals, axis=1)
-    return [] if (np.abs(lengths - 1) < ROUNDING).all() else ["proof: normals must be of length 1"]
-
-
-class _Patches:
-    """The tree of patches: groups of triangles, and triangles halved across edges."""
-
-    def __init__(self, proof: SurfaceProof) -> None:
-        self.spans, self.halves = np.asarray(proof.spans), np.asarray(proof.halves)
-        self.corners, self.normals = np.asarray(proof.corners), np.asarray(proof.normals)
-
-    def wrong(self) -> list[str]:
-        """What is wrong with the halves; and where the parts of triangles are, for ``rows``."""
-        p, q, m = len(self.spans), len(self.halves), len(self.normals)
-        if not p or p > q or tuple(self.spans[0]) != (0, m):
-            return ["proof: patch 0 must be the whole surface"]
-        self._part: dict[int, tuple[int, Array]] = {}
-        for patch in range(q):
-            left, right, edge = (int(c) for c in self.halves[patch])
-            first, count = (int(c) for c in self.spans[patch]) if patch < p else (0, 1)
-            if not 0 <= first < first + count <= m:
-                return [f"proof: patch {patch} is no group of triangles"]
-            if patch >= p and patch not in self._part:
-                return [f"proof: patch {patch} is a half of none"]
-            if patch < p and count == 1:
-                self._part[patch] = first, self.corners[first]
-            if left < 0:
-                continue
-            good = all(patch < half < q and (half < p) == (count > 1) for half in (left, right))
-            if not good or left == right or not (count > 1 or edge in (0, 1, 2)):
-                return [f"proof: patch {patch} has no two halves"]
-            if count > 1:
-                (at, some), (then, more) = (tuple(self.spans[half]) for half in (left, right))
-                if at != first or then != first + some or some + more != count:
-                    return [f"proof: the halves of patch {patch} do not cover it"]
-                continue
-            if left in self._part or right in self._part:
-                return [f"proof: a half of patch {patch} is another's"]
-            on, t = self._part[patch]
-            a, b, o = t[edge], t[(edge + 1) % 3], t[(edge + 2) % 3]
-            middle = 0.5 * (a + b)
-            self._part[left] = on, np.array([a, middle, o])
-            self._part[right] = on, np.array([middle, b, o])
-        return []
-
-    def rows(self, patch: int) -> tuple[Array, Array]:
-        """(c, 3) corners and their normals."""
-        if patch in self._part:
-            on, corners = self._part[patch]
-            return corners, np.repeat(self.normals[on : on + 1], len(corners), axis=0)
-        first, count = self.spans[patch]
-        corners = self.corners[first : first + count]
-        return np.concatenate(corners), np.repeat(self.normals[first : first + count], 3, axis=0)
+    return [] if (np.abs(lengths - 1) < ROUNDING / 2).all() else ["proof: normals must be of length 1"]
 
 
 def _boxes_wrong(proof: SurfaceProof) -> list[str]:
@@ -163,14 +114,14 @@ def _boxes_wrong(proof: SurfaceProof) -> list[str]:
     return []
 
 
-def _exclusions_wrong(proof: SurfaceProof, patches: _Patches) -> list[str]:
+def _exclusions_wrong(proof: SurfaceProof, patches: Patches) -> list[str]:
     boxes, number = np.asarray(proof.boxes), np.asarray(proof.number)
     leaves = np.flatnonzero(np.asarray(proof.children)[:, 1] == 0)
     near = leaves[number[leaves] == -1]
     for box in near.tolist():
         if not _near(proof, patches, boxes[box]):
             return [f"proof: fingers of box {box} may be far enough apart"]
-    if broken := together_wrong(proof, patches.rows, leaves[number[leaves] < -1]):
+    if broken := together_wrong(proof, patches, leaves[number[leaves] < -1]):
         return broken
     rest = leaves[number[leaves] >= 0]
     if (number[rest] >= len(proof.loads)).any():
@@ -185,7 +136,7 @@ def _exclusions_wrong(proof: SurfaceProof, patches: _Patches) -> list[str]:
     return []
 
 
-def _clear(proof: SurfaceProof, patches: _Patches, rest: np.ndarray) -> np.ndarray:
+def _clear(proof: SurfaceProof, patches: Patches, rest: np.ndarray) -> np.ndarray:
     """Which boxes doubles show to be excluded."""
     reach, boxes = float(np.linalg.norm(proof.corners, axis=2).max()), np.asarray(proof.boxes)
     y, w = proof.twists[rest], np.asarray(proof.loads)[np.asarray(proof.number)[rest]]
@@ -205,20 +156,18 @@ def _clear(proof: SurfaceProof, patches: _Patches, rest: np.ndarray) -> np.ndarr
         dual = np.sqrt((most**2).sum(axis=1))
     terms = -w * y
     work = terms.sum(axis=1) - ROUNDING * np.abs(terms).sum(axis=1)
-    told = np.minimum(room, work) > SMALL
+    told = np.minimum(speed, work) > SMALL
     return np.asarray(told & (work > proof.bound * dual * (1 + ROUNDING)))
 
 
-def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
-    """The same of one box in rationals. Halves of edges are as doubles, off by their last digits."""
+def _excluded(proof: SurfaceProof, patches: Patches, box: int) -> bool:
+    """The same of one box in rationals."""
     y = [Fraction(c) for c in proof.twists[box].tolist()]
     w = proof.loads[int(proof.number[box])].tolist()
     work = -sum((Fraction(a) * b for a, b in zip(w, y, strict=True)), start=Fraction(0))
     most = []
     for patch in proof.boxes[box].tolist():
-        rows = zip(*patches.rows(patch), strict=True)
-        largest = max(sigma_above(proof, y, p.tolist(), n.tolist()) for p, n in rows)
-        most.append(largest)
+        most.append(max(sigma_above(proof, y, *corner) for corner in patches.exactly(patch)))
     if proof.norm == "sum":
         dual = max(most)
     elif proof.norm == "largest":
@@ -228,16 +177,25 @@ def _excluded(proof: SurfaceProof, patches: _Patches, box: int) -> bool:
     return work > Fraction(proof.bound) * dual
 
 
-def _near(proof: SurfaceProof, patches: _Patches, box: Array) -> bool:
+def _near(proof: SurfaceProof, patches: Patches, box: Array) -> bool:
     """Whether two fingers are nearer than they must be, wherever they are on their patches."""
     rows = [patches.rows(patch)[0] for patch in box.tolist()]
     reach = float(np.abs(proof.corners).max())
     for i, one in enumerate(rows):
-        for other in rows[:i]:
+        for j, other in enumerate(rows[:i]):
             far = np.linalg.norm(one[:, None] - other[None], axis=2).max()
-            if far < proof.min_distance + ROUNDING * reach:
+            if far < proof.min_distance + ROUNDING * reach and _nearer(
+                proof, patches, int(box[i]), int(box[j])
+            ):
                 return True
     return False
+
+
+def _nearer(proof: SurfaceProof, patches: Patches, one: int, other: int) -> bool:
+    """The same of two in rationals."""
+    least2 = Fraction(proof.min_distance) ** 2
+    each = [[p for p, _ in patches.exactly(patch)] for patch in (one, other)]
+    return all(sum((a - b) ** 2 for a, b in zip(p, q, strict=True)) < least2 for p, q in product(*each))
 
 
 def touches(proof: SurfaceProof, contact: Contact) -> bool:

@@ -8,20 +8,17 @@ c the corners of the patch of finger i: the sum over l is convex in p_i. So T is
 left side is more than the bound times the sum on the right.
 """
 
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.meshes.patches import Corner, Patches
 from regrasp.verification.placed.meshes.work import ROUNDING, SMALL, sigma_above, sigmas
 
-Rows = Callable[[int], tuple[Array, Array]]
-"""The corners of a patch and their normals."""
 
-
-def together_wrong(proof: Any, rows: Rows, boxes: np.ndarray) -> list[str]:
+def together_wrong(proof: Any, patches: Patches, boxes: np.ndarray) -> list[str]:
     """What is wrong with boxes whose twists are rows of ``together``, in words."""
     if not len(boxes):
         return []
@@ -41,10 +38,10 @@ def together_wrong(proof: Any, rows: Rows, boxes: np.ndarray) -> list[str]:
         return []
     reach = float(np.linalg.norm(proof.corners, axis=2).max())
     for box, row in zip(boxes.tolist(), at.tolist(), strict=True):
-        patches = [rows(int(patch)) for patch in proof.boxes[box]]
+        on = [int(patch) for patch in proof.boxes[box]]
         with np.errstate(all="ignore"):
-            clear = _is_clear(proof, np.asarray(twists[row]), patches, reach)
-        if not clear and not _is_excluded(proof, np.asarray(twists[row]), patches):
+            clear = _is_clear(proof, np.asarray(twists[row]), list(map(patches.rows, on)), reach)
+        if not clear and not _is_excluded(proof, twists[row], [patches.exactly(patch) for patch in on]):
             return [f"proof: the twists of box {box} do not exclude it"]
     return []
 
@@ -52,14 +49,15 @@ def together_wrong(proof: Any, rows: Rows, boxes: np.ndarray) -> list[str]:
 def _is_clear(proof: Any, y: Array, patches: list[tuple[Array, Array]], reach: float) -> bool:
     """Whether doubles show it."""
     speed = np.linalg.norm(y[:, :3], axis=1) + np.linalg.norm(y[:, 3:], axis=1) * reach
-    room = ROUNDING * (1 + proof.friction) * float(speed.sum())
+    size = float(speed.sum())
+    room = ROUNDING * (1 + proof.friction) * size
     dual = sum(float(sigmas(proof, y, *patch).sum(axis=0).max()) + room for patch in patches)
     terms = -np.asarray(proof.loads) * y
     work = float(terms.sum()) - ROUNDING * float(np.abs(terms).sum())
-    return bool(min(room, work) > SMALL and work > proof.bound * dual * (1 + ROUNDING))
+    return bool(min(size, work) > SMALL and work > proof.bound * dual * (1 + ROUNDING))
 
 
-def _is_excluded(proof: Any, y: Array, patches: list[tuple[Array, Array]]) -> bool:
+def _is_excluded(proof: Any, y: Array, patches: list[list[Corner]]) -> bool:
     """The same in rationals, roots rounded up."""
     twists = [[Fraction(c) for c in twist] for twist in y.tolist()]
     loads = np.asarray(proof.loads).tolist()
@@ -72,7 +70,6 @@ def _is_excluded(proof: Any, y: Array, patches: list[tuple[Array, Array]]) -> bo
         start=Fraction(0),
     )
     dual = Fraction(0)
-    for points, normals in patches:
-        corners = zip(points.tolist(), normals.tolist(), strict=True)
+    for corners in patches:
         dual += max(sum(sigma_above(proof, twist, p, n) for twist in twists) for p, n in corners)
     return work > Fraction(proof.bound) * dual

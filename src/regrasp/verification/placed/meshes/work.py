@@ -27,9 +27,9 @@ def sigmas(proof: Any, y: Array, points: Array, normals: Array) -> Array:
     return result
 
 
-def sigma_above(proof: Any, y: list[Fraction], p: list[float], n: list[float]) -> Fraction:
+def sigma_above(proof: Any, y: list[Fraction], p: list[Fraction], n: list[float]) -> Fraction:
     """At or above sigma of a twist at a corner with a normal, whose length counts as 1."""
-    (px, py, pz), (nx, ny, nz), mu = map(Fraction, p), map(Fraction, n), Fraction(proof.friction)
+    (px, py, pz), (nx, ny, nz), mu = p, map(Fraction, n), Fraction(proof.friction)
     v = (y[0] + y[4] * pz - y[5] * py, y[1] + y[5] * px - y[3] * pz, y[2] + y[3] * py - y[4] * px)
     along, length2 = v[0] * nx + v[1] * ny + v[2] * nz, nx * nx + ny * ny + nz * nz
     speed2 = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
