@@ -16,7 +16,7 @@ from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.asking import check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
-from regrasp.planning.placement.circles import turned
+from regrasp.planning.placement.circles import up_to_turns
 from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
 from regrasp.planning.placement.laws import LEVELS, Law, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
@@ -205,7 +205,7 @@ def choose_grasp(
     # half of the tolerance is for loads around a round set and for friction kept back
     half = 0.5 * tolerance / law.power
     if limits == ANY_FORCE and not (constraints.unbounded or offset):
-        search, half = turned(search, load, half)
+        search, half = up_to_turns(search, load, half)
     if constraints.unbounded:
         run_constrained(search, constraints, half, most, progress)
     else:

@@ -51,7 +51,7 @@ class TurnedSearch(Search):
         return np.where(bounds > 0, found, 0.0)
 
 
-def turned(search: Search, load: Wrench | LoadSet, tolerance: float) -> tuple[Search, float]:
+def up_to_turns(search: Search, load: Wrench | LoadSet, tolerance: float) -> tuple[Search, float]:
     """A search whose first finger stays, and its tolerance, where all turns are alike; else as they were."""
     play = _play(search, load)
     if not play < _MOST * tolerance:

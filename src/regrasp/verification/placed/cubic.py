@@ -102,7 +102,7 @@ class CubicEdges:
         control = np.moveaxis(self._control[edges], 1, 0)
         most = np.full(len(lo), -np.inf if self.eroded else 0.0)
         for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
-            p = _at(control, at)
+            p = polar_at(control, at)
             v = np.stack([y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]], axis=1)
             if self.eroded:
                 value = roughly_eroded(a, b, self.limit, self.margin, v)
@@ -121,7 +121,7 @@ class CubicEdges:
         control = np.moveaxis(self._control[edges], 1, 0)
         found = []
         for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
-            p = _at(control, at)
+            p = polar_at(control, at)
             v = np.stack([y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]], axis=1)
             ahead = _roughly_on_sector(left, right, v)
             aside = np.maximum(_roughly_on_sector(first, last, v), _roughly_on_sector(-first, -last, v))
@@ -138,14 +138,14 @@ class CubicEdges:
         if not plain[0]:
             return None
         control = self._control[edge][:, None]
-        points = [_at(control, at)[0] for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))]
+        points = [polar_at(control, at)[0] for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))]
         (clockwise, _), (_, other) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
         return np.array(points), np.concatenate([clockwise, other])
 
     def _roughly_outermost(self, edges: np.ndarray, lo: Array, hi: Array) -> tuple[Flags, Array, Array]:
         """Whether tangents of stretches are far from 0, and the outermost of them, of length 1."""
         legs = np.moveaxis(self._legs[edges], 1, 0)
-        d = np.stack([_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
+        d = np.stack([polar_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
         size = np.hypot(d[..., 0], d[..., 1])
         plain = (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all(axis=0)
         unit = d / size[..., None]
@@ -163,8 +163,8 @@ def _polar(points: list[Point], at: tuple[Fraction, ...]) -> Point:
     return points[0]
 
 
-def _at(points: Array, at: tuple[Array, ...]) -> Array:
-    """The same of control points (c, m, 2) at parameters (m,)."""
+def polar_at(points: Array, at: tuple[Array, ...]) -> Array:
+    """The same in doubles, of control points (c, m, 2) at parameters (m,)."""
     for t in at:
         points = points[:-1] + t[:, None] * (points[1:] - points[:-1])
     result: Array = points[0]

@@ -14,6 +14,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.verification.exact import RESOLUTION
+from regrasp.verification.placed.cubic import polar_at
 
 _WIDEST = 1.5  # [rad] of gamma
 _ROUNDING = 2.0**-46
@@ -28,9 +29,9 @@ def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float
     edges = np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1))
     a, b = np.maximum(lo - edges, 0.0), np.minimum(hi - edges, 1.0)
     pieces = np.moveaxis(control[edges.astype(int) % len(control)], 1, 0)
-    points = np.concatenate([_polar(pieces, at) for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))])
+    points = np.concatenate([polar_at(pieces, at) for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))])
     ways = np.diff(pieces, axis=0)
-    tangents = np.concatenate([_polar(ways, at) for at in ((a, a), (a, b), (b, b))])
+    tangents = np.concatenate([polar_at(ways, at) for at in ((a, a), (a, b), (b, b))])
     apart = np.abs(np.arctan2(tangents @ normal, tangents @ [normal[1], -normal[0]]))
     doubt = _ROUNDING * np.hypot(*ways.T).max()
     if not ((apart + atan(inner) - atan(friction)) * np.hypot(*tangents.T) <= -doubt).all():
@@ -86,12 +87,5 @@ def point_at(control: Array, u: float) -> Array:
     """(2,) the point at a place."""
     edge = int(np.floor(u))
     at = np.array([u - edge])
-    result: Array = _polar(control[edge % len(control)][:, None], (at, at, at))[0]
-    return result
-
-
-def _polar(points: Array, at: tuple[Array, ...]) -> Array:
-    for s in at:
-        points = points[:-1] + s[:, None] * (points[1:] - points[:-1])
-    result: Array = points[0]
+    result: Array = polar_at(control[edge % len(control)][:, None], (at, at, at))[0]
     return result

@@ -12,7 +12,7 @@ import regrasp as rg
 from proofs import planar
 from regrasp.closed_form.compiled.places.simplex import play
 from regrasp.closed_form.compiled.places.turning_bounds import least_above, slowest
-from regrasp.closed_form.compiled.places.turning_twists import room_to_turn, turned
+from regrasp.closed_form.compiled.places.turning_twists import polynomial_twists, room_to_turn
 from regrasp.planning.placement.levels import turning_search
 from regrasp.verification.placed.curves.turning import is_excluded_in_turn
 
@@ -170,7 +170,7 @@ def test_twists_of_the_search_are_bounds() -> None:
     rows = np.zeros((4, 3 * 10 + 3 * 27))
     hulls = [[(Fraction(x), Fraction(y)) for x, y in part.tolist()] for part in control]
     for friction in (0.02, 0.2):
-        assert turned(control, friction, loads, rows, room_to_turn(4, 3))
+        assert polynomial_twists(control, friction, loads, rows, room_to_turn(4, 3))
         few = np.flatnonzero(rows.any(axis=1))
 
         def judged(given: np.ndarray, friction=friction, hulls=hulls, few=few) -> bool:
@@ -184,7 +184,7 @@ def test_twists_of_the_search_are_bounds() -> None:
             assert not judged(lower), column
         assert not judged(rows, 2 * friction)
         assert not judged(rows, hulls=hulls[::-1])
-    assert not turned(control, 2.0, loads, rows, room_to_turn(4, 3))
+    assert not polynomial_twists(control, 2.0, loads, rows, room_to_turn(4, 3))
 
 
 @njit

@@ -224,7 +224,7 @@ def _mixed(twists, chosen, count, weights, shares, sizes, values):  # type: igno
 
 def _loop(digest: str) -> Any:
     @kept("the search for places", error_model="numpy", nogil=True, _nrt=False)
-    def turned(parts, mu, loads, polynomials, room):  # type: ignore[no-untyped-def]
+    def polynomial_twists(parts, mu, loads, polynomials, room):  # type: ignore[no-untyped-def]
         """Whether a box is excluded for forces of at most 1, by ``polynomials`` (L, 3 m + k 3^k).
 
         Of each load, 0 for one that does not count: terms of its twist, then coefficients of what each finger
@@ -282,8 +282,8 @@ def _loop(digest: str) -> Any:
                     polynomials[n, 3 * terms + i * nodes + c] = bounds[n, i, c]
         return True
 
-    return turned
+    return polynomial_twists
 
 
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-turned = _loop(digest((simplex, turning_bounds)))
+polynomial_twists = _loop(digest((simplex, turning_bounds)))

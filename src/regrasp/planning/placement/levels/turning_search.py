@@ -99,7 +99,7 @@ class Turning(Moving):
 
     def followed(self, node: int) -> bool:
         """Whether twists exclude a box, in whose middle no placement holds; else it is gone on from."""
-        from regrasp.closed_form.compiled.places.turning_twists import turned
+        from regrasp.closed_form.compiled.places.turning_twists import polynomial_twists
 
         search, size, k = self.search, self.search.sides.size, self.search.fingers
         arcs, ends = search.box(node)
@@ -110,7 +110,7 @@ class Turning(Moving):
         parts = np.array([search.sides.part(j, lo, hi)[0] for j, (lo, hi) in each]) / size
         terms, loads = (k + 1) * (k + 2) // 2, -search.loads / [1, 1, size] / self.limit
         found = np.zeros((len(loads), 3 * terms + k * 3**k))
-        if not turned(parts, search.friction, loads, found, self.room):
+        if not polynomial_twists(parts, search.friction, loads, found, self.room):
             return False
         found[:, 2 * terms : 3 * terms] /= size
         few = np.flatnonzero(found.any(axis=1))
