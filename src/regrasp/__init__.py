@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from regrasp.planning.holds.weights import RegraspWeights
     from regrasp.planning.placement.choosing import choose_grasp
     from regrasp.planning.placement.chosen import ChosenGrasp
-    from regrasp.planning.placement.maps import PlacementMap, placement_map
+    from regrasp.planning.placement.maps.placed_values import PlacementMap
+    from regrasp.planning.placement.maps.placement_map import placement_map
     from regrasp.planning.placement.regions.asking import contact_regions
     from regrasp.planning.placement.regions.contact_arcs import ContactRegions
     from regrasp.planning.placement.regions.face_patches import FaceRegions
@@ -130,8 +131,8 @@ _LATER = {
     "Outline": "regrasp.outline.outline",
     "OutlineCut": "regrasp.plans.outline_cut",
     "OutlineRegrasps": "regrasp.planning.anywhere.results",
-    "placement_map": "regrasp.planning.placement.maps",
-    "PlacementMap": "regrasp.planning.placement.maps",
+    "placement_map": "regrasp.planning.placement.maps.placement_map",
+    "PlacementMap": "regrasp.planning.placement.maps.placed_values",
     "plan_addition": "regrasp.planning.changes.finger_change",
     "plan_exchange": "regrasp.planning.changes.finger_change",
     "plan_motions": "regrasp.motions.plan",

@@ -95,6 +95,51 @@ def test_a_grasp_on_a_mesh_of_a_file_is_chosen_drawn_and_verified(
         assert regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))[0] == 2
 
 
+def in_space(objective: str, *, limit: str = "max_force = 4.0\n", load: str = "") -> rg.ChosenGrasp:
+    text = template("space-grasp").split("[load]")[0] + "[load]\nforce = [0.0, 0.0, -1.8]\n" + load
+    text += (
+        f'[task]\nkind = "grasp"\nfingers = 3\nobjective = "{objective}"\ntolerance = 0.5\nmost_boxes = 64\n'
+    )
+    return plan_scenario(parse_scenario(text + limit))
+
+
+SHAKEN = "disturbance = {hull = [{force = [0.1, 0.0, 0.0]}, {force = [-0.1, 0.0, 0.0]}]}\n"
+
+
+@pytest.mark.parametrize(
+    ("objective", "load"), [("friction_use", ""), ("angle", ""), ("answered", SHAKEN)], ids=str
+)
+def test_scenarios_in_space_ask_for_levels(objective: str, load: str) -> None:
+    found = in_space(objective, load=load)
+    assert found.objective == objective
+    assert found.max_force == 4.0
+    assert rg.verify(found).ok
+    assert (" times the disturbance; no placement is above " in str(found)) == (objective == "answered")
+
+
+@pytest.mark.parametrize(
+    ("objective", "load", "limit", "words"),
+    [
+        ("angle", "", "", "needs max_force"),
+        ("answered", "", "max_force = 4.0\n", "go together"),
+        ("peak", SHAKEN, "", "disturbance: on a mesh for objectives friction_use, angle, answered alone"),
+        ("peak", "", "max_force = 4.0\\n", "max_force: on a mesh for objectives friction_use"),
+        ("force", "", "max_force = 4.0\n", "task.objective"),
+        ("answered", "disturbance = {force = 0.1}\n", "max_force = 4.0\n", "disturbance: expected a hull"),
+        ("answered", SHAKEN.replace("0.0, 0.0", "0.0"), "max_force = 4.0\n", "forces of 3 numbers"),
+        ("angle", "", "max_force = -1.0\n", "max_force"),
+        ("angle", "", "max_force = nan\n", "max_force"),
+    ],
+)
+def test_levels_in_space_are_refused_as_the_verb_refuses_them(
+    objective: str, load: str, limit: str, words: str
+) -> None:
+    with pytest.raises(rg.InvalidInput) as caught:
+        in_space(objective, limit=limit, load=load)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_a_file_comes_back_equal_and_one_that_was_touched_does_not_verify(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

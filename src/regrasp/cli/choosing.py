@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 _COUNT, _SLOW = 120, 48  # places of a map, and where each of its values is a program
 
+_KEPT = ("min_normal", "arcs", "tip_radius", "in_holes", "min_distance", "from_corners")  # on maps, too
+
 
 def choose(
     scenario: "GraspScenario | SpaceGraspScenario", name: str | Path, output: Path, *, draw: bool
@@ -73,8 +75,7 @@ def _pictures(
     from regrasp import plots
     from regrasp.errors import RegraspError
     from regrasp.outline.outline import Outline
-    from regrasp.planning.placement.laws import LEVELS
-    from regrasp.planning.placement.maps import placement_map
+    from regrasp.planning.placement.maps.placement_map import placement_map
     from regrasp.plots.look.png import png
 
     def image(ax: Any) -> bytes:
@@ -86,12 +87,14 @@ def _pictures(
         yield "regions.png", image(plots.plot_contact_regions(regions))
     if not isinstance(shape, Outline) or len(chosen.grasp) != 2:
         return
-    level: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length} if word in LEVELS else {}
+    task: Any = scenario.task  # of the plane
+    given: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length}
+    given |= {name: getattr(task, name) for name in _KEPT}
     if (disturbance := getattr(scenario.load, "disturbance", None)) is not None:
-        level["disturbance"] = disturbance.around(scenario.load.wrench)
+        given["disturbance"] = disturbance.around(scenario.load.wrench)
     count = _SLOW if word == "wrench" else _COUNT
     try:
-        found = placement_map(shape, load, friction=scenario.friction, objective=word, count=count, **level)
+        found = placement_map(shape, load, friction=scenario.friction, objective=word, count=count, **given)
         outside = regions is not None and (regions.places < shape.length).all()  # of holes
         yield "map.png", image(plots.plot_placement_map(found, regions=regions if outside else None))
     except RegraspError as error:

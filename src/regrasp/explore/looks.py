@@ -15,7 +15,7 @@ from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.outline.outline import Outline
 from regrasp.planning.changes.finger_change import plan_removal
-from regrasp.planning.placement.maps import placement_map
+from regrasp.planning.placement.maps.placement_map import placement_map
 from regrasp.planning.placement.regions.asking import contact_regions
 from regrasp.planning.robustness.tolerances import tolerances
 from regrasp.planning.states.batch import best_squeezes

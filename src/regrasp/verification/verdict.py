@@ -104,7 +104,11 @@ class Verification(ArrayValue):
             if not isfinite(self.least_cone_slack):  # the proof alone
                 lines = []
             lines.append(
-                f"no placement{self.asked} is better than {self.bound:.6g}: {self.excluded} boxes cover "
-                f"all of them, each excluded by its twist"
+                f"no placement{self.asked} is better than {self.bound:.6g}: "
+                + (
+                    "one box covers all of them, excluded by its twist"
+                    if self.excluded == 1
+                    else f"{self.excluded} boxes cover all of them, each excluded by its twist"
+                )
             )
         return "\n".join(lines)

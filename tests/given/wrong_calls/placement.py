@@ -37,6 +37,13 @@ def rows() -> dict[str, Row]:
                 "fixed": "some places",
                 "free": "count",
                 "length": "positive",
+                "min_normal": "not negative",
+                "keep": "function",
+                "arcs": "table",
+                "tip_radius": "not negative",
+                "in_holes": "flag",
+                "min_distance": "positive",
+                "from_corners": "not negative",
             },
         ),
         "surface_map": Row(

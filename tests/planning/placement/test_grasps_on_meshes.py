@@ -196,7 +196,7 @@ def test_without_friction_or_load_nothing_is_held_beside_a_load() -> None:
         ({"shape": rg.Mesh.sphere(1.0)}, r"a smooth mesh has no bound"),
         (
             {"tip_radius": 0.1, "max_force": 2.0},
-            r"max_force, tip_radius: on outlines only, and the shape is a mesh",
+            r"tip_radius: on outlines only, and the shape is a mesh",
         ),
         ({"from_corners": 1.0}, r"from_corners leaves no place for a finger"),
         (

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from regrasp.planning.placement import parts
+from regrasp.outline.parts import gear
+from regrasp.planning.placement import parts, sliding
+from regrasp.planning.placement.levels import climbing
 from regrasp.planning.placement.search import Search
 
 pytestmark = pytest.mark.laws
@@ -22,6 +24,7 @@ LOADS = rg.LoadSet.hull(
     ]
 )
 
+GEAR = gear()
 ELLIPSE = rg.Outline.ellipse(2, 1)
 MOST = 7000
 
@@ -108,3 +111,36 @@ def test_every_step_of_a_search_is_told(
     assert {"goes_on", "box"} & set(steps)
     assert max(part.count("goes_on") for part in between) <= 1
     assert max(part.count("box") for part in between) <= 3  # looked at, measured and split
+
+
+@pytest.mark.parametrize(
+    ("shape", "given"),
+    [
+        (C, {"objective": "force", "max_force": 4.0}),  # by twists of all loads together
+        (ELLIPSE, {"objective": "friction_use", "max_force": 4.0}),  # by boxes one load at a time
+        (GEAR, {"objective": "friction_use", "max_force": 4.0}),  # from where normals meet
+        (C, {"objective": "peak", "removable": True, "max_force": 20.0}),  # from placements of points
+    ],
+    ids=["joined", "boxes", "meeting", "points"],
+)
+@pytest.mark.parametrize("after", [1, 40])
+def test_an_interrupt_while_the_first_placement_slides_returns_it(
+    monkeypatch: pytest.MonkeyPatch, shape: rg.Outline, given: dict[str, Any], after: int
+) -> None:
+    """The first one may slide for seconds on many sides, and holds already."""
+    calls: list[int] = []
+    moved = sliding.moved
+
+    def interrupted(*args: Any, **more: Any) -> Any:
+        calls.append(1)
+        if len(calls) == after:
+            raise KeyboardInterrupt
+        return moved(*args, **more)
+
+    monkeypatch.setattr(climbing, "moved", interrupted)
+    monkeypatch.setattr(sliding, "moved", interrupted)
+    few = rg.LoadSet.hull([rg.Wrench([0, -1], 0.05), rg.Wrench([0.1, -1])])
+    cut = rg.choose_grasp(shape, 3, few, friction=0.4, tolerance=1e-6, **given)
+    assert len(calls) == after  # no search goes on after it
+    assert cut.gap > 1e-6
+    assert rg.verify(cut).ok

@@ -1,5 +1,6 @@
 """What grasps chosen for margins and sets of loads claim, at the limit of each claim; and those on meshes."""
 
+import tracemalloc
 from dataclasses import replace
 from functools import cache
 from math import atan, hypot, inf, nan, sin
@@ -265,3 +266,18 @@ def test_proofs_of_chosen_grasps_are_checked_and_places_are_of_the_mesh() -> Non
         found = said(replace(grasp, states=(foreign, pulled, *grasp.states)))
         assert "state 1 is of other contacts" in found
         assert "state 2: not in equilibrium" in found
+
+
+def test_loads_between_those_of_thousands_of_states_take_little_memory() -> None:
+    """All pairs at once would be 3 GB for each array of them."""
+    angles = np.arange(4000) * 2 * np.pi / 4000
+    loads = np.stack([np.cos(angles), np.sin(angles), 0.1 + 0 * angles], axis=1)
+    given = SimpleNamespace(states=[SimpleNamespace(load=SimpleNamespace(vector=load)) for load in loads])
+    middle = 0.3 * loads[7] + 0.7 * loads[3001]
+    tracemalloc.start()
+    try:
+        assert _all_shown(given, np.array([*loads[::100], middle]))
+        assert not _all_shown(given, np.array([1.01 * loads[0], loads[5]]))
+        assert tracemalloc.get_traced_memory()[1] < 50e6
+    finally:
+        tracemalloc.stop()

@@ -24,6 +24,16 @@ def loads_of(first: Load, also: list[Load]) -> Wrench | LoadSet:
     return LoadSet.hull([first.wrench, *(load.wrench for load in also)]) if also else first.wrench
 
 
+def check_hull(disturbance: Disturbance | None, numbers: int) -> None:
+    """``ValueError`` unless deviations are a hull of forces of so many numbers."""
+    if disturbance is None:
+        return
+    if disturbance.hull is None:
+        raise ValueError("disturbance: expected a hull, which objectives that take one scale")
+    if any(len(entry.force) != numbers for entry in disturbance.hull):
+        raise ValueError(f"disturbance.hull: expected forces of {numbers} numbers, as the load's")
+
+
 class Loads(Load):
     """What the grasp has to hold: one load, several, or one whose force turns."""
 
@@ -48,8 +58,7 @@ class Loads(Load):
             raise ValueError("the outline is in the plane: expected forces of two numbers")
         if self.also and self.tilt_degrees is not None:
             raise ValueError("expected also or tilt_degrees, found both")
-        if self.disturbance is not None and self.disturbance.hull is None:
-            raise ValueError("disturbance: expected a hull, which 'answered' and 'wrench' scale")
+        check_hull(self.disturbance, 2)
         return self
 
 

@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from regrasp.files.scenarios.grasp import loads_of
+from regrasp.files.scenarios.disturbance import Disturbance
+from regrasp.files.scenarios.grasp import check_hull, loads_of
 from regrasp.files.scenarios.keys import Load, Positive
 from regrasp.files.scenarios.object_entry import ObjectEntry
 from regrasp.files.strict import Strict
@@ -20,6 +21,9 @@ class SpaceLoads(Load):
     """What the grasp has to hold: one load or several."""
 
     also: list[Load] = Field([], description="other loads that it has to hold, and all between")
+    disturbance: Disturbance | None = Field(
+        None, description="hull of deviations for objective 'answered', which scales it"
+    )
 
     @cached_property
     def value(self) -> Wrench | LoadSet:
@@ -30,6 +34,7 @@ class SpaceLoads(Load):
     def _is_in_space(self) -> "SpaceLoads":
         if any(len(load.force) != 3 for load in (self, *self.also)):
             raise ValueError("the object is in space: expected forces of three numbers")
+        check_hull(self.disturbance, 3)
         return self
 
 
@@ -38,8 +43,11 @@ class SpaceGraspTask(Strict):
 
     kind: Literal["grasp"]
     fingers: int = Field(ge=2, le=4, description="how many")
-    objective: Literal["sum_normal", "peak_normal", "peak", "effort"] = Field(
-        "sum_normal", description="what the grasp is chosen for"
+    objective: Literal["sum_normal", "peak_normal", "peak", "effort", "friction_use", "angle", "answered"] = (
+        Field("sum_normal", description="what the grasp is chosen for")
+    )
+    max_force: Positive | None = Field(
+        None, description="limit on every force [N]; friction_use, angle and answered need it"
     )
     tolerance: Annotated[float, Field(gt=0, lt=1)] = Field(1e-2, description="gap at which the search ends")
     min_distance: Positive | None = Field(None, description="[m], between two fingers")
@@ -68,13 +76,15 @@ class SpaceGraspScenario(Strict):
         Args:
             progress: called with bound and best value as the search goes on, as of ``choose_grasp``.
         """
-        task = self.task
+        task, disturbance = self.task, self.load.disturbance
         return choose_grasp(
             self.object.value,
             task.fingers,
             self.load.value,
             friction=self.friction,
             objective=task.objective,
+            max_force=task.max_force,
+            disturbance=None if disturbance is None else disturbance.around(self.load.wrench),
             tolerance=task.tolerance,
             min_distance=task.min_distance,
             from_corners=task.from_corners,

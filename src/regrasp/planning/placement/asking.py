@@ -1,18 +1,23 @@
 """What a placement is asked for, checked: shape, load, and the level that an objective is."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, number
+from regrasp.mechanics.checks import Array, array, number
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.reserve import NEGLIGIBLE
 from regrasp.mechanics.wrench import Wrench
+from regrasp.outline.boundary import check_arcs
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.laws import LEVELS
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import AnsweredLevel, ForceLevel, FrictionLevel, Level
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import check_planar, inner_and_outer
+from regrasp.planning.placement.reachable import sides_of
+from regrasp.planning.placement.sides import Sides
 
 SCALED = ("answered", "wrench")
 """Objectives that are a factor of a disturbance."""
@@ -81,6 +86,44 @@ def length_of(goal: str, length: float | None, shape: Outline) -> float:
         raise InvalidInput("length is for objective 'wrench_ball', by which it divides torques")
     reach = float(np.hypot(*shape.polygon().T).max())
     return reach if length is None else number(length, "length", above=0)
+
+
+def asked_sides(
+    shape: Outline,
+    from_corners: float,
+    arcs: Sequence[Sequence[float]] | None,
+    tip_radius: float,
+    in_holes: bool,
+) -> Sides:
+    """The sides on which fingers may be; see ``choose_grasp``."""
+    if not isinstance(in_holes, bool) or (in_holes and arcs is not None):
+        raise InvalidInput(
+            f"in_holes must be True or False, and True goes with no arcs; got {shown(in_holes)}"
+        )
+    stretches = None if arcs is None else _pairs(arcs, shape.length)
+    return sides_of(shape, from_corners, stretches, number(tip_radius, "tip_radius", least=0), in_holes)
+
+
+def asked_distance(min_distance: float | None, points: Array) -> float | None:
+    """The least distance of fingers on a shape of these points (m, 2) or (m, 3) [m]."""
+    if min_distance is None:
+        return None
+    apart = number(min_distance, "min_distance", above=0)
+    # one point after the other, for little memory
+    widest = max(float(np.linalg.norm(points - point, axis=1).max()) for point in points)
+    if apart > widest:
+        raise InvalidInput(
+            f"min_distance is {apart:g}, and no two points of the shape are further apart than {widest:g}"
+        )
+    return apart
+
+
+def _pairs(arcs: Sequence[Sequence[float]], length: float) -> list[tuple[float, float]]:
+    found = array(arcs, "arcs", (None, 2))
+    if not len(found) or (found[:, 0] == found[:, 1]).any():
+        raise InvalidInput("arcs must be one pair of arc lengths or more, of two different numbers each")
+    check_arcs(found, length, "arcs")
+    return [(float(a), float(b)) for a, b in found]
 
 
 def _deviations(disturbance: LoadSet, dimension: int) -> Array:

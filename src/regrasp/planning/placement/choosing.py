@@ -7,24 +7,27 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, array, function, number, whole
+from regrasp.mechanics.checks import number, whole
 from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
-from regrasp.outline.boundary import check_arcs
 from regrasp.outline.outline import Outline
 from regrasp.planning.holds.pairs import Filter
-from regrasp.planning.placement.asking import check_task, length_of, level_of
+from regrasp.planning.placement.asking import asked_distance, asked_sides, check_task, length_of, level_of
 from regrasp.planning.placement.chosen import ChosenGrasp
 from regrasp.planning.placement.circles import up_to_turns
-from regrasp.planning.placement.constrained.constraints import CONSTRAINED_BOXES, Constraints, run_constrained
-from regrasp.planning.placement.laws import LEVELS, Law, law_of
+from regrasp.planning.placement.constrained.constraints import (
+    CONSTRAINED_BOXES,
+    Constraints,
+    check_constraints,
+    run_constrained,
+)
+from regrasp.planning.placement.laws import Law, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import Level
 from regrasp.planning.placement.levels.searching import best_level
 from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.loads import check_sizes, inner_and_outer, offset_by
-from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.results import Asked, chosen_at_level, chosen_by_norm
 from regrasp.planning.placement.search import ANY_FORCE, MOST_BOXES, Progress, Search
 from regrasp.planning.placement.sliding import slide_best
@@ -140,17 +143,12 @@ def choose_grasp(
     goal, law = law_of(objective)
     if number(tolerance, "tolerance", above=0) >= 1:
         raise InvalidInput(f"tolerance is a fraction below 1, got {shown(tolerance)}")
-    apart = None if min_distance is None else number(min_distance, "min_distance", above=0)
     points = shape.polygon() if isinstance(shape, Outline) else shape.surface()[0]
-    widest = 0.0 if apart is None else _width(points)
-    if apart is not None and apart > widest:
-        raise InvalidInput(
-            f"min_distance is {apart:g}, and no two points of the shape are further apart than {widest:g}"
-        )
+    apart = asked_distance(min_distance, points)
     away = None if from_corners is None else number(from_corners, "from_corners", least=0)
     limit = None if max_force is None else number(max_force, "max_force", above=0)
     constraints = Constraints(limit, number(min_normal, "min_normal", least=0), keep, removable)
-    _check_constraints(constraints, goal, fingers)
+    check_constraints(constraints, goal, fingers)
     if isinstance(shape, Mesh):
         cap = None if most_boxes is None else whole(most_boxes, "most_boxes", least=64, most=10_000_000)
         named: dict[str, object] = {
@@ -178,14 +176,8 @@ def choose_grasp(
     if offset and goal in ("answered", "wrench", "wrench_ball"):
         raise InvalidInput(f"load_offset is of loads that are given; {goal} has deviations: put it there")
     level = level_of(goal, mu, load, max_force, disturbance, length_of(goal, length, shape))
-    if not isinstance(in_holes, bool) or (in_holes and arcs is not None):
-        raise InvalidInput(
-            f"in_holes must be True or False, and True goes with no arcs; got {shown(in_holes)}"
-        )
-    stretches = None if arcs is None else _pairs(arcs, shape.length)
-    radius = number(tip_radius, "tip_radius", least=0)
-    sides = sides_of(
-        shape, FROM_CORNERS * shape.length if away is None else away, stretches, radius, in_holes
+    sides = asked_sides(
+        shape, FROM_CORNERS * shape.length if away is None else away, arcs, tip_radius, in_holes
     )
     inner, outer = (offset_by(loads, offset) for loads in inner_and_outer(load, tolerance / 4 / law.power))
     if isinstance(level, BallLevel):
@@ -236,35 +228,3 @@ def _spare_friction(search: Search, tolerance: float, most: int) -> None:
             less.run(tolerance, most, None)
         slide_best(less, _SHORT)
     search.take(search.placements()[:_KEPT] + less.placements())
-
-
-def _width(vertices: Array) -> float:
-    """The largest distance between two vertices, one after the other for little memory."""
-    return max(float(np.linalg.norm(vertices - vertex, axis=1).max()) for vertex in vertices)
-
-
-def _pairs(arcs: Sequence[Sequence[float]], length: float) -> list[tuple[float, float]]:
-    found = array(arcs, "arcs", (None, 2))
-    if not len(found) or (found[:, 0] == found[:, 1]).any():
-        raise InvalidInput("arcs must be one pair of arc lengths or more, of two different numbers each")
-    check_arcs(found, length, "arcs")
-    return [(float(a), float(b)) for a, b in found]
-
-
-def _check_constraints(constraints: Constraints, goal: str, fingers: int) -> None:
-    if constraints.keep is not None:
-        function(constraints.keep, "keep", "a function of first points, second points and an angle", 3)
-    if not isinstance(constraints.removable, bool):
-        raise InvalidInput(f"removable must be True or False, got {shown(constraints.removable)}")
-    more = [n for n in ("min_normal", "keep", "removable") if getattr(constraints, n)]
-    if constraints.max_force is not None and constraints.min_normal > constraints.max_force:
-        raise InvalidInput(
-            f"min_normal {constraints.min_normal:g} is above max_force {constraints.max_force:g}, which no "
-            "force meets"
-        )
-    if goal in LEVELS and more:
-        raise InvalidInput(
-            f"{', '.join(more)}: for objectives sum_normal, peak_normal, peak and effort; got {goal!r}"
-        )
-    if constraints.removable and fingers < 3:
-        raise InvalidInput("removable asks for three fingers or more: one finger alone is no grasp")

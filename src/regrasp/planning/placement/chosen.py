@@ -17,7 +17,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
-from regrasp.planning.placement.laws import LARGEST
+from regrasp.planning.placement.laws import LARGEST, measured_in
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.proofs.shape_data import shape_data, shape_of
@@ -180,10 +180,11 @@ class ChosenGrasp(ArrayValue):
             normal = ", ".join(f"{v + 0.0:.4f}" for v in contact.normal)
             rows.append(f"{contact.name or '':10}{s}  {f'({at})':>{width - 2}}  {f'({normal})':>{width - 6}}")
         better = "above" if self.objective in LARGEST else "below"
+        of = f" {words}" if (words := measured_in(self.objective)) else ""
         return "\n".join(
             [
                 *rows,
-                f"{self.objective} {self.value:.6g}; no placement is {better} {self.bound:.6g}, a gap of "
+                f"{self.objective} {self.value:.6g}{of}; no placement is {better} {self.bound:.6g}, a gap of "
                 f"{self.gap:.2g}",
             ]
         )

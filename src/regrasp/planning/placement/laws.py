@@ -43,6 +43,14 @@ LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
 LARGEST = tuple(word for word in LEVELS if word != "friction_use")
 """Objectives that are best as large as can be; of the others less is better."""
 
+_OF_A_PLACEMENT = {"wrench_ball": "N", "answered": "times the disturbance", "wrench": "times the disturbance"}
+
+
+def measured_in(word: str) -> str:
+    """The unit of a value in words; empty for a share of the friction."""
+    known = OBJECTIVES.get(word)
+    return _OF_A_PLACEMENT.get(word, "" if known is None or known.unit == "-" else known.unit)
+
 
 def law_of(objective: str | Objective) -> tuple[str, Law]:
     """The word of an objective and its law. ``InvalidInput`` for one that placements have no bound for."""

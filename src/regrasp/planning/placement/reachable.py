@@ -30,7 +30,7 @@ def sides_of(
     control = outline.cubics()
     if in_holes and outline.holes:
         whole: Sides = _with_holes(outline)
-        rings = [outline.boundary, *(PolygonBoundary(v) for v in _hole_rings(outline))]
+        rings = [outline.boundary, *(PolygonBoundary(v) for v in hole_rings(outline))]
     else:
         whole = _whole(outline) if control is None else curved_sides(outline, control)
         rings = [outline.boundary]
@@ -83,13 +83,14 @@ def _trims(ring: Boundary, starts: Array, lengths: Array, least: float) -> Array
     return np.stack([np.clip(back, 0.0, None), -np.clip(ahead, 0.0, None)], axis=1)
 
 
-def _hole_rings(outline: Outline) -> list[np.ndarray]:
+def hole_rings(outline: Outline) -> list[Array]:
+    """(k, 2) vertices of each hole that is a polygon, clockwise, in the coordinates given [m]."""
     return [hole.vertices[::-1] for hole in outline.holes if isinstance(hole, PolygonBoundary)]
 
 
 def _with_holes(outline: Outline) -> RingSides:
     """The sides of a polygon and of its holes."""
-    holes = _hole_rings(outline)
+    holes = hole_rings(outline)
     if outline.cubics() is not None or len(holes) < len(outline.holes):
         raise InvalidInput(
             "in_holes is for polygons with holes that are polygons; give Outline(shape.polygon(tolerance), "

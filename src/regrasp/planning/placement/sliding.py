@@ -42,7 +42,8 @@ def slid(
 def slide_best(search: Search, share: float = 1.0) -> None:
     """Let the best placements of a search that ended early, and of points, slide to where they are better.
 
-    Boxes that are wide lead to placements near their middles, far from the best of each. share: of the work.
+    Boxes that are wide lead to placements near their middles, far from the best of each. An interrupt ends
+    it, and the search knows (``interrupted``). share: of the work.
     """
     left = int(share * _WORK / len(search.loads))
 
@@ -52,14 +53,19 @@ def slide_best(search: Search, share: float = 1.0) -> None:
         norm = search.norm_at(places, u) if left > 0 and search.are_apart(places, u) else inf
         return norm if norm < than * (1 - _GAINED) else inf
 
-    starts = search.placements()[:_STARTS]
-    if left > _PLACEMENTS:
-        left -= _PLACEMENTS
-        starts += search.on_points()[:_STARTS]
-    for placed in sorted(starts, key=lambda placed: placed[0]):
-        better = slid(search, placed, less, _FIRST, _LAST, one_by_one(search.fingers))
-        if better[0] < search.best:
-            search.note(*better)
+    try:
+        starts = search.placements()[:_STARTS]
+        if left > _PLACEMENTS:
+            left -= _PLACEMENTS
+            starts += search.on_points()[:_STARTS]
+        for placed in sorted(starts, key=lambda placed: placed[0]):
+            better = slid(search, placed, less, _FIRST, _LAST, one_by_one(search.fingers))
+            if better[0] < search.best:
+                search.note(*better)
+    except KeyboardInterrupt:
+        search.interrupted = True
+        if search.best == inf:
+            raise
 
 
 def one_by_one(fingers: int) -> Callable[[], Array]:

@@ -25,6 +25,8 @@ from regrasp.plots.look.layout import OnePass
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 NO_HOLD = "#dddddd"
 """Of maps, where nothing holds."""
+NOT_ALLOWED = "#a3a3a3"
+"""Of maps, where constraints let no fingers be."""
 INK, GREY, PALE = "#222222", "#767676", "#ececec"
 
 WIDTH = 3.4

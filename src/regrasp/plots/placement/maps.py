@@ -10,11 +10,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from regrasp.errors import InvalidInput
-from regrasp.mechanics.checks import Array, instance
-from regrasp.planning.placement.maps import PlacementMap
+from regrasp.mechanics.checks import Array, Flags, instance
+from regrasp.planning.placement.maps.placed_values import PlacementMap
+from regrasp.planning.placement.maps.rings import Rings
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.plots.grasps.outline import plot_outline
-from regrasp.plots.look.style import INK, NO_HOLD, axes_or_new, label_axis, legend
+from regrasp.plots.look.style import INK, NO_HOLD, NOT_ALLOWED, axes_or_new, label_axis, legend
 from regrasp.plots.look.units import SI, Units
 from regrasp.plots.placement.values import as_drawn, colour_bar, scale_of
 
@@ -28,7 +29,9 @@ def plot_placement_map(
 ) -> Axes:
     """The value of two fingers over both arc lengths; grey where they do not hold, a ring at the best.
 
-    Forces grow without end: of more than some times the best all have one colour, as the legend says.
+    Darker grey is where constraints let them not be. Forces grow without end: of more than some times the
+    best all have one colour, as the legend says. Places in holes come after those on the outline, beyond a
+    white line.
 
     Args:
         placements: what ``regrasp.placement_map`` found for two fingers that move.
@@ -48,15 +51,25 @@ def plot_placement_map(
             raise InvalidInput(
                 "regions must be those of two fingers on the outline of the map, which are all"
             )
-    length, values = placements.shape.length, as_drawn(placements.objective, placements.values)
+    length, values = placements.rings.length, as_drawn(placements.objective, placements.values)
     ax = axes_or_new(ax, height=3.3, bar=True)
     edges = _edges(placements.places, length)
-    none = np.where(np.isnan(values), 0.0, np.nan)
-    ax.pcolormesh(edges, edges, none, cmap=ListedColormap([NO_HOLD]), zorder=1, gid="no hold")
+    forbidden = _forbidden(placements.allowed)
+    for cells, colour, gid in (
+        (np.isnan(values) & ~forbidden, NO_HOLD, "no hold"),
+        (forbidden, NOT_ALLOWED, "not allowed"),
+    ):
+        none = np.where(cells, 0.0, np.nan)
+        ax.pcolormesh(edges, edges, none, cmap=ListedColormap([colour]), zorder=1, gid=gid)
+    for start in placements.rings.starts[1:-1]:
+        for line in (ax.axhline, ax.axvline):
+            line(start, color="white", linewidth=1.0, zorder=2, gid="hole")
     scale = scale_of(placements.objective, values, placements.more)
     drawn = ax.pcolormesh(edges, edges, values, cmap=scale.cmap, norm=scale.norm, zorder=1, gid="values")
     colour_bar(drawn, scale, placements.objective, units, ax=ax, fraction=0.046, pad=0.03)
-    handles = [Line2D([], [], color=NO_HOLD, linewidth=5, label=f"no hold: {1 - placements.share:.0%}")]
+    handles = [_key(NO_HOLD, f"no hold: {1 - placements.share:.0%}")]
+    if forbidden.any():
+        handles.append(_key(NOT_ALLOWED, "not allowed"))
     handles += scale.key()
     if regions is not None:
         handles += _draw_regions(ax, regions)
@@ -98,6 +111,8 @@ def _draw_regions(ax: Axes, regions: ContactRegions) -> list[Line2D]:
 def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, units: Units = SI) -> Axes:
     """The best value that is reached with a finger at each place, in colour along the outline.
 
+    Grey is where none holds, darker grey where constraints let no finger be.
+
     Args:
         placements: what ``regrasp.placement_map`` found.
         ax: the axes to draw on; new ones if not given.
@@ -108,30 +123,33 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
     width, height = np.ptp(shape.polygon(), axis=0)
     ax = axes_or_new(ax, height=float(np.clip(0.9 + 2.2 * height / width, 1.9, 4.4)), bar=True)
     ax = plot_outline(shape, ax, units=units)
-    lows, highs = _ends(placements.places, shape.length)
-    strokes = [shape.points(np.linspace(lo, hi, 9)) for lo, hi in zip(lows, highs, strict=True)]
+    rings = placements.rings
+    back, ahead = _reach(placements.places, rings.length)
+    strokes = rings.points(placements.places, np.linspace(-back, ahead, 9, axis=1))
     held = ~np.isnan(best)
-    ax.add_collection(
-        LineCollection(
-            [s for s, holds in zip(strokes, held, strict=True) if not holds], colors=NO_HOLD, linewidths=5,
-            capstyle="butt", zorder=2, gid="no hold",
-        )
-    )  # fmt: skip
+    allowed = placements.allowed.reshape(len(held), -1).any(axis=1)
+    look = {"linewidths": 5, "capstyle": "butt"}
+    for these, colour, gid in (
+        (allowed & ~held, NO_HOLD, "no hold"),
+        (~allowed, NOT_ALLOWED, "not allowed"),
+    ):
+        ax.add_collection(LineCollection(list(strokes[these]), colors=colour, zorder=2, gid=gid, **look))
     scale = scale_of(placements.objective, best, placements.more)
     drawn = LineCollection(
-        [s for s, holds in zip(strokes, held, strict=True) if holds], array=best[held], linewidths=5,
-        capstyle="butt", zorder=3, gid="best", cmap=scale.cmap,
-        norm=scale.norm,
-    )  # fmt: skip
+        list(strokes[held]), array=best[held], zorder=3, gid="best", cmap=scale.cmap, norm=scale.norm, **look
+    )
     ax.add_collection(drawn)
     colour_bar(drawn, scale, placements.objective, units, ax=ax, fraction=0.046, pad=0.03)
-    handles = [Line2D([], [], color=NO_HOLD, linewidth=5, label="no hold"), *scale.key()]
+    handles = [_key(NO_HOLD, "no hold")]
+    if not allowed.all():
+        handles.append(_key(NOT_ALLOWED, "not allowed"))
+    handles += scale.key()
     if placements.fixed.size:
-        at = shape.points(placements.fixed)
+        at = _at(rings, placements.fixed)
         ax.plot(*at.T, "o", color=INK, markersize=5, zorder=5, gid="fixed")
         handles.append(Line2D([], [], marker="o", linestyle="none", color=INK, markersize=5, label="stays"))
     if placements.at.size:
-        ax.plot(*shape.points(placements.at).T, "o", mfc="white", mec=INK, ms=7, mew=1.2, zorder=6, gid="at")
+        ax.plot(*_at(rings, placements.at).T, "o", mfc="white", mec=INK, ms=7, mew=1.2, zorder=6, gid="at")
         ring = Line2D([], [], marker="o", linestyle="none", markersize=7, label="best")
         ring.set(markerfacecolor="white", markeredgecolor=INK)
         handles.append(ring)
@@ -139,11 +157,28 @@ def plot_placement_outline(placements: PlacementMap, ax: Axes | None = None, *, 
     return ax
 
 
-def _ends(places: Array, length: float) -> tuple[Array, Array]:
-    """Arc lengths where the cells of places begin and end: half way to the next, or half of what is usual."""
+def _forbidden(allowed: Flags) -> Flags:
+    """(m, m) where constraints let two fingers not be; at one place, where they may not be beside it."""
+    beside = np.roll(np.eye(len(allowed), dtype=bool), 1, axis=1)
+    alone = (allowed & (beside | beside.T)).any(axis=1)
+    result: Flags = ~allowed & ~np.diag(alone)
+    return result
+
+
+def _key(colour: str, words: str) -> Line2D:
+    return Line2D([], [], color=colour, linewidth=5, label=words)
+
+
+def _at(rings: Rings, places: Array) -> Array:
+    """(m, 2) points at arc lengths."""
+    return rings.points(places % rings.length, np.zeros((len(places), 1)))[:, 0]
+
+
+def _reach(places: Array, length: float) -> tuple[Array, Array]:
+    """How far the cells of places go back and ahead: half way to the next, or half of what is usual."""
     gaps = np.diff(places, append=places[0] + length)
     reach = np.minimum(gaps, 1.01 * float(np.median(gaps))) / 2
-    return places - np.roll(reach, 1), places + reach
+    return np.roll(reach, 1), reach
 
 
 def _edges(places: Array, length: float) -> Array:

@@ -28,7 +28,7 @@ from regrasp.closed_form.compiled.places.limited import DISC, LARGEST, SQUARES, 
 FAR = 1e6
 """A norm beyond this many times |b|_1 and the least force counts as infinite."""
 _ARTIFICIAL = 1e9  # the largest component of y to begin with
-_MOST = 120
+_MOST, _THIRDS = 240, 24
 _ROUNDING = 1e-13  # of the terms of a sum
 _PIVOT = 1e-12
 _MISSED = 1e-7  # of a load, by which forces may be off it
@@ -84,11 +84,37 @@ def _column(sides, arcs, ends, law, top, y, g, force, kinks, out, best):  # type
         if value > most:
             most, size_of_all = value, t
     exact = capped or _is_short(law, size_of_all)
+    if not capped and exact:
+        size_of_all = _best_short(sides, arcs, ends, law, top, y, out, best)
     for i in range(k):
         rising = kinks[i, 0] > 0.0 and not exact
         best_of_arc(sides, arcs, ends, i, law, size_of_all, rising, y, out, best)
         _add(g, force[i], best, size_of_all if rising else 1.0)
     return most, size_of_all
+
+
+@njit(**VIEWS)
+def _best_short(sides, arcs, ends, law, top, y, out, best):  # type: ignore[no-untyped-def]
+    """The T that makes sum h_T - T most, of those at which a force may push with too little at an edge.
+
+    It is concave in T, rising as a root from where forces go along normals: thirds are of their other part.
+    """
+    mu, _, _, _, least = law
+    lo, hi = 0.0, min(mu * least, sqrt(max(top * top - least * least, 0.0)))
+    for _ in range(_THIRDS):
+        third = (hi - lo) / 3.0
+        first, second = lo + third, hi - third
+        difference = sqrt(least * least + first * first) - sqrt(least * least + second * second)
+        for i in range(len(arcs)):
+            for q in (first, second):
+                best_of_arc(sides, arcs, ends, i, law, sqrt(least * least + q * q), False, y, out, best)
+                difference += best[0] if q == second else -best[0]
+        if difference > 0.0:
+            lo = first
+        else:
+            hi = second
+    q = hi if difference > 0.0 else lo
+    return sqrt(least * least + q * q)
 
 
 @njit(**VIEWS)

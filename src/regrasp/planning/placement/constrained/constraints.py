@@ -10,9 +10,10 @@ from math import inf
 import numpy as np
 
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, Flags
+from regrasp.mechanics.checks import Array, Flags, function
 from regrasp.planning.holds.pairs import Filter
 from regrasp.planning.placement.constrained.sampled import LARGEST, drawn, sampled
+from regrasp.planning.placement.laws import LEVELS
 from regrasp.planning.placement.search import Progress, Search
 from regrasp.planning.placement.sliding import Placed, Value, slid
 
@@ -81,6 +82,32 @@ class Constraints:
         return _SURELY * (_ENOUGH * search.unit if self.max_force is None else self.max_force)
 
 
+def check_constraints(
+    constraints: Constraints, goal: str, fingers: int, *, of_levels: tuple[str, ...] = ()
+) -> None:
+    """``InvalidInput`` for constraints that no force meets, or that an objective does not go with.
+
+    of_levels: those that levels go with.
+    """
+    if constraints.keep is not None:
+        function(constraints.keep, "keep", "a function of first points, second points and an angle", 3)
+    if not isinstance(constraints.removable, bool):
+        raise InvalidInput(f"removable must be True or False, got {shown(constraints.removable)}")
+    if constraints.max_force is not None and constraints.min_normal > constraints.max_force:
+        raise InvalidInput(
+            f"min_normal {constraints.min_normal:g} is above max_force {constraints.max_force:g}, which no "
+            "force meets"
+        )
+    norms = [name for name in ("min_normal", "keep", "removable") if name not in of_levels]
+    more = [name for name in norms if getattr(constraints, name)]
+    if goal in LEVELS and more:
+        raise InvalidInput(
+            f"{', '.join(more)}: for objectives sum_normal, peak_normal, peak and effort; got {goal!r}"
+        )
+    if constraints.removable and fingers < 3:
+        raise InvalidInput("removable asks for three fingers or more: one finger alone is no grasp")
+
+
 def run_constrained(
     search: Search, kept: Constraints, tolerance: float, most: int, progress: Progress | None
 ) -> None:
@@ -94,7 +121,7 @@ def run_constrained(
     try:
         for placed in _begun(search, kept, value):
             search.accept(*placed)
-        going = True
+        going = not search.interrupted
         while going:
             before = search.tries
             level = min(search.best * (1 - tolerance), _EVERYTHING)
@@ -107,7 +134,7 @@ def run_constrained(
                     break
             if progress is not None:
                 progress(search.bound, search.best)
-        if search.best < inf:
+        if search.best < inf and not search.interrupted:
             search.accept(*_slid(search, (search.best, *search.found), value, _FIRST, _LAST))
     except KeyboardInterrupt:
         if search.best == inf:
@@ -115,15 +142,23 @@ def run_constrained(
 
 
 def _begun(search: Search, kept: Constraints, value: Value) -> list[Placed]:
-    """Placements that keep the constraints, the best last: of points on the sides, or slid from there."""
+    """Placements that keep the constraints, the best last: of points on the sides, or slid from there.
+
+    An interrupt leaves those found before, if there are any, and the search knows (``interrupted``).
+    """
     seeds = sampled(search, kept.may, kept.leaving(search) if kept.removable else None)[:_SEEDS]
     found = sorted(seeds, key=lambda placed: -placed[0])
     best = {tuple(places): (norm, places, u) for norm, places, u in found}  # of the same edges
     sliding = list(best.values())
-    for many, step, last in _STAGES:
-        sliding = [_slid(search, placed, value, step, last) for placed in sliding[-many:]]
-        sliding.sort(key=lambda placed: -placed[0])
-        found += sliding
+    try:
+        for many, step, last in _STAGES if not search.interrupted else ():
+            sliding = [_slid(search, placed, value, step, last) for placed in sliding[-many:]]
+            sliding.sort(key=lambda placed: -placed[0])
+            found += sliding
+    except KeyboardInterrupt:
+        search.interrupted = True
+        if not found:
+            raise
     return sorted(found, key=lambda placed: -placed[0])
 
 

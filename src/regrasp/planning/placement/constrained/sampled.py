@@ -42,13 +42,18 @@ def sampled(search: Search, may: May, leaving: float | None) -> list[Placed]:
         return norms[few]
 
     found: list[Placed] = []
-    for few in _cliques(_allowed(search, may, on, u), k):
-        at = list(few)
-        if leaving is not None and all(largest(rest) > leaving for rest in combinations(few, k - 1)):
-            continue
-        found.append((search.norm_at(on[at], u[at]), on[at], u[at]))
-    if k > 2:
-        found += _grown(search, may, leaving)
+    try:
+        for few in _cliques(_allowed(search, may, on, u), k):
+            at = list(few)
+            if leaving is not None and all(largest(rest) > leaving for rest in combinations(few, k - 1)):
+                continue
+            found.append((search.norm_at(on[at], u[at]), on[at], u[at]))
+        if k > 2:
+            found.extend(_grown(search, may, leaving))
+    except KeyboardInterrupt:
+        search.interrupted = True
+        if not any(norm < inf for norm, *_ in found):
+            raise
     found = sorted((placed for placed in found if placed[0] < inf), key=lambda placed: placed[0])
     taken: dict[tuple[int, ...], int] = {}
     first: list[Placed] = []
@@ -74,7 +79,10 @@ def _grown(search: Search, may: May, leaving: float | None) -> Iterator[Placed]:
         limits,
     )  # fmt: skip
     on, u = _points(search, _MORE)
-    for norm, places, at in sampled(fewer, may, None)[:_GROWING]:
+    begun = sampled(fewer, may, None)[:_GROWING]
+    if fewer.interrupted:
+        raise KeyboardInterrupt
+    for norm, places, at in begun:
         if leaving is not None and norm > leaving:
             break
         for side, where in zip(on, u, strict=True):

@@ -39,7 +39,7 @@ def run_level(
         aim = next_level(level, best, gaps, tolerance, top)
     level.put(search, aim)
     try:
-        while best is None or aim < top:
+        while not search.interrupted and (best is None or aim < top):
             if not (search.goes_on(fixed, 0.0, most) or search.best <= level.max_force):
                 if best is None or not (search.closed and gaps):
                     break
@@ -60,6 +60,8 @@ def run_level(
                 aim = next_level(level, best, gaps, tolerance, top)
                 level.put(search, aim)
                 search.forget(reached, places, u)
+                if search.interrupted:
+                    raise KeyboardInterrupt
                 if aim >= top:
                     break
             if progress is not None:
@@ -134,24 +136,30 @@ def improved(
     """The best level of a placement and of those that fingers find by sliding along the boundary.
 
     Not where forces are least: that may be beside a place where cones end, and the level with them. Ways to
-    slide turn to where the last ones have led (Rosenbrock), since a ridge is along no finger alone.
+    slide turn to where the last ones have led (Rosenbrock), since a ridge is along no finger alone. An
+    interrupt ends it, and the search knows (``interrupted``).
     """
     best, step, ways = level.reached(search, known, places, u), _FIRST, np.eye(len(u))
-    while step > _SHORTEST:
-        before = u
-        for way in (sign * step * way for way in ways for sign in (-1, 1)):
-            on, there = moved(search.sides, places, u, way)
-            level.put(search, level.beyond(best, _SLOW))
-            if not search.are_apart(on, there) or search.norm_at(on, there) > level.max_force * (1 - SURE):
-                continue
-            reached = level.reached(search, best, on, there)
-            if reached > best:
-                best, places, u = reached, on, there
-        gone = u - before
-        if np.count_nonzero(gone) > 1:
-            ways = np.linalg.qr(np.column_stack([gone, np.eye(len(u))]))[0].T
-        step = min(2 * step, _LARGEST) if gone.any() else 0.5 * step
-    return best, places, u
+    found = best, places, u
+    try:
+        while step > _SHORTEST:
+            before = u
+            for way in (sign * step * way for way in ways for sign in (-1, 1)):
+                on, there = moved(search.sides, places, u, way)
+                level.put(search, level.beyond(best, _SLOW))
+                least = search.norm_at(on, there) if search.are_apart(on, there) else inf
+                if least > level.max_force * (1 - SURE):
+                    continue
+                reached = level.reached(search, best, on, there)
+                if reached > best:
+                    best, places, u = found = reached, on, there
+            gone = u - before
+            if np.count_nonzero(gone) > 1:
+                ways = np.linalg.qr(np.column_stack([gone, np.eye(len(u))]))[0].T
+            step = min(2 * step, _LARGEST) if gone.any() else 0.5 * step
+    except KeyboardInterrupt:
+        search.interrupted = True
+    return found
 
 
 def _slid_below(search: Search, norm: float, starts: list[Placed]) -> tuple[np.ndarray, Array] | None:

@@ -180,6 +180,8 @@ class _Joined:
         if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
             self.best, *at = improved(search, level, self.aim, places, u)
             search.forget(self.best, *at)
+            if search.interrupted:
+                raise KeyboardInterrupt
             self._put_beyond(self.best)
 
     def _known(self, node: int) -> Twists | None:

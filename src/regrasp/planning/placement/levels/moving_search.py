@@ -127,4 +127,6 @@ class Moving:
         best, places, u = improved(search, level, self.aim, places, u)
         self._take(best, places, u)
         level.put(search, self.aim)
+        if search.interrupted:
+            raise KeyboardInterrupt
         return places, u

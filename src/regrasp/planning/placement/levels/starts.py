@@ -17,6 +17,8 @@ def best_start(search: Search, level: FrictionLevel) -> float | None:
     """The best level that three fingers slide to from where normals meet; None where none holds."""
     best: float | None = None
     for places, u in little_friction(search, level.max_force, level.friction):
+        if search.interrupted:  # (``improved``)
+            break
         level.put(search, level.start)
         if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
             reached, *at = improved(search, level, level.start, places, u)

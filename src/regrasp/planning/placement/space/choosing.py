@@ -39,6 +39,8 @@ _NARROW = 1e-6  # of the size: triangles of smaller sides are not halved
 _SAMPLED = 200  # points, on which a first placement is sought
 _SAMPLED_BOXES = 20_000
 
+_OF_LEVELS = ("max_force", "disturbance")
+
 
 def check_space(
     shape: Mesh, load: Wrench | LoadSet, goal: str = "peak", given: Mapping[str, bool] = MappingProxyType({})
@@ -58,10 +60,14 @@ def check_space(
             "a smooth mesh has no bound: its normals turn within a face; give Mesh(vertices, faces), whose "
             "faces are flat"
         )
-    of_levels = ("max_force", "disturbance") if goal in SPACE_LEVELS else ()
-    unknown = [name for name, there in given.items() if there and name not in of_levels]
+    unknown = [name for name, there in given.items() if there and name not in _OF_LEVELS]
     if unknown:
         raise InvalidInput(f"{', '.join(unknown)}: on outlines only, and the shape is a mesh")
+    more = [name for name in _OF_LEVELS if given.get(name)] if goal not in SPACE_LEVELS else []
+    if more:
+        raise InvalidInput(
+            f"{', '.join(more)}: on a mesh for objectives {', '.join(SPACE_LEVELS)} alone; got {goal!r}"
+        )
     if isinstance(load, Wrench):
         return load.vector[None]
     if load.vertices is None:

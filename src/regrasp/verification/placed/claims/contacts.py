@@ -13,6 +13,8 @@ from regrasp.verification.placed.meshes.surfaces import SurfaceProof, touches
 from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.touching import Touching
 
+_AT_ONCE = 1 << 16  # pairs of states
+
 
 def check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:
     """That the contacts are fingers that the proof is about, which has a share of the mesh given."""
@@ -103,13 +105,23 @@ def _all_shown(chosen: Chosen, loads: Array) -> bool:
     size = np.abs(loads).max(axis=0)
     scale = np.where(size > 0, size, size.max() or 1.0)  # forces and torques have units of their own
     shown, loads = shown / scale, loads / scale
-    sides = shown[None] - shown[:, None]
-    squares = np.maximum((sides[..., :-1] ** 2).sum(axis=2), np.finfo(float).tiny)
-    for load in loads:
-        away = load - shown
-        share = np.clip((away[:, None, :-1] * sides[..., :-1]).sum(axis=2) / squares, 0.0, 1.0)
-        left = away[:, None] - share[..., None] * sides
+    return all(_is_between(load, shown) for load in loads)
+
+
+def _is_between(load: Array, shown: Array) -> bool:
+    away = load - shown
+    if (np.abs(away) <= CLOSE).all(axis=1).any():  # that of a state
+        return True
+    least, most = inf, -inf
+    some = max(_AT_ONCE // max(len(shown), 1), 1)
+    for first in range(0, len(shown), some):
+        here = slice(first, first + some)
+        sides = shown[None] - shown[here, None]
+        squares = np.maximum((sides[..., :-1] ** 2).sum(axis=2), np.finfo(float).tiny)
+        share = np.clip((away[here, None, :-1] * sides[..., :-1]).sum(axis=2) / squares, 0.0, 1.0)
+        left = away[here, None] - share[..., None] * sides
         last = left[..., -1][(np.abs(left[..., :-1]) <= CLOSE).all(axis=2)]
-        if not last.min(initial=inf) <= CLOSE or not last.max(initial=-inf) >= -CLOSE:
-            return False
-    return True
+        least, most = min(least, last.min(initial=inf)), max(most, last.max(initial=-inf))
+        if least <= CLOSE and most >= -CLOSE:
+            return True
+    return False

@@ -99,7 +99,6 @@ def test_maps_of_other_numbers_of_fingers_are_refused() -> None:
         ({"free": 1}, "two to four fingers make a map: got 0 in fixed and 1"),
         ({"fixed": [0.1, 0.2, 0.3]}, "two to four fingers"),
         ({"count": 5000}, "placements; give fewer"),
-        ({"max_force": 1.0}, "max_force is for"),
         ({"fixed": [float("nan")]}, "fixed"),
         ({"fixed": [100.0]}, "fixed must be arc lengths of the outer boundary, 0 to 14; got [100.0]"),
         ({"fixed": [-0.1]}, "fixed must be arc lengths of the outer boundary"),

@@ -1,0 +1,1 @@
+"""The value of placements over the boundary of an outline."""
