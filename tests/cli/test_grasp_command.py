@@ -123,7 +123,7 @@ def test_scenarios_in_space_ask_for_levels(objective: str, load: str) -> None:
         ("angle", "", "", "needs max_force"),
         ("answered", "", "max_force = 4.0\n", "go together"),
         ("peak", SHAKEN, "", "disturbance: on a mesh for objectives friction_use, angle, answered alone"),
-        ("peak", "", "max_force = 4.0\\n", "max_force: on a mesh for objectives friction_use"),
+        ("peak", "", "max_force = 4.0\n", "max_force: on a mesh for objectives friction_use"),
         ("force", "", "max_force = 4.0\n", "task.objective"),
         ("answered", "disturbance = {force = 0.1}\n", "max_force = 4.0\n", "disturbance: expected a hull"),
         ("answered", SHAKEN.replace("0.0, 0.0", "0.0"), "max_force = 4.0\n", "forces of 3 numbers"),

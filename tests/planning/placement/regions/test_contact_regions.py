@@ -227,3 +227,16 @@ def test_a_half_width_of_none_is_not_said() -> None:
     least = rg.contact_regions(BRACKET, GRASP, RING, widest="least")
     said = repr(replace(least, half_width=0.0))
     assert said.startswith("ContactRegions(widths ")
+
+
+def test_more_loads_than_corners_have_states_for_are_refused_before_any_work() -> None:
+    angles = np.arange(2049) * 2 * np.pi / 2049
+    many = rg.LoadSet.hull(rg.Wrench([np.cos(t), np.sin(t)]) for t in angles)
+    said = refusal(lambda: rg.contact_regions(BRACKET, GRASP, many))
+    assert str(said).startswith("regions of 3 fingers are proven under 2048 loads at most")
+    assert str(said).endswith("got 2049: give fewer whose hull contains them")
+    box = rg.Mesh.box(4, 3, 5)
+    three = (([2, 0, 0], [-1, 0, 0]), ([-2, 1, 0], [1, 0, 0]), ([-2, -1, 0], [1, 0, 0]))
+    grasp = rg.Grasp(rg.Contact(point, normal, 0.5) for point, normal in three)
+    many = rg.LoadSet.hull(rg.Wrench([np.cos(t), np.sin(t), 0]) for t in angles[:129])
+    assert "under 128 loads at most" in str(refusal(lambda: rg.contact_regions(box, grasp, many)))

@@ -19,6 +19,8 @@ from regrasp.planning.placement.regions.on_faces import regions_on_faces
 from regrasp.planning.placement.regions.straight import on_sides
 from regrasp.planning.placement.space.choosing import check_space
 
+_STATES = 1 << 14  # at corners, some milliseconds and kilobytes each
+_LOADS_IN_SPACE = 128  # of some thousand states each
 WIDEST = ("together", "least", "product")
 
 
@@ -64,7 +66,8 @@ def contact_regions(
         grasp: contacts on its outer boundary, or of a polygon in holes that are polygons, to a millionth, all
             of one friction, relative to the centre of mass; up to six, on a mesh three or four, away from
             edges. Regions are around the points of the boundary that are nearest to them.
-        load: external wrench on the object about its centre of mass, or a set of them [N, N m].
+        load: external wrench on the object about its centre of mass, or a set of them [N, N m]: of k fingers
+            16,384 / 2^k at most, on a mesh 128.
         max_force: limit on every force, beside those of the contacts, of which the least counts for all [N];
             three times the least that the grasp needs if there is none.
         widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
@@ -93,9 +96,20 @@ def contact_regions(
     if not isinstance(widest, str) or widest not in WIDEST:
         raise InvalidInput(f"widest must be one of {', '.join(WIDEST)}; got {shown(widest)}")
     if isinstance(shape, Mesh):
-        return regions_on_faces(shape, grasp, check_space(shape, load), given, widest)
+        in_space = check_space(shape, load)
+        _check_count(len(in_space), _LOADS_IN_SPACE, grasp)
+        return regions_on_faces(shape, grasp, in_space, given, widest)
     check_planar(load)
     _, loads = inner_and_outer(load, 1e-3)
+    _check_count(len(loads), _STATES // 2 ** len(grasp), grasp)
     if not isinstance(shape.boundary, PolygonBoundary):
         return on_curve(CurvedPlaces(shape, grasp, loads), given, widest)
     return on_sides(shape, grasp, loads, given, widest)
+
+
+def _check_count(count: int, most: int, grasp: Grasp) -> None:
+    if count > most:
+        raise InvalidInput(
+            f"regions of {len(grasp)} fingers are proven under {most} loads at most, each by states at all "
+            f"corners; got {count}: give fewer whose hull contains them"
+        )
