@@ -22,10 +22,19 @@ MOST = 400  # unknowns of what is solved again
 
 
 @cache
+def problems(family):
+    """Of a family; test_bench_families.py sees that they are the same whenever they are made."""
+    return list(FAMILIES[family].problems())
+
+
+def every():
+    return (p for family in FAMILIES for p in problems(family))
+
+
+@cache
 def small(is_qp):
     """Conic or quadratic problems of a moderate size."""
-    every = (p for family in FAMILIES.values() for p in family.problems())
-    return [p for p in every if p.is_qp == is_qp and p.program.q.size <= MOST]
+    return [p for p in every() if p.is_qp == is_qp and p.program.q.size <= MOST]
 
 
 def solved_again(problem, program):
@@ -63,7 +72,7 @@ def test_a_linear_objective_comes_back_to_the_last_digit(tmp_path):
 def test_npz_is_read_back_to_the_same_program(tmp_path):
     families = {problem.family for problem in small(is_qp=True)}
     assert len(families) > 5
-    for problem in (p for name in families for p in FAMILIES[name].problems() if p.is_qp):
+    for problem in (p for name in families for p in problems(name) if p.is_qp):
         program = problem.program
         write_npz(program, tmp_path / "a.npz")
         back = read_npz(tmp_path / "a.npz")
@@ -187,13 +196,13 @@ def test_a_manifest_says_what_every_file_is(tmp_path):
     chosen = [FAMILIES[name] for name in ("loci", "regrasps", "infeasible", "warm")]
     where = export(chosen, tmp_path / "set")
     manifest = json.loads(where.read_text(encoding="utf-8"))
-    problems = {p.name: p for family in chosen for p in family.problems()}
-    assert [entry["name"] for entry in manifest["problems"]] == list(problems)
+    known = {p.name: p for family in chosen for p in problems(family.name)}
+    assert [entry["name"] for entry in manifest["problems"]] == list(known)
     assert {path.name for path in where.parent.iterdir()} == {
         where.name, *(entry["file"] for entry in manifest["problems"])
     }  # fmt: skip
     for entry in manifest["problems"]:
-        problem, path = problems[entry["name"]], where.parent / entry["file"]
+        problem, path = known[entry["name"]], where.parent / entry["file"]
         assert entry["sha256"] == sha256(path.read_bytes()).hexdigest()
         assert (entry["unknowns"], entry["rows"], entry["nonzeros"]) == problem.size
         assert entry["density"] == problem.program.A.nnz / np.prod(problem.program.A.shape)
@@ -248,9 +257,7 @@ def test_qpbenchmark_finds_the_class_by_its_file():
     import regrasp.bench.exchange.qpbenchmark_set as module
 
     assert load_test_set(module.__file__).count_problems() == sum(
-        p.is_qp and p.known.verdict is Verdict.SOLVABLE and p.program.q.size <= 1000
-        for family in FAMILIES.values()
-        for p in family.problems()
+        p.is_qp and p.known.verdict is Verdict.SOLVABLE and p.program.q.size <= 1000 for p in every()
     )
 
 

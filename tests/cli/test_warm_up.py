@@ -24,7 +24,8 @@ start, goal = (
 )
 rg.plan_regrasp(outline, start, goal, rg.Wrench([0, -2.0]), friction=0.7, candidates=15, max_force=30)
 square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-rg.choose_grasp(square, 3, rg.LoadSet.turned(rg.Wrench([0, -1.0])), friction=1, objective="effort")
+ring = rg.LoadSet.turned(rg.Wrench([0, -1.0]))
+rg.choose_grasp(square, 3, ring, friction=1, objective="effort", tolerance=0.01)
 rg.choose_grasp(square, 4, rg.Wrench([0, -1.0]), friction=0.5, objective="angle", max_force=5, tolerance=0.1)
 """
 

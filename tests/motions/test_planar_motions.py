@@ -1,5 +1,6 @@
 """Free fingers pass through nothing: checked by dense sampling with lines of its own."""
 
+from collections.abc import Iterator
 from functools import cache
 from itertools import count
 
@@ -29,10 +30,16 @@ SHAPES = {
 
 
 @cache
-def planned(name: str, least: int) -> tuple[tuple[rg.RegraspPlan, Motions], ...]:
+def endless(name: str) -> tuple[list[tuple[rg.RegraspPlan, Motions]], Iterator[int]]:
+    """What ``planned`` has found, and the seeds to go on with."""
+    return [], count()
+
+
+def planned(name: str, least: int) -> list[tuple[rg.RegraspPlan, Motions]]:
     """Moves from random places to random places of a shape, until ``least`` have motions."""
-    shape, found = SHAPES[name], []
-    for seed in count():
+    shape, (found, seeds) = SHAPES[name], endless(name)
+    while len(found) < least:
+        seed = next(seeds)
         rng = np.random.default_rng(seed)
         s = shape.length * rng.uniform(size=6)
         try:
@@ -40,9 +47,7 @@ def planned(name: str, least: int) -> tuple[tuple[rg.RegraspPlan, Motions], ...]
             found.append((plan, plan_motions(plan, shape, tip_radius=RADIUS, clearance=CLEARANCE)))
         except (rg.Infeasible, rg.InvalidInput):
             continue
-        if len(found) == least:
-            return tuple(found)
-    raise AssertionError
+    return found[:least]
 
 
 def to_boundary(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
@@ -80,11 +85,10 @@ def test_no_finger_passes_through_anything(name: str) -> None:
         assert steps.max() <= CLEARANCE / 10 * (1 + 1e-9)
         places = np.array([c.position for step in plan.steps for c in step.grasp])
         for i in range(at.shape[1]):
-            away = to_boundary(at[:, i], ring)
+            tip = np.unique(at[:, i], axis=0)  # it stands most of the time
+            away = to_boundary(tip, ring)
             assert away.min() > RADIUS - 1.1e-5
-            own = (
-                np.linalg.norm(at[:, i, None] - places, axis=2).min(axis=1) < 2 * (RADIUS + CLEARANCE) + 0.01
-            )
+            own = np.linalg.norm(tip[:, None] - places, axis=2).min(axis=1) < 2 * (RADIUS + CLEARANCE) + 0.01
             assert (away[~own] >= RADIUS + CLEARANCE - 1e-9).all()
             for j in range(i):
                 between = np.linalg.norm(at[:, i] - at[:, j], axis=1)

@@ -35,10 +35,10 @@ AGREEMENT = {
     "piqp": Agreement(1e-6, 90, 0.0),
     "proxqp": Agreement(1e-6, 20, 0.2),
     "qpalm": Agreement(1e-6, 40, 0.05),
-    "osqp": Agreement(1e-5, 10, 0.3),
+    "osqp": Agreement(1e-5, 8, 0.3),
     "scs": Agreement(1e-5, 20, 0.1),
-    "cvxpy": Agreement(1e-6, 40, 0.1, None),
-    "cvxpy:CLARABEL": Agreement(1e-6, 40, 0.0, None),
+    "cvxpy": Agreement(1e-6, 20, 0.1, None),
+    "cvxpy:CLARABEL": Agreement(1e-6, 20, 0.0, None),
 }
 LEVELS = ("angle", "friction_use")
 LEVEL = 3e-7

@@ -15,7 +15,7 @@ FIRST = 5_000_000
 """Other problems than the benchmark's."""
 
 
-@pytest.mark.parametrize("part", range(10))
+@pytest.mark.parametrize("part", range(5))
 def test_no_answer_is_wrong(part: int) -> None:
     words: Counter[str] = Counter()
     for seed in range(FIRST + 50 * part, FIRST + 50 * part + 50):

@@ -19,8 +19,8 @@ OBJECTIVES = ("angle", "force", "effort", "peak", "friction_use")
 REFUSED = {"auto": 0.1, "clarabel": 0.15, "closed-form": 0.1, "daqp": 0.25, "quadprog": 0.2, "highs": 0.15}
 OTHERS = 0.4
 # Searches for levels ask a back end a dozen times for each case: others than ours on every fourth.
-# They take their time before they give a badly scaled linear program up.
-SLOW = {"proxqp": ("effort",), "scs": ("effort",), "osqp": ("effort", "peak")}
+# They take their time before they give a badly scaled linear program up; cvxpy writes each program anew.
+SLOW = {"cvxpy": ("effort", "peak"), "proxqp": ("effort",), "scs": ("effort",), "osqp": ("effort", "peak")}
 
 
 def exactly_held(case: Degenerate, state: rg.GraspState) -> bool:
