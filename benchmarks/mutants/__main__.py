@@ -76,6 +76,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
                 for name in ("boxes*", "planar*", "proofs*", "trees*", "twists*")
             ),
             "verification/limits/test_*.py",
+            "verification/proofs/curves/test_[ct]*.py",
             "verification/by_hand/test_tied_by_hand.py",
             "verification/test_placement_proofs.py",
         ],
