@@ -86,8 +86,9 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "faces": (
         ["verification/placed/faces/*.py", "verification/placed/meshes/*.py"],
         [
-            *(f"verification/proofs/test_{name}.py" for name in ("solid*", "what_choices*", "doubts*")),
+            *(f"verification/proofs/test_{name}.py" for name in ("solid*", "what*", "claims*", "doubts*")),
             "verification/proofs/regions/test_faces*.py",
+            "planning/**/test_loads_together.py",
             "planning/**/test_grasps_on_meshes.py",
             "planning/**/test_regions_on_faces.py",
         ],
@@ -191,10 +192,14 @@ def _run(area: str, fresh: bool) -> int:
     from engine import NONE, NOTICED, OPEN, SURVIVED, UNSEEN, Engine
 
     sources, tests, least = AREAS[area]
-    modules = sorted({path for pattern in sources for path in SOURCE.glob(pattern)})
+    try:
+        modules, against_them = matched(SOURCE, sources), matched(TESTS, tests)
+    except FileNotFoundError as error:
+        print(f"{area}: {error}", file=sys.stderr)
+        return 2
     for path in modules:  # some are imported where they are needed
         import_module(".".join(path.relative_to(ROOT / "src").with_suffix("").parts))
-    files = sorted({str(path) for pattern in tests for path in TESTS.glob(pattern)})
+    files = [str(path) for path in against_them]
     kept = KEPT / f"{area}.jsonl"
     if fresh:
         kept.unlink(missing_ok=True)
@@ -241,6 +246,16 @@ def _run(area: str, fresh: bool) -> int:
     return _summed_up(area, rows, reasons, least)
 
 
+def matched(folder: Path, patterns: list[str]) -> list[Path]:
+    """The files of patterns, none of which may be without one."""
+    found: set[Path] = set()
+    for pattern in patterns:
+        if not (files := set(folder.glob(pattern))):
+            raise FileNotFoundError(f"no file under {folder.relative_to(ROOT)} matches {pattern}")
+        found |= files
+    return sorted(found)
+
+
 def _print(paths: list[Path]) -> str:
     return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:12]
 
@@ -256,8 +271,11 @@ def _draw(size: int, seed: int, areas: list[str]) -> None:
             parts[line[2:].split(":")[0]] = found = []
         found.append(line)
     for area in areas:
-        modules = sorted({path for pattern in AREAS[area][0] for path in SOURCE.glob(pattern)})
-        keys = [key for path in modules for _, key in named(changes(path.read_text()), str(path))]
+        keys = [
+            key
+            for path in matched(SOURCE, AREAS[area][0])
+            for _, key in named(changes(path.read_text()), str(path))
+        ]
         chosen = sorted(random.Random(seed).sample(keys, min(size, len(keys))))
         head = f"# {area}: {len(chosen)} of {len(keys)}, by random.Random({seed}).sample"
         parts[area] = [head, *chosen]

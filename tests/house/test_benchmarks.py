@@ -5,6 +5,7 @@ import subprocess
 import sys
 from math import isfinite
 from pathlib import Path
+from runpy import run_path
 from typing import Any
 
 import pytest
@@ -129,3 +130,16 @@ def test_the_benchmark_of_space_measures_every_row(tmp_path: Path) -> None:
     for row in report["rows"]:
         least = 0 if row["measure"] == "PERCENT" else 1e-300
         assert is_measured(row, least), row
+
+
+def test_areas_of_changes_have_files_for_each_pattern(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is tried against no test would count as never noticed, and what has no module as done."""
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.setenv("HYPOTHESIS_STORAGE_DIRECTORY", "none")
+    mutants = run_path(str(ROOT / "benchmarks" / "mutants" / "__main__.py"))
+    for sources, tests, _ in mutants["AREAS"].values():
+        for folder, patterns in ("SOURCE", sources), ("TESTS", tests):
+            for pattern in patterns:
+                assert mutants["matched"](mutants[folder], [pattern]), pattern
+    with pytest.raises(FileNotFoundError, match=r"^no file under tests matches verification/test_no\*\.py$"):
+        mutants["matched"](mutants["TESTS"], ["verification/test_cuts*.py", "verification/test_no*.py"])
