@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
-from proofs import bent, everything, planar
+from proofs import bent, everything, limit, planar, planar_points
 
 pytestmark = pytest.mark.oracle
 
@@ -74,3 +74,29 @@ def test_limits_whose_squares_are_no_doubles(unit: float) -> None:
             load = 0, -unit * most * factor / twist[1], 0
             proof = one(SQUARE, (*np.multiply(twist, fast), 0), load, **limits)
             assert proves(proof, bound) == good, (limits, factor)
+
+
+@pytest.mark.parametrize("fast", [1e3, 1e6])
+def test_squares_by_twists_about_a_point_next_to_the_finger(fast: float) -> None:
+    """Velocities are a 1e-5 of what they are differences of, and much more than the bound."""
+    vertices, sides = np.array([[1, 0.5], [5, 1.5], [4, 4], [0, 4]]), np.array([[0, 0.25, 0.25 + 2.0**-20]])
+    rng = np.random.default_rng(0)
+    for _ in range(4):
+        turn, off = fast * rng.uniform(0.5, 1), 1e-5 * fast * rng.uniform(0.1, 1, size=2)
+        twist = 0.75 * turn - 0.1 * off[0], off[1] - 2 * turn, turn
+        given = {"norm": "squares", "friction": 0.75, "max_force": 9.0}
+        proof = one(vertices, twist, (0, 0, -1e-5), sides=sides, **given)
+        most = float(limit(proof, planar_points(proof)))
+        assert proves(proof, most * (1 - 2.0**-51))
+        assert not proves(proof, most * (1 + 2.0**-51))
+
+
+def test_turned_proofs_have_one_twist_a_box_and_no_limits() -> None:
+    words = "proof: turns go with a smooth boundary, forces of any size and one twist for each box"
+    given = {"turned": True, "control": bent(SQUARE)}
+    assert words not in rg.verify(one(SQUARE, (0, -1, 0), (0, 1, 0), **given)).violations
+    for other in (
+        {"control": None}, {"max_force": 9.0}, {"min_normal": 1.0, "max_force": 9.0}, {"size": "margin"},
+        {"tied": np.zeros((1, 3))}, {"movers": np.array([[0, 0]]), "motions": np.zeros((1, 5))},
+    ):  # fmt: skip
+        assert rg.verify(one(SQUARE, (0, -1, 0), (0, 1, 0), **given | other)).violations == (words,), other

@@ -144,14 +144,14 @@ def test_loads_between_those_of_states_are_shown() -> None:
         assert shown(load, *ends) == good, part
     assert not shown([0, -2e3, 2.1e-3], *ends)
     assert shown([0, 0, 0], [0, 0, 0])
-    assert not shown([0, 0, 0], [2e-9, 0, 0])
     assert not shown([0, -1, 0])
     assert shown([0, -1e-6, 0], [0, -1e-6, 0])
     assert not shown([0, -1e-6, 0], [0, -2e-6, 0])
     assert shown([0, -1, 0], [5e-10, -1, 0])
     assert shown([0, -100, 0], [2e-8, -100, 0])
     assert not shown([0, -100, 0], [2e-7, -100, 0])
-    assert shown([0, 0, 0], [1e-9, 0, 0])
+    assert not shown([0, 0, 0], [1e-300, 0, 0])
+    assert not shown([0, 0, 1e9], [1e-3, 0, 1e9])  # a large torque loosens no force
 
 
 def test_spots_that_touch_their_limits(monkeypatch) -> None:

@@ -83,6 +83,35 @@ def test_squares_that_doubles_do_not_hold_are_left_to_rationals(scale) -> None:
             assert (said(proof) == "") == good, (size, factor)
 
 
+@pytest.mark.parametrize("scale", [1.0, 1e-170, 1e-145, 1e200])
+def test_twists_of_loads_together_exclude_no_more_than_one_of_their_sum(scale) -> None:
+    """Two loads, two fingers and two twists one along the other; by doubles or by rationals alone."""
+    twist = scale * np.array([1.0, 0, 1, 0, 0, 0])
+    for size, most in ("normal", 1.5), ("force", 1.5 / 1.25**0.5):
+        for one, other in (1.0, 1.0), (1.0, 3.0):
+            loads, given = np.array([DOWN] * 2) / scale, {"size": size, "norm": "largest"}
+            proof = flat([([0, 0], (0, 0), -2, UP)], loads=loads, **given)
+            proof.together = np.array([[one * twist, other * twist]])
+            for factor, good in (1 - 1e-15, True), (1 + 1e-15, False), (2.0, False), (1e-3, True):
+                proof.bound = factor / most / 2 / scale
+                assert (said(proof) == "") == good, (size, factor)
+            proof.together *= 0
+            assert said(proof) == "proof: the twists of box 0 do not exclude it"
+
+
+def test_corners_beyond_squares_of_doubles_are_refused_in_a_line() -> None:
+    for number in -1, 0:
+        proof = flat([([0, 0], (0, 0), number, UP)], corners=1e150 * np.array(CORNERS[:1]) / 3)
+        proof.min_distance = 1.5e150
+        assert said(proof) == ""
+        proof.corners *= 1.001
+        assert said(proof) == "proof: its corners must be within 1e+150 m"
+        proof.corners *= 1e50
+        assert said(proof) == "proof: its corners must be within 1e+150 m"
+        proof.corners, proof.normals = proof.corners / 1e60, np.array([[0, 0, 1e200]])
+        assert said(proof) == "proof: normals must be of length 1"
+
+
 def test_slow_forces_within_the_cone() -> None:
     proof = flat([([0], (0, 0), 0, [0, 0, 0.5, 0, 0, 0])], size="force")
     for proof.bound, good in (1 - 2.0**-51, True), (1 + 2.0**-51, False):

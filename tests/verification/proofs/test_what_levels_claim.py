@@ -140,15 +140,18 @@ def test_a_ball_is_that_of_its_loads_its_length_and_its_limit() -> None:
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-def test_loads_are_the_deviations_by_a_factor_at_every_scale(scale) -> None:
-    center, deviations = scale * np.array([0.5, -2.0, 1.0]), scale * np.array([[1.0, 0, 0], [0, -1, 0.5]])
+@pytest.mark.parametrize("arm", [1e-6, 1.0, 1e9])
+def test_loads_are_the_deviations_by_a_factor_at_every_scale(scale, arm) -> None:
+    """To a billionth, of the largest force and of the largest torque: neither loosens the other."""
+    units = scale * np.array([1, 1, arm])
+    center, deviations = units * [0.5, -2.0, 1.0], units * [[1.0, 0, 0], [0, -1, 0.5]]
     given = SimpleNamespace(certificate=SimpleNamespace(loads=[center]), deviations=deviations)
     loads = center + 3 * deviations
-    size = np.abs(loads).max()
+    size = units * [5, 5, 2.5]
     for at in np.ndindex(2, 3):
         for off, fine in ((0.9e-9, True), (-0.9e-9, True), (1.1e-9, False), (-1.1e-9, False)):
             other = loads.copy()
-            other[at] += off * size
+            other[at] += off * size[at[1]]
             assert _scaled(given, other, 3.0) == fine, (at, off)
     assert not _scaled(given, loads[:1], 3.0)
     assert not _scaled(given, loads, 3.1)
@@ -158,6 +161,23 @@ def test_loads_are_the_deviations_by_a_factor_at_every_scale(scale) -> None:
     assert not _scaled_by_less(given, whole[:2], 3.0)
     none = SimpleNamespace(certificate=given.certificate, deviations=0 * deviations)
     assert not _scaled_by_less(none, np.array([center, center, center]), 3.0)
+
+
+def test_of_loads_in_space_forces_and_torques_have_units_of_their_own() -> None:
+    """No force where all are torques, however large; and each to its own size, also where a row is 0."""
+    turn, push = np.array([[0, 0, 0, 0, 0, 1e12]]), np.array([[0, 0, 2.0, 0, 0, 1e12]])
+    for row in range(6):
+        for load, off, fine in (
+            (turn, 0.0, True), (push, 0.0, True), (turn, 1e-3 if row < 3 else 1.1e3, False),
+            (turn, 900, row > 2),
+            (push, 1.9e-9, True), (push, 2.1e-9, row > 2), (push, 1.1e3, False),
+        ):  # fmt: skip
+            given = SimpleNamespace(certificate=SimpleNamespace(loads=np.zeros((1, 6))), deviations=load)
+            other = load.copy()
+            other[0, row] += off
+            assert _scaled(given, other, 1.0) == fine, (row, off)
+            states = [SimpleNamespace(load=SimpleNamespace(vector=w)) for w in other]
+            assert _all_shown(SimpleNamespace(states=states), load) == fine, (row, off)
 
 
 @pytest.mark.parametrize("arm", [1e-6, 1.0, 1e6])

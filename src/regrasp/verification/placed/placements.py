@@ -90,7 +90,8 @@ def _shapes(proof: Proof) -> list[str]:
             return ["proof: rings must begin at vertices, three or more apart, the first at 0"]
     if proof.turned:
         more = (proof.pairs, proof.movers, proof.tied, proof.max_force)
-        if proof.control is None or proof.min_normal or proof.size == "margin" or more != (None,) * 4:
+        plain = all(other is None for other in more) and not proof.min_normal
+        if proof.control is None or proof.size == "margin" or not plain:
             return ["proof: turns go with a smooth boundary, forces of any size and one twist for each box"]
     if proof.tied is not None:
         columns = 3 * len(proof.loads) + ties_of(k) * (len(proof.loads) - 1)

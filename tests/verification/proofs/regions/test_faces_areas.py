@@ -73,6 +73,13 @@ def test_triangles_are_in_the_plane_to_a_part_of_the_reach(scale) -> None:
         assert (share(MIDDLE, normal=normal, scale=scale) > 0) == good
 
 
+def test_a_face_itself_seen_from_the_other_side_is_none() -> None:
+    whole = grid()[0][grid()[1]]
+    assert share(*whole, normal=[0, 0, 1]) == pytest.approx(1, rel=1e-9)
+    for k in range(len(whole)):
+        assert share(whole[k], normal=[0, 0, -1]) == -1
+
+
 def test_oblique_planes() -> None:
     """All of it turned, so that boxes around triangles of planes one above the other share places."""
     turn = np.array([[0.6, -0.8, 0], [0.48, 0.36, -0.8], [0.64, 0.48, 0.6]])

@@ -102,8 +102,10 @@ def _all_shown(chosen: Chosen, loads: Array) -> bool:
     Its last component may also be between what two such mixtures have.
     """
     shown = np.array([state.load.vector for state in chosen.states]).reshape(-1, loads.shape[1])
-    size = np.abs(loads).max(axis=0)
-    scale = np.where(size > 0, size, size.max() or 1.0)  # forces and torques have units of their own
+    scale = np.ones(loads.shape[1])
+    for one in (slice(2), slice(2, 3)) if len(scale) == 3 else (slice(3), slice(3, 6)):
+        size = np.abs(loads[:, one]).max(axis=0)  # forces and torques have units of their own
+        scale[one] = np.where(size > 0, size, size.max() or np.abs(shown[:, one]).max(initial=0.0) or 1.0)
     shown, loads = shown / scale, loads / scale
     return all(_is_between(load, shown) for load in loads)
 

@@ -50,8 +50,8 @@ def check_answers(chosen: Chosen) -> list[str]:
     first, *others = chosen.states
     shown = np.array([state.load.vector for state in others])
     center = np.asarray(chosen.certificate.loads)[0]
-    off = np.abs(first.load.vector - center).max()
-    if not _scaled(chosen, shown, chosen.value) or off > CLOSE * np.abs(shown).max():
+    off = np.abs(first.load.vector - center)
+    if not _scaled(chosen, shown, chosen.value) or (off > CLOSE * _sizes(center, shown)).any():
         return ["the states do not hold the load, and the deviations times the value on top of it"]
     if chosen.objective == "wrench" and not answer_alike(chosen.states):
         return ["the states are not what fingers of equal stiffness make of the first"]
@@ -100,7 +100,14 @@ def _scaled(chosen: Chosen, loads: Array, factor: float) -> bool:
     if loads.shape != deviations.shape:
         return False
     wanted = center + deviations * factor
-    return bool((np.abs(loads - wanted) <= CLOSE * np.abs(wanted).max()).all())
+    return bool((np.abs(loads - wanted) <= CLOSE * _sizes(center, wanted)).all())
+
+
+def _sizes(center: Array, loads: Array) -> Array:
+    """The largest force in the place of each force and the largest torque in that of each torque."""
+    most = np.abs([center, *loads]).max(axis=0)
+    d = 2 if len(most) == 3 else 3
+    return np.repeat([most[:d].max(), most[d:].max()], [d, len(most) - d])
 
 
 def _scaled_by_less(chosen: Chosen, loads: Array, factor: float) -> bool:

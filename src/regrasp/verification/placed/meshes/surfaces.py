@@ -27,6 +27,7 @@ from regrasp.verification.placed.meshes.work import ROUNDING, SMALL, sigma_above
 from regrasp.verification.placed.roots import root_above
 
 _AT_A_TIME = 4096
+_MOST = 1e150  # m: squares of more are no doubles
 
 
 class SurfaceProof(Protocol):
@@ -79,7 +80,10 @@ def _shapes(proof: SurfaceProof) -> list[str]:
         return ["proof: size or norm has no meaning"]
     if not 0 <= proof.min_distance < inf or proof.bound < 0:
         return ["proof: min_distance and bound must be 0 or more"]
-    lengths = np.linalg.norm(proof.normals, axis=1)
+    if np.abs(proof.corners).max(initial=0.0) > _MOST:
+        return [f"proof: its corners must be within {_MOST:g} m"]
+    with np.errstate(over="ignore"):
+        lengths = np.linalg.norm(proof.normals, axis=1)
     return [] if (np.abs(lengths - 1) < ROUNDING / 2).all() else ["proof: normals must be of length 1"]
 
 
