@@ -99,6 +99,15 @@ def test_twists_of_loads_together_exclude_no_more_than_one_of_their_sum(scale) -
             assert said(proof) == "proof: the twists of box 0 do not exclude it"
 
 
+def test_work_of_a_few_of_the_least_numbers() -> None:
+    """Twice 3/2 of them is three; in doubles it would be four."""
+    loads = 3 * 5e-324 * np.array([DOWN] * 2)
+    proof = flat([([0], (0, 0), -2, UP)], loads=loads, friction=0.0, norm="largest")
+    proof.together = 0.5 * np.array([[UP, UP]])
+    for proof.bound, good in (2 * 5e-324, True), (3 * 5e-324, False):
+        assert (said(proof) == "") == good
+
+
 def test_corners_beyond_squares_of_doubles_are_refused_in_a_line() -> None:
     for number in -1, 0:
         proof = flat([([0, 0], (0, 0), number, UP)], corners=1e150 * np.array(CORNERS[:1]) / 3)
