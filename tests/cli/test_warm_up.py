@@ -27,6 +27,16 @@ square = rg.Outline([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 ring = rg.LoadSet.turned(rg.Wrench([0, -1.0]))
 rg.choose_grasp(square, 3, ring, friction=1, objective="effort", tolerance=0.01)
 rg.choose_grasp(square, 4, rg.Wrench([0, -1.0]), friction=0.5, objective="angle", max_force=5, tolerance=0.1)
+rg.choose_grasp(square, 3, ring, friction=1, objective="force", max_force=9, tolerance=0.1, most_boxes=200)
+box = rg.Mesh.box(0.06, 0.04, 0.05)
+start, goal = (
+    rg.Grasp(box.contact_at(point, friction=0.6) for point in points)
+    for points in (
+        ((0.03, 0.004, 0.003), (-0.03, 0.003, -0.004), (0.004, 0.02, 0.002), (0.003, -0.02, 0.004)),
+        ((0.03, 0.006, -0.005), (-0.03, -0.006, 0.004), (0.01, -0.004, 0.025), (0.003, 0.004, -0.025)),
+    )
+)
+rg.plan_regrasp(box, start, goal, rg.Wrench([0, 0, -1.0]), friction=0.6, candidates=12, orientations=70)
 """
 
 ASKED_FOR = (

@@ -103,6 +103,8 @@ def _places() -> None:
         square, 2, rg.Wrench([0.1, -1.0]), friction=0.6, objective="wrench", max_force=3.0,
         disturbance=pushes, tolerance=0.2,
     )  # fmt: skip
+    few = rg.LoadSet.hull([rg.Wrench([0.1, -1.0]), rg.Wrench([-0.1, -1.0])])
+    rg.choose_grasp(square, 3, few, friction=0.6, objective="force", max_force=3.0, tolerance=0.2)
     corners = ((1.0, 0.6), (-0.9, 0.0), (-0.4, -0.9))
     loads = rg.LoadSet.hull([rg.Wrench(at, turn) for at in corners for turn in (0.05, -0.05)])
     rg.choose_grasp(rg.Outline(corners), 3, loads, friction=0.4, objective="friction_use", max_force=4.0)

@@ -64,10 +64,11 @@ def plan_motions(
         raise InvalidInput(f"ways of this plan are in the {wanted}, got {shown(shape)}")
     radius, keep = number(tip_radius, "tip_radius", above=0), number(clearance, "clearance", above=0)
     limits = number(speed, "speed", above=0), number(acceleration, "acceleration", above=0)
+    places = list(stops(plan, steps))
+    bars = _capsules(capsules, len(places[0]), dimension)
     for contact in {c.name: c for step in steps for c in step.grasp}.values():
         _refuse_off(contact, shape, keep)
-    places = list(stops(plan, steps))
-    air = Air(steps, shape, radius, keep, _capsules(capsules, len(places[0]), dimension))
+    air = Air(steps, shape, radius, keep, bars)
     for k, stop in enumerate(places[1:-1]):
         air.check_held(k, stop)
     motions: list[Motion] = []

@@ -19,6 +19,7 @@ def planned_anywhere(found: Any, options: dict[str, Any]) -> RegraspPlan:
 
     found: as ``OutlineRegrasps``, which is above this.
     """
+    _problem(found, 1, options)  # wrong options are refused before any work
     plans: list[RegraspPlan] = []
     refused: InvalidInput | Infeasible | None = None
     for walk, angles in ((found.walk, found.angles), *_wider(found)):
@@ -61,18 +62,7 @@ def _wider(found: Any) -> list[tuple[Array, Array]]:
 
 def _along(found: Any, walk: Array, angles: Array, options: dict[str, Any]) -> RegraspPlan:
     """The plan whose holds are those of a walk (h, 2) of arc lengths, at its angles (h,)."""
-    problem = RegraspProblem(
-        found.outline,
-        found.start,
-        found.goal,
-        found.load,
-        found.friction,
-        goal_orientation=found.goal_orientation,
-        candidates=walk.ravel() if len(walk) else 1,
-        max_force=found.max_force,
-        min_normal=found.min_normal,
-        **options,
-    )
+    problem = _problem(found, walk.ravel() if len(walk) else 1, options)
     points = np.array([c.position for c in problem.contacts])
     at = found.outline.points(walk.ravel()).reshape(-1, 1, 2)
     places = np.argmin(np.hypot(*(at - points).transpose(2, 0, 1)), axis=1).reshape(-1, 2).tolist()
@@ -80,3 +70,18 @@ def _along(found: Any, walk: Array, angles: Array, options: dict[str, Any]) -> R
     if options["max_turn"] is None:  # forces were left room for turns as large as that
         turn = max(turn, found.turns[1] - found.turns[0])
     return plan_of(problem, tuple((*pair, k) for k, pair in enumerate(places)), turn, angles.tolist())
+
+
+def _problem(found: Any, candidates: int | Array, options: dict[str, Any]) -> RegraspProblem:
+    return RegraspProblem(
+        found.outline,
+        found.start,
+        found.goal,
+        found.load,
+        found.friction,
+        goal_orientation=found.goal_orientation,
+        candidates=candidates,
+        max_force=found.max_force,
+        min_normal=found.min_normal,
+        **options,
+    )

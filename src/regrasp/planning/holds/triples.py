@@ -13,7 +13,7 @@ from regrasp.closed_form.pyramid import facet_angles
 from regrasp.closed_form.three_fingers import HOLDS, three_finger_hold
 from regrasp.closed_form.triple_program import Fingers
 from regrasp.errors import InvalidInput, shown
-from regrasp.mechanics.checks import Array, ArrayLike, Flags, array, number, whole
+from regrasp.mechanics.checks import Array, ArrayLike, Flags, array, number, read_only, whole
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.orientation.spiral import even_directions
@@ -149,7 +149,7 @@ class TripleGraph(ArrayValue):
         graph = object.__new__(TripleGraph)  # a value is its own copy
         known = ("margins", "holds", "_found")
         graph.__dict__.update({name: each for name, each in self.__dict__.items() if name not in known})
-        object.__setattr__(graph, "loads", self.loads[few])
+        object.__setattr__(graph, "loads", read_only(self.loads[few]))  # as above
         return graph
 
     @cached_property
