@@ -27,9 +27,12 @@ def choose(
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
 
+    word = scenario.task.objective
     with naming(name), progress_bar() as progress:
         task = progress.add_task("choosing", total=None)
-        chosen = scenario.chosen(lambda bound, best: progress.update(task, description=_known(bound, best)))
+        chosen = scenario.chosen(
+            lambda bound, best: progress.update(task, description=_known(word, bound, best))
+        )
         progress.update(task, description="verifying")
         verdict = verified(verify(chosen), name)
     for remark in chosen.shape.notes:
@@ -101,7 +104,9 @@ def _pictures(
         say(f"\nno map.png: {error}")
 
 
-def _known(bound: float, best: float) -> str:
+def _known(word: str, bound: float, best: float) -> str:
     """The best so far and what none is better than, as a search goes on."""
-    found = f"best {best:.5g}, " if isfinite(best) else ""
-    return f"choosing: {found}none better than {bound:.5g}"
+    from regrasp.planning.placement.laws import without_rounding
+
+    found = f"best {without_rounding(word, best):.5g}, " if isfinite(best) else ""
+    return f"choosing: {found}none better than {without_rounding(word, bound):.5g}"

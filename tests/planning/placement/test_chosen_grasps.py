@@ -263,3 +263,14 @@ def test_columns_stay_apart_and_rounding_is_no_number() -> None:
     lines = str(replace(placed(), grasp=rg.Grasp([moved, flat]), places=np.array([0.123456789, 2.0])))
     assert "  0.123457  (-0.00956194, -0.00313699)  " in lines
     assert "(0.024, 0)" in lines
+
+
+@pytest.mark.parametrize("objective", ["friction_use", "angle"])
+def test_what_verify_lets_a_value_be_off_is_printed_as_nothing(objective: str) -> None:
+    little = replace(placed(), objective=objective, value=1.4e-18, bound=-0.0)
+    first, last = str(little).splitlines()[-1].split("; ")
+    assert first.removesuffix(" rad") == f"{objective} 0"
+    assert last.endswith(" 0, a gap of 0")
+    assert f"({objective} 0, bound 0, gap 0, " in repr(little)
+    assert f"{objective} 2e-09" in str(replace(little, value=2e-9))
+    assert "peak 1.4e-18 N" in str(replace(little, objective="peak"))

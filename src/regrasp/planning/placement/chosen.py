@@ -17,7 +17,7 @@ from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import ArrayValue
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
-from regrasp.planning.placement.laws import LARGEST, measured_in
+from regrasp.planning.placement.laws import LARGEST, measured_in, without_rounding
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.proofs.shape_data import shape_data, shape_of
@@ -181,20 +181,19 @@ class ChosenGrasp(ArrayValue):
             rows.append(f"{contact.name or '':10}{s}  {f'({at})':>{width - 2}}  {f'({normal})':>{width - 6}}")
         better = "above" if self.objective in LARGEST else "below"
         of = f" {words}" if (words := measured_in(self.objective)) else ""
-        return "\n".join(
-            [
-                *rows,
-                f"{self.objective} {self.value:.6g}{of}; no placement is {better} {self.bound:.6g}, a gap of "
-                f"{self.gap:.2g}",
-            ]
-        )
+        value, bound, gap = self._printed()
+        last = f"{self.objective} {value:.6g}{of}; no placement is {better} {bound:.6g}, a gap of {gap:.2g}"
+        return "\n".join([*rows, last])
 
     def __repr__(self) -> str:
-        places = _words(self.places)
-        return (
-            f"ChosenGrasp({self.objective} {self.value:.6g}, bound {self.bound:.6g}, gap {self.gap:.2g}, "
-            f"fingers at {places})"
-        )
+        value, bound, gap = self._printed()
+        words = f"{self.objective} {value:.6g}, bound {bound:.6g}, gap {gap:.2g}"
+        return f"ChosenGrasp({words}, fingers at {_words(self.places)})"
+
+    def _printed(self) -> tuple[float, float, float]:
+        """The value, the bound and the gap, 0 where only rounding is left."""
+        value, bound = (without_rounding(self.objective, found) for found in (self.value, self.bound))
+        return value, bound, 0.0 if value == bound else self.gap
 
 
 def _digest(data: Mapping[str, Any]) -> str:

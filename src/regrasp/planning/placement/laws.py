@@ -43,6 +43,7 @@ LEVELS = ("friction_use", "angle", "force", "answered", "wrench", "wrench_ball")
 LARGEST = tuple(word for word in LEVELS if word != "friction_use")
 """Objectives that are best as large as can be; of the others less is better."""
 
+_ALLOWED = {"friction_use": 1e-9, "angle": 1e-9}  # by which ``verify`` lets a value be off
 _OF_A_PLACEMENT = {"wrench_ball": "N", "answered": "times the disturbance", "wrench": "times the disturbance"}
 
 
@@ -50,6 +51,11 @@ def measured_in(word: str) -> str:
     """The unit of a value in words; empty for a share of the friction."""
     known = OBJECTIVES.get(word)
     return _OF_A_PLACEMENT.get(word, "" if known is None or known.unit == "-" else known.unit)
+
+
+def without_rounding(word: str, value: float) -> float:
+    """The value of an objective, 0 where it is no more than ``verify`` lets it be off."""
+    return 0.0 if abs(value) <= _ALLOWED.get(word, 0.0) else value
 
 
 def law_of(objective: str | Objective) -> tuple[str, Law]:
