@@ -104,7 +104,7 @@ def placed() -> rg.ChosenGrasp:
 def on_faces() -> rg.FaceRegions:
     box = rg.Mesh.box(0.4, 0.3, 0.5)
     places = [[-0.1, -0.08, -0.25], [0.1, -0.08, -0.25], [0, 0.1, -0.25]]
-    return rg.contact_regions(box, rg.Grasp(box.contact_at(p, friction=0.5) for p in places), WEIGHT)
+    return rg.contact_regions(box, rg.Grasp(box.contact_at(p, friction=0.3) for p in places), WEIGHT)
 
 
 @cache

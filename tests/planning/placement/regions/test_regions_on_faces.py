@@ -13,7 +13,7 @@ pytestmark = pytest.mark.laws
 
 
 def holds(points: list[np.ndarray], limit: float) -> bool:
-    grasp = rg.Grasp(rg.Contact(p, [0, 0, 1], 0.5, name=f"F{i}") for i, p in enumerate(points))
+    grasp = rg.Grasp(rg.Contact(p, [0, 0, 1], 0.3, name=f"F{i}") for i, p in enumerate(points))
     try:
         rg.choose_state(grasp, WEIGHT, "peak", max_force=limit)
     except rg.Infeasible:
@@ -37,7 +37,7 @@ def test_every_choice_within_regions_holds_and_not_within_wider_ones() -> None:
     verdict = rg.verify(regions)
     assert verdict.ok
     assert str(verdict).startswith("verified in exact arithmetic: ")
-    assert 0 <= verdict.least_cone_slack <= 0.25  # mu^2
+    assert 0 <= verdict.least_cone_slack <= 0.09  # mu^2
     assert regions.radius > 0.02
     rng = np.random.default_rng(3)
     fails = {1.0: 0, 4.0: 0}
@@ -99,7 +99,7 @@ def test_units_and_frames_change_nothing_else() -> None:
     length, force = 1e-3, 1e4
     vertices, faces = regions.shape.surface()
     mesh = rg.Mesh(length * vertices @ turn.T, faces)
-    grasp = rg.Grasp(rg.Contact(length * turn @ c.position, turn @ c.normal, 0.5) for c in regions.grasp)
+    grasp = rg.Grasp(rg.Contact(length * turn @ c.position, turn @ c.normal, 0.3) for c in regions.grasp)
     moved = rg.contact_regions(mesh, grasp, rg.Wrench(force * turn @ WEIGHT.force))
     assert moved.radius == pytest.approx(length * regions.radius, rel=0.05)
     assert rg.verify(moved).ok
@@ -125,8 +125,8 @@ def test_regions_that_claim_too_much_are_not_verified() -> None:
 
 def test_what_has_no_regions_is_refused() -> None:
     box, grasp = on_faces().shape, on_faces().grasp
-    edge = rg.Grasp([rg.Contact([0.2, 0, -0.25], [0, 0, 1], 0.5), *list(grasp)[1:]])
-    off = rg.Grasp([rg.Contact([0.1, 0, 0], [0, 0, 1], 0.5), *list(grasp)[1:]])
+    edge = rg.Grasp([rg.Contact([0.2, 0, -0.25], [0, 0, 1], 0.3), *list(grasp)[1:]])
+    off = rg.Grasp([rg.Contact([0.1, 0, 0], [0, 0, 1], 0.3), *list(grasp)[1:]])
     for given, words in (
         ((box, grasp.subset([0, 1]), WEIGHT), "three or four fingers"),
         ((box, edge, WEIGHT), "on an edge of its face"),
