@@ -119,3 +119,12 @@ def test_a_level_cut_short_is_read_from_plain_data_too(objective: str) -> None:
     assert again == chosen
     assert again.gap > 1e-6
     assert rg.verify(again).ok
+
+
+def test_a_centre_of_pressure_that_rounds_past_a_corner_is_at_it() -> None:
+    nearly_flat = rg.Outline([[0, 0], [1, 0], [2, 0], [2 + 1e-6, 0], [4, 0], [4, 3], [2, 3 + 1e-7], [0, 3]])
+    load = rg.LoadSet.turned(rg.Wrench([0, -1]))
+    chosen = rg.choose_grasp(
+        nearly_flat, 2, load, friction=0.3, objective="force", max_force=3.0, from_corners=0.0, tolerance=1e-3
+    )
+    assert rg.verify(chosen).ok, rg.verify(chosen)

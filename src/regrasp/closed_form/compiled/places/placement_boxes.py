@@ -66,7 +66,9 @@ def to_try(arcs, ends, seen, places):  # type: ignore[no-untyped-def]
             if arcs[i, 0] < arcs[i, 1]:
                 places[i, 1] = ends[i, 0]
         elif arcs[i, 0] == arcs[i, 1]:
-            places[i, 0], places[i, 1] = arcs[i, 0], 0.5 * (seen[i, 0] + seen[i, 1])
+            # by rounding a centre may be past an end, where the next side begins
+            middle = min(max(0.5 * (seen[i, 0] + seen[i, 1]), ends[i, 0]), ends[i, 1])
+            places[i, 0], places[i, 1] = arcs[i, 0], middle
         else:
             places[i, 0], places[i, 1] = seen[i, 6], seen[i, 7]
 
