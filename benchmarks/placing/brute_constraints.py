@@ -240,7 +240,7 @@ def table(kept: dict[str, Any]) -> str:
         lines.append(
             f"| `{name}` | {len(rows)} | {sum(r['held'] for r in rows)} | "
             f"{sum('value' in r for r in rows)} | {sum('value' not in r for r in rows)} | {wrong[0]} | "
-            f"{(gains < -0.1).sum()}, {(gains < -1).sum()} | {max(-gains.min(), 0):.2f} | "
+            f"{(gains < -0.1).sum()}, {(gains < -1).sum()} | {max(0.0, -gains.min()):.2f} | "
             f"{np.median(gains):.2f} | {wrong[1]} |"
         )
     return "\n".join(lines)
