@@ -42,6 +42,8 @@ def planar(vertices, loads, nodes, **changes) -> SimpleNamespace:
             "tied": None,
             "movers": None,
             "motions": None,
+            "by_side": None,
+            "side_twists": None,
             "max_force": None,
             "min_normal": 0.0,
             "turned": False,

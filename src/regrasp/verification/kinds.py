@@ -204,6 +204,7 @@ def _check_proof(proof: Any, where: str) -> None:
     _check(proof, where, pairs=_or_none(_WHOLE), seconds=_or_none(_TABLE), control=_or_none(_TABLE))
     _check(proof, where, rings=_or_none(_WHOLE), margin=_DOUBLE, tied=_or_none(_TABLE))
     _check(proof, where, movers=_or_none(_WHOLE), motions=_or_none(_TABLE))
+    _check(proof, where, by_side=_or_none(_WHOLE), side_twists=_or_none(_TABLE))
     _check(
         proof,
         where,

@@ -9,6 +9,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.reserve import RESERVE, kept_friction
+from regrasp.planning.placement.boxes import Boxes
 from regrasp.planning.placement.laws import Law
 from regrasp.planning.placement.parts import Queue, memory, search_in_parts
 from regrasp.planning.placement.proofs.box_rows import rows_of
@@ -17,7 +18,6 @@ from regrasp.planning.placement.sides import RingSides, Sides
 
 MOST_BOXES = 200_000
 """Boxes of a search unless told otherwise: 500 to 800 bytes each, with their proof."""
-_FIRST_BOXES = 2048
 _AT_A_TIME, _WORK = 256, 5000  # boxes, of so many sides times loads, lest an interrupt waits
 _TRIED = 4096
 _LATE = 4096  # boxes without any placement found, after which points are tried
@@ -30,7 +30,7 @@ Limits = tuple[float, float]
 ANY_FORCE = (inf, 0.0)
 
 
-class Search:
+class Search(Boxes):
     """A search for the best places of fingers on sides: boxes, the placements tried, and how it ended.
 
     apart: least distance of fingers [m]. narrow: arcs shorter than this fraction of the size are not split.
@@ -43,22 +43,17 @@ class Search:
         self, sides: Sides, fingers: int, friction: float, loads: Array, law: Law, apart: float,
         narrow: float, limits: Limits = ANY_FORCE,
     ) -> None:  # fmt: skip
-        self.sides, self.fingers, self.friction, self.law, self.apart = sides, fingers, friction, law, apart
+        super().__init__(sides, fingers)
+        self.friction, self.law, self.apart = friction, law, apart
         self.unit = max(float(np.abs(loads / [1, 1, sides.size]).max()), limits[1]) or 1.0
         self.under(loads)
-        self._table, self._boxes = np.ascontiguousarray(sides.table()), memory(_FIRST_BOXES, fingers)
-        arcs, ends = self._boxes[:2]
-        arcs[0, :, 1] = len(self._table) - 1
-        ends[0] = sides.ends[0, 0], sides.ends[-1, 1]
-        self._heap, self._state = np.zeros(_FIRST_BOXES, np.int64), np.array([1, 1, 0])
+        self._table = np.ascontiguousarray(sides.table())
         self._found, self._tried = np.full(1 + 2 * fingers, inf), np.zeros((_TRIED, 1 + 2 * fingers))
         self.closed = self.interrupted = self._only = False
         self.narrow, self.limits, self._least = narrow, limits, apart / sides.size
         self.limit, self.margin = 0.0, 0.0  # of forces that keep a distance from the edges of cones [N]
         self._kept: list[tuple[float, np.ndarray, Array]] = []
-        self.tied: dict[int, int] = {}  # boxes excluded by duals of all loads together, and the row of
         self.duals: list[Array] = []
-        self.moving: dict[int, tuple[np.ndarray, Array]] = {}  # or by loads' twists that move with fingers
 
     def under(self, loads: Array) -> None:
         """From now on, of these loads (L, 3) [N, N m]."""
@@ -158,36 +153,6 @@ class Search:
         self._heap[: len(again)], self._state[1], self.closed = again, len(again), False
         self._found[:] = inf
 
-    def box(self, node: int) -> tuple[np.ndarray, Array]:
-        """(k, 2) first and last side of each arc of a box, and its ends."""
-        return self._boxes[0][node], self._boxes[1][node]
-
-    def halved(self, node: int, finger: int, u: float, most: int, after: int | None = None) -> range:
-        """The boxes that one is split into, at ``u`` on one side or ``after`` another; none without room."""
-        if len(self._heap) < self.count + self.fingers + 1 and not self._grow(most):
-            return range(0)
-        arcs, ends, _, _, _, kinds, children, _, _, other, _ = self._boxes
-        same = (arcs[node] == arcs[node, finger]).all(axis=1) & (ends[node] == ends[node, finger]).all(axis=1)
-        alike, start = np.flatnonzero(same), self.count
-        made = range(start, start + len(alike) + 1)
-        self._state[0], kinds[node], children[node] = made.stop, 2, (start, len(made))
-        for right, child in enumerate(made):
-            arcs[child], ends[child], kinds[child], other[child] = arcs[node], ends[node], 0, -1
-            lefts, rights = alike[: len(alike) - right], alike[len(alike) - right :]
-            ends[child, lefts, 1] = ends[child, rights, 0] = u
-            if after is not None:
-                arcs[child, lefts, 1], arcs[child, rights, 0] = after, after + 1
-                ends[child, lefts, 1], ends[child, rights, 0] = self.sides.ends[[after, after + 1], [1, 0]]
-        return made
-
-    def leave(self, node: int, row: int | None, moving: tuple[np.ndarray, Array] | None = None) -> None:
-        """Take a box for excluded, by a row of ``duals`` or loads' twists; else as nearer than may be."""
-        if row is not None:  # first, lest an interrupt leaves a box excluded by nothing
-            self.tied[node] = row
-        elif moving is not None:
-            self.moving[node] = moving
-        self._boxes[5][node] = 3 if row is None and moving is None else 1
-
     def terms(self, fixed: float) -> tuple[Any, ...]:
         """Sides, loads, law and a level [N] as compiled loops take them."""
         return self._table, self._wanted, self._law(self.friction, self.friction, self.law), fixed / self.unit
@@ -258,22 +223,6 @@ class Search:
         limit, least = (self.limit, self.margin) if law.size == "margin" else limits
         return (mu, usable, size, norm, _PRECISE, limit / self.unit, least / self.unit)
 
-    def _grow(self, most: int) -> bool:
-        have, room = len(self._heap), min(2 * len(self._heap), most)
-        if room <= have:
-            return False
-        larger = memory(room, self.fingers)
-        for old, new in zip(self._boxes[:-1], larger[:-1], strict=True):
-            new[:have] = old
-        self._boxes = larger
-        self._heap = np.concatenate([self._heap, np.zeros(room - have, np.int64)])
-        return True
-
-    @property
-    def count(self) -> int:
-        """Boxes made."""
-        return int(self._state[0])
-
     @property
     def best(self) -> float:
         """The least norm found [N]; infinite before one is."""
@@ -335,7 +284,8 @@ class Search:
         boxes = [values[: self.count] for values in self._boxes[:-1]]
         if self.limits != ANY_FORCE and self.law.norm == "squares":  # there twists are forces
             boxes[3] = boxes[3] * self.unit
-        given = rows_of(boxes, self.loads, self.sides.size, self.tied, self.moving)
+        excluded = self.tied, self.moving, self.by_side
+        given = rows_of(boxes, self.loads, self.sides.size, *excluded)
         given["sides"] = np.column_stack([self.sides.edges, self.sides.ends])
         smooth = edges.ndim == 3
         return PlacementProof(

@@ -8,10 +8,8 @@ from regrasp.mechanics.checks import Array
 from regrasp.verification.placed.forces.limited import roughly_excluded
 from regrasp.verification.placed.protocol import Proof
 
-_ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
-_SMALL = (
-    1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them; of 1 / it overflow
-)
+ROUNDING = 1e-13  # of the terms of a sum of a few products: more than a hundred roundings
+SMALL = 1e-140  # squares of less lose digits, and doubles of less than 1e-308 all of them; of 1 / it overflow
 _AT_ONCE = 20_000  # stretches of sides
 _ADDED = 200  # gains of a box: their sum loses less than what is taken from each
 
@@ -34,7 +32,7 @@ def is_plain(proof: Proof, boundary: Edges) -> bool:
     edges = np.unique(proof.sides[:, 0]).astype(int)
     limits = proof.bound, proof.margin, proof.min_normal, proof.max_force or 0.0
     sizes = [*boundary.lengths()[edges].tolist(), *(limit for limit in limits if limit != 0)]
-    return all(_SMALL < size < 1 / _SMALL for size in sizes)
+    return all(SMALL < size < 1 / SMALL for size in sizes)
 
 
 def clear_boxes(proof: Proof, boundary: Edges, play: float = 0.0) -> np.ndarray:
@@ -47,6 +45,9 @@ def clear_boxes(proof: Proof, boundary: Edges, play: float = 0.0) -> np.ndarray:
     told = (np.asarray(proof.children)[:, 1] == 0) & (number >= 0) & (number < len(proof.loads))
     told &= (arcs >= 0).all(axis=(1, 2)) & (arcs < m).all(axis=(1, 2))
     told &= (arcs[:, :, 0] <= arcs[:, :, 1]).all(axis=1)
+    if proof.by_side is not None:
+        by_side = np.asarray(proof.by_side)[:, 0]
+        told[by_side[(by_side >= 0) & (by_side < len(told))]] = False
     found: np.ndarray = np.zeros(len(arcs), bool)
     boxes = np.flatnonzero(told)
     if not len(boxes):
@@ -71,17 +72,17 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray, play: float) -> np.
     if proof.pairs is not None:
         z, more = _seconds(proof, boxes)
         terms = np.column_stack([terms, more])
-    lost = _ROUNDING * np.abs(terms).sum(axis=1)
+    lost = ROUNDING * np.abs(terms).sum(axis=1)
     work = terms.sum(axis=1) - lost
-    room = _room(proof, np.abs(y) + np.abs(z)) * (1 + (1 + _ROUNDING) * play / _ROUNDING)
-    told = lost > _SMALL
+    room = _room(proof, np.abs(y) + np.abs(z)) * (1 + (1 + ROUNDING) * play / ROUNDING)
+    told = lost > SMALL
     if proof.max_force is not None or proof.min_normal > 0:
         stretches = _stretches(proof, boxes)
         parts = boundary.roughly_parts(*stretches.at, np.repeat(y, stretches.of_each, axis=0))
         if proof.norm == "squares":  # a and c are forces there
-            room *= 1 + room / _ROUNDING / max(proof.bound, proof.min_normal)
+            room *= 1 + room / ROUNDING / max(proof.bound, proof.min_normal)
         found = roughly_excluded(
-            proof, work, room + _ROUNDING, lambda most: stretches.largest([most(*part) for part in parts])
+            proof, work, room + ROUNDING, lambda most: stretches.largest([most(*part) for part in parts])
         )
         return np.asarray(told & found)
     most = _most(proof, boundary, boxes, y, z) + room[:, None]
@@ -91,7 +92,7 @@ def _clear(proof: Proof, boundary: Edges, boxes: np.ndarray, play: float) -> np.
         dual = most.max(axis=1)
     else:
         dual = most.sum(axis=1) if proof.norm == "largest" else np.sqrt((most * most).sum(axis=1))
-    return np.asarray(told & (work > proof.bound * dual * (1 + _ROUNDING)))
+    return np.asarray(told & (work > proof.bound * dual * (1 + ROUNDING)))
 
 
 def _room(proof: Proof, sizes: Array) -> Array:
@@ -101,14 +102,21 @@ def _room(proof: Proof, sizes: Array) -> Array:
     """
     points = np.reshape(proof.vertices if proof.control is None else proof.control, (-1, 2))
     reach = np.hypot(*np.abs(points).max(axis=0)) + np.hypot(*proof.centre_of_mass)
-    lost = _ROUNDING * (sizes @ [1.0, 1.0, reach])
+    lost = ROUNDING * (sizes @ [1.0, 1.0, reach])
     times = (1 + proof.friction) * (4 * proof.bound if proof.size == "margin" else 1)
-    return np.where(lost > _SMALL, lost * times, np.inf)
+    return np.where(lost > SMALL, lost * times, np.inf)
 
 
-def _times(proof: Proof) -> float:
+def clearance(proof: Proof, y: Array, load: np.ndarray) -> tuple[Array, Array, np.ndarray]:
+    """(b,) the work of loads less rounding, what it may add to that of a finger, and where it tells."""
+    terms = -np.asarray(proof.loads)[load] * y
+    lost, room = ROUNDING * np.abs(terms).sum(axis=1), _room(proof, np.abs(y))
+    return terms.sum(axis=1) - lost, room, np.minimum(room, lost) > SMALL
+
+
+def times(proof: Proof) -> float:
     """How often the most work of what a finger can do counts."""
-    return 1.0 if proof.size == "margin" else proof.bound * (1 + _ROUNDING)
+    return 1.0 if proof.size == "margin" else proof.bound * (1 + ROUNDING)
 
 
 def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndarray:
@@ -116,7 +124,7 @@ def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
     k, arcs = proof.fingers, np.asarray(proof.arcs)
     box, load = np.asarray(proof.movers).T
     good = (box >= 0) & (box < len(arcs)) & (load >= 0) & (load < len(proof.loads))
-    good[good] &= told[box[good]] & (arcs[box[good], :, 0] == arcs[box[good], :, 1]).all(axis=1)
+    good[good] &= told[box[good]] & on_one_edge(proof)[box[good]]
     corners = np.indices([2] * k).reshape(k, -1).T
     left = np.zeros((len(arcs), len(corners)))
     sure = np.zeros(len(arcs), bool)
@@ -129,8 +137,8 @@ def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
         adds, w = motions[:, 3:].reshape(-1, 2, k), -np.asarray(proof.loads)[load[some]]
         sizes = np.abs(motions[:, :3])
         sizes[:, :2] += np.abs(adds).sum(axis=2)
-        lost, room = _ROUNDING * (np.abs(w) * sizes).sum(axis=1), _room(proof, sizes)
-        sure[at[~(lost > _SMALL)]] = False
+        lost, room = ROUNDING * (np.abs(w) * sizes).sum(axis=1), _room(proof, sizes)
+        sure[at[~(lost > SMALL)]] = False
         edge = np.asarray(proof.sides)[arcs[at, :, 0], 0].astype(int)
         for c, corner in enumerate(corners):
             y = motions[:, :3].copy()
@@ -139,9 +147,17 @@ def _clear_of_movers(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
             most = (
                 boundary.roughly(edge.ravel(), u, u, np.repeat(y, k, axis=0)).reshape(-1, k) + room[:, None]
             )
-            gain = (w * y).sum(axis=1) - lost - _times(proof) * most.sum(axis=1)
+            gain = (w * y).sum(axis=1) - lost - times(proof) * most.sum(axis=1)
             np.add.at(left[:, c], at, gain)
     return np.asarray(sure & (left > 0).all(axis=1))
+
+
+def on_one_edge(proof: Proof) -> np.ndarray:
+    """(n,) whether each finger is on one edge."""
+    arcs, edges = np.asarray(proof.arcs), np.asarray(proof.sides)[:, 0]
+    inside = np.clip(arcs, 0, len(edges) - 1)
+    result: np.ndarray = (edges[inside[:, :, 0]] == edges[inside[:, :, 1]]).all(axis=1)
+    return result
 
 
 def _clear_of_groups(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndarray:
@@ -151,7 +167,7 @@ def _clear_of_groups(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
     rows = rows[(movers[rows, 0] >= 0) & (movers[rows, 0] < len(arcs))]
     (box, load), motions = movers[rows].T, np.asarray(proof.motions)
     bad = (load < 0) | (load >= len(proof.loads)) | motions[rows, 3:].any(axis=1) | ~told[box]
-    bad |= (arcs[box, :, 0] == arcs[box, :, 1]).all(axis=1)
+    bad |= on_one_edge(proof)[box]
     left = np.ones(len(arcs), bool)
     left[box[bad]] = False
     left[np.bincount(box, minlength=len(arcs)) > _ADDED] = False
@@ -172,12 +188,12 @@ def _clear_of_groups(proof: Proof, boundary: Edges, told: np.ndarray) -> np.ndar
         edges, *ends = stretches.at
         along = np.repeat(y, stretches.of_each, axis=0)
         done = [np.asarray(np.bincount(at, boundary.roughly(edges, u, u, along)), float) for u in ends]
-        lost, room = _ROUNDING * np.abs(w * y).sum(axis=1), _room(proof, np.abs(y))
+        lost, room = ROUNDING * np.abs(w * y).sum(axis=1), _room(proof, np.abs(y))
         of = np.repeat(np.arange(len(some)), counts[some])
-        sure = np.bincount(of, lost <= _SMALL) == 0
+        sure = np.bincount(of, lost <= SMALL) == 0
         most = own.largest(done).sum(axis=1) + proof.fingers * np.bincount(of, room)
         work = np.bincount(of, (w * y).sum(axis=1) - lost)
-        found[each[some]] = sure & (work > _times(proof) * most)
+        found[each[some]] = sure & (work > times(proof) * most)
     return found
 
 

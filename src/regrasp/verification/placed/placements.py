@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.verification.placed.by_side import BySide, wrong_by_side
 from regrasp.verification.placed.clear_boxes import clear_boxes, is_plain
 from regrasp.verification.placed.cubic import CubicEdges
 from regrasp.verification.placed.curves.circles import play_of
@@ -81,7 +82,7 @@ def _shapes(proof: Proof) -> list[str]:
             return ["proof: twists that move go with boxes and a largest force"]
         if proof.control is not None and proof.size != "force":
             return ["proof: twists that turn with fingers on curves are for the length of a force"]
-    if wrong := wrong_limits(proof):
+    if wrong := wrong_limits(proof) or wrong_by_side(proof):
         return wrong
     if proof.rings is not None:
         first = np.asarray(proof.rings)
@@ -132,6 +133,7 @@ class _Checked:
             for (box, load), motion in zip(proof.movers.tolist(), proof.motions.tolist(), strict=True):  # type: ignore[union-attr]
                 self.moving.setdefault(box, []).append((load, motion))
         self.sides = [(int(e), Fraction(lo), Fraction(hi)) for e, lo, hi in proof.sides.tolist()]
+        self.by_side = BySide(proof, self.boundary, self.sides)  # type: ignore[arg-type]
 
     def violations(self) -> list[str]:
         """What is wrong, in words."""
@@ -160,6 +162,7 @@ class _Checked:
             return ["proof: box 0 must give every finger the whole boundary"]
         if is_plain(self.proof, self.boundary):
             self.clear = clear_boxes(self.proof, self.boundary, float(self.play))
+            self.by_side.decide()
             self.groups.plain = True
         left, waiting = set(range(1, len(self.proof.children))), [0]
         while waiting:
@@ -173,7 +176,9 @@ class _Checked:
                 return [*broken, f"proof: box {box} is split into boxes that are not there, or not its own"]
             left.difference_update(inside)
             waiting += inside
-            if wrong := self._covered(box, inside):  # no box inside need be one
+            if box in self.by_side.rows:
+                broken += self.by_side.violations(box)
+            elif wrong := self._covered(box, inside):  # no box inside need be one
                 return [*broken, *wrong]
         if left:
             broken.append("proof: some boxes belong to no other")
@@ -217,6 +222,8 @@ class _Checked:
 
     def _excluded(self, box: int) -> list[str]:
         number, arcs = int(self.proof.number[box]), self._arcs(box)
+        if box in self.by_side.rows:
+            return self.by_side.violations(box)
         if number == -1:
             return [] if self._near(arcs) else [f"proof: fingers of box {box} may be far enough apart"]
         if number < 0 and self.proof.tied is not None and -2 - number < len(self.proof.tied):
@@ -281,7 +288,7 @@ class _Checked:
             return []
         # forces below the limit that keep a margin do no more than what is given, of size 1 as often as it is
         times = Fraction(1) if self.proof.size == "margin" else bound
-        if any(a != b for a, b, *_ in arcs):
+        if any(self.sides[a][0] != self.sides[b][0] for a, b, *_ in arcs):
             excluded = self._joined(motions, times, arcs)
         elif self.proof.control is None:
             excluded = is_excluded(motions, times, [self._hull(*arc) for arc in arcs], self._along(arcs))

@@ -111,6 +111,14 @@ class Proof(Protocol):
         """
 
     @property
+    def by_side(self) -> Any:
+        """(q, 2) boxes whose twists exclude each side of a finger, and a load; None for none."""
+
+    @property
+    def side_twists(self) -> Array | None:
+        """(q, 3) these twists."""
+
+    @property
     def turned(self) -> bool:
         """Whether loads and boundary are the same after every turn, and the first finger stays."""
 

@@ -19,24 +19,18 @@ _SLOW = 1e-5  # of a level, the least gain of one
 
 
 def run_level(
-    search: Search,
-    level: Level,
-    tolerance: float,
-    most: int,
-    progress: Progress | None,
-    best: float | None = None,
+    search: Search, level: Level, tolerance: float, most: int, progress: Progress | None
 ) -> tuple[float | None, float]:
     """The best level found, None where no placement was, and a level that no placement is beyond.
 
     ``search`` is left at that level, which its boxes exclude where it is ``closed``; where it was cut short
-    it is the largest there is. best: a level that was reached before.
+    it is the largest there is.
     """
     due, before = _LATE, 0
+    best: float | None = None
     aim, top = level.start, level.top(search)
     gaps, passed = [t for t in _GAPS if t > tolerance], list[float]()
     fixed = level.max_force * (1 + _STRICT)
-    if best is not None:
-        aim = next_level(level, best, gaps, tolerance, top)
     level.put(search, aim)
     try:
         while not search.interrupted and (best is None or aim < top):

@@ -15,11 +15,13 @@ def rows_of(
     size: float,
     tied: dict[int, int],
     moving: dict[int, tuple[np.ndarray, Array]],
+    by_side: dict[int, tuple[np.ndarray, Array]],
 ) -> dict[str, Array]:
     """The fields of ``PlacementProof`` that say something of boxes, by their names: arrays of their own.
 
     boxes: as of the compiled search, lengths in units of ``size``. tied: rows of duals of all loads
-    that exclude some. moving: twists of some loads that move with the fingers.
+    that exclude some. moving: twists of some loads that move with the fingers. by_side: of which
+    one excludes each side.
     """
     arcs, ends, _, twists, _, kinds, children, _, seconds, other = boxes
     split, twists = kinds == 2, twists / [1, 1, size]
@@ -34,10 +36,13 @@ def rows_of(
         second = seconds[joined] / [1, 1, size]
         given["pairs"] = np.column_stack([joined, strongest(second, loads)])
         given["seconds"] = second
-    if moving:
-        given["number"][list(moving)], given["twists"][list(moving)] = 0, 0.0
-        given["movers"] = np.array([(box, n) for box, (some, _) in moving.items() for n in some.tolist()])
-        given["motions"] = np.concatenate([twists for _, twists in moving.values()])
+    for several, names in (moving, ("movers", "motions")), (by_side, ("by_side", "side_twists")):
+        if several:
+            given["number"][list(several)], given["twists"][list(several)] = 0, 0.0
+            each = [(box, n) for box, (some, _) in several.items() for n in some.tolist()]
+            given |= zip(
+                names, (np.array(each), np.concatenate([t for _, t in several.values()])), strict=True
+            )
     return given
 
 

@@ -85,6 +85,8 @@ class PlacementProof(BoxProof):
     max_force: float | None = None
     min_normal: float = 0.0
     turned: bool = False
+    by_side: np.ndarray | None = None
+    side_twists: Array | None = None
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
@@ -119,6 +121,10 @@ class PlacementProof(BoxProof):
             None if given.get("max_force") is None else number(given["max_force"], "max_force", above=0),
             number(given.get("min_normal", 0.0), "min_normal", least=0),
             _flag(given.get("turned", False)),
+            None if given.get("by_side") is None else integers(given["by_side"], "by_side", (None, 2)),
+            None
+            if given.get("side_twists") is None
+            else array(given["side_twists"], "side_twists", (None, 3)),
         )
 
 
