@@ -18,7 +18,7 @@ from regrasp.verification.placed.protocol import Proof
 from regrasp.verification.placed.straight import StraightEdges
 
 Arc = tuple[int, int, float, float]
-_AT_ONCE = 100_000  # sides
+_AT_ONCE = 20_000  # sides
 
 
 def wrong_by_side(proof: Proof) -> list[str]:

@@ -35,7 +35,8 @@ class StraightEdges:
         self._start = np.asarray(proof.vertices - proof.centre_of_mass)
         # of the vertices: less the centre of mass they are rounded, which short sides would not stand
         self._along = np.asarray(proof.vertices)[ends] - proof.vertices
-        self._unit = self._along / np.hypot(*self._along.T)[:, None]
+        self._lengths: Array = np.hypot(*self._along.T)
+        self._unit = self._along / self._lengths[:, None]
         self._friction = proof.friction
 
     @property
@@ -45,7 +46,7 @@ class StraightEdges:
 
     def lengths(self) -> Array:
         """(k,) of all edges, in doubles [m]."""
-        return np.asarray(np.hypot(*self._along.T))
+        return self._lengths
 
     def turns_little(self, edge: int, lo: Fraction, hi: Fraction) -> bool:
         """Whether a bound of a stretch is one."""
@@ -94,32 +95,34 @@ class StraightEdges:
 
     def roughly(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> Array:
         """(m,) the largest sigma on stretches along twists (m, 3), 0 or more, in doubles."""
-        most = np.full(len(lo), -np.inf if self.eroded else 0.0)
-        unit = self._unit[edges]
+        unit, slant, mu = self._unit[edges], np.sqrt(1 + self._friction**2), self._friction
         tx, ty = unit.T
-        slant, mu = np.sqrt(1 + self._friction**2), self._friction
-        inward = np.stack([-ty, tx], axis=1)
-        for t in (lo, hi):
-            p = self._start[edges] + t[:, None] * self._along[edges]
-            vx, vy = y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]
-            if self.eroded:
-                a, b = (inward + mu * unit) / slant, (inward - mu * unit) / slant
-                value = roughly_eroded(a, b, self.limit, self.margin, np.stack([vx, vy], axis=1))
-            else:
-                ahead, aside = tx * vy - ty * vx, np.abs(tx * vx + ty * vy)
-                value = ahead + self._friction * aside
-                if self.force:
-                    # inside the cone, and a little around it, the whole of v
-                    value = np.where(aside < self._friction * ahead, np.hypot(vx, vy), value / slant)
-            most = np.maximum(most, value)
-        return most
+        if self.eroded:
+            inward = np.stack([-ty, tx], axis=1)
+            a, b = (inward + mu * unit) / slant, (inward - mu * unit) / slant
+            ends = [np.stack(self._moved(edges, t, y), axis=1) for t in (lo, hi)]
+            return np.max([roughly_eroded(a, b, self.limit, self.margin, v) for v in ends], axis=0)  # type: ignore[no-any-return]
+        vx, vy = self._moved(edges, lo, y)
+        # along an edge the part of v ahead is affine, and that aside is the same
+        ahead = tx * vy - ty * vx + np.maximum(y[:, 2] * ((hi - lo) * self._lengths[edges]), 0.0)
+        aside = np.abs(tx * vx + ty * vy)
+        most = ahead + mu * aside
+        if self.force:
+            most /= slant
+            inside = aside < mu * ahead  # and a little around the cone: the whole of v
+            most[inside] = np.hypot(ahead[inside], aside[inside])
+        return np.maximum(most, 0.0)  # type: ignore[no-any-return]
+
+    def _moved(self, edges: np.ndarray, t: Array, y: Array) -> tuple[Array, Array]:
+        """(m,) both velocities of points of edges along twists (m, 3)."""
+        px, py = (self._start[edges] + t[:, None] * self._along[edges]).T
+        return y[:, 0] - y[:, 2] * py, y[:, 1] + y[:, 2] * px
 
     def roughly_parts(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> list[tuple[Array, Array]]:
         """Of the ends of stretches (m,) the ``parts`` along twists (m, 3), in doubles."""
         tx, ty = self._unit[edges].T
         found = []
         for t in (lo, hi):
-            p = self._start[edges] + t[:, None] * self._along[edges]
-            vx, vy = y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]
+            vx, vy = self._moved(edges, t, y)
             found.append((tx * vy - ty * vx, np.abs(tx * vx + ty * vy)))
         return found
