@@ -68,11 +68,14 @@ def test_each_number_counts() -> None:
 
 
 def test_they_stay() -> None:
-    """What moves with a finger would be another twist at each place of a side: not on several."""
+    """What moves with a finger is affine along an edge, in several stretches, too: not on several edges."""
+    floor_and_wall = ((0, 0, 1.0), (1, 1, 2.0))
+    assert said(joined(bound=0.1, sides=floor_and_wall)) == ""
     for column in 3, 4:
         motions = np.array(ABOUT, dtype=float)
         motions[0, column] = 1e-9
-        assert said(joined(motions)) == EXCLUDED
+        assert said(joined(motions, bound=0.1)) == ""
+        assert said(joined(motions, bound=0.1, sides=floor_and_wall)) == EXCLUDED
 
 
 def test_sides_of_other_normals_count_with_their_own() -> None:
