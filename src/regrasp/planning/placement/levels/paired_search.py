@@ -125,6 +125,8 @@ class Paired(Moving):
         )  # fmt: skip
         first, last = arcs[wide]
         open_ = first + np.flatnonzero(self._how[first : last + 1] == LEFT)
+        if not used:  # none is found: the motion of none, which excludes nothing, keeps how the box is split
+            self._loads[0], self._twists[0], used = 0, 0.0, 1
         few = self._loads[:used].copy(), self._twists[:used] / [1, 1, search.sides.size]
         if not left:
             parts = search.parted(node, wide, np.zeros((0, 2), int), few, most)
@@ -135,7 +137,7 @@ class Paired(Moving):
             runs = np.split(open_, np.flatnonzero(breaks) + 1)
             return _each(search.parted(node, wide, np.array([(r[0], r[-1]) for r in runs]), few, most), -1)
         hull = np.array([[open_[0], open_[-1]]])
-        if counts[others].min() >= _COARSE and open_[-1] - open_[0] < _FEWER * counts[wide] and used:
+        if counts[others].min() >= _COARSE and open_[-1] - open_[0] < _FEWER * counts[wide]:
             within = search.parted(node, wide, hull, few, most)
             if not within:
                 return None
