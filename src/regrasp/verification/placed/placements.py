@@ -338,8 +338,7 @@ class _Checked:
     def _near(self, arcs: list[Arc]) -> bool:
         """Whether two fingers on one side each are nearer than they must be, wherever they are."""
         least2 = max(Fraction(self.proof.min_distance) - 2 * self.play * self.reach, Fraction(0)) ** 2
-        single = [arc for arc in arcs if arc[0] == arc[1]]
-        corners = [self._hull(*arc) for arc in single]
+        corners = [self._hull(*arc) for arc in arcs if arc[0] == arc[1]]
         for i, one in enumerate(corners):
             for other in corners[:i]:
                 if all((p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 < least2 for p in one for q in other):
