@@ -171,7 +171,7 @@ def _none_holds(search: Search, asked: Asked) -> Infeasible:
             f"forces inside the cones; no placement needs less than {proof.bound:.6g} N",
             proof,
         )
-    if search.bound == inf:
+    if not len(search.left):
         largest, least = search.limits
         limited = f" and forces of at most {largest:g} N" if largest < inf else ""
         limited += f", each finger pushing with {least:g} N or more" if least else ""

@@ -7,7 +7,9 @@ derivative. With n_1 and n_2 the outermost of their normals, what a force of siz
     size |f|:   in the sector between the edges of the cones, the clockwise one of n_1 and the other of n_2
     size n . f: between 0 and the arcs of radius sqrt(1 + mu^2) from either edge of n_1 to the same of n_2
 
-so that the most of v . f over these, with v at the four points, is an upper bound.
+so that the most of v . f over these, with v at the four points, is an upper bound. It is off by the length of
+the part; of one twist and forces without limits there is a bound that is off by its square
+(``curves.along_parts``), which is less.
 """
 
 from fractions import Fraction
@@ -16,6 +18,7 @@ from itertools import pairwise
 import numpy as np
 
 from regrasp.mechanics.checks import Array, Flags
+from regrasp.verification.placed.curves.along_parts import most_on_part, roughly_on_part
 from regrasp.verification.placed.forces.eroded import cone_edges, is_sector, most_eroded, roughly_eroded
 from regrasp.verification.placed.protocol import Point, Proof, velocity
 from regrasp.verification.placed.roots import root_above, root_below
@@ -61,7 +64,13 @@ class CubicEdges:
 
     def most(self, edge: int, lo: Fraction, hi: Fraction, y: list[Fraction]) -> Fraction:
         """An upper bound of sigma on a stretch, 0 or more."""
-        return self.most_along(edge, lo, hi, [velocity(y, p) for p in self.hull(edge, lo, hi)])
+        hull = self.hull(edge, lo, hi)
+        most = self.most_along(edge, lo, hi, [velocity(y, p) for p in hull])
+        if self.eroded:
+            return most
+        ends = self._outermost(edge, lo, hi)
+        other = most_on_part(hull, self._tangents(edge, lo, hi), ends, self.mu, self.force, y)
+        return most if other is None else min(most, other)
 
     def most_along(self, edge: int, lo: Fraction, hi: Fraction, along: list[Point]) -> Fraction:
         """The same of the most v . f along any of some v."""
@@ -100,9 +109,9 @@ class CubicEdges:
         plain, first, last = self._roughly_outermost(edges, lo, hi)
         (a, c), (e, b) = _unit_edges(first, self._friction), _unit_edges(last, self._friction)
         control = np.moveaxis(self._control[edges], 1, 0)
+        hull = [polar_at(control, at) for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi))]
         most = np.full(len(lo), -np.inf if self.eroded else 0.0)
-        for at in ((lo, lo, lo), (lo, lo, hi), (lo, hi, hi), (hi, hi, hi)):
-            p = polar_at(control, at)
+        for p in hull:
             v = np.stack([y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]], axis=1)
             if self.eroded:
                 value = roughly_eroded(a, b, self.limit, self.margin, v)
@@ -112,6 +121,12 @@ class CubicEdges:
                 slant = np.sqrt(1 + self._friction**2)
                 value = slant * np.maximum(_roughly_on_sector(a, e, v), _roughly_on_sector(c, b, v))
             most = np.maximum(most, value)
+        if not self.eroded:
+            ends = first, last
+            other = roughly_on_part(
+                hull, self._roughly_tangents(edges, lo, hi), ends, self._friction, self.force, y
+            )
+            most = np.minimum(most, other)
         return np.where(plain, most, np.inf)
 
     def roughly_parts(self, edges: np.ndarray, lo: Array, hi: Array, y: Array) -> list[tuple[Array, Array]]:
@@ -144,16 +159,20 @@ class CubicEdges:
 
     def _roughly_outermost(self, edges: np.ndarray, lo: Array, hi: Array) -> tuple[Flags, Array, Array]:
         """Whether tangents of stretches are far from 0, and the outermost of them, of length 1."""
-        legs = np.moveaxis(self._legs[edges], 1, 0)
-        d = np.stack([polar_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))])
+        d = np.stack(self._roughly_tangents(edges, lo, hi))
         size = np.hypot(d[..., 0], d[..., 1])
-        plain = (size > _SHORTEST * np.hypot(legs[..., 0], legs[..., 1]).max(axis=0)).all(axis=0)
+        longest = np.hypot(*np.moveaxis(self._legs[edges], -1, 0)).max(axis=1)
+        plain = (size > _SHORTEST * longest).all(axis=0)
         unit = d / size[..., None]
         middle = unit.sum(axis=0)
         angle = np.arctan2(_cross_of(middle, unit), (middle * unit).sum(axis=-1))
         rows = np.arange(len(lo))
         first, last = unit[angle.argmin(axis=0), rows], unit[angle.argmax(axis=0), rows]
         return plain, first, last
+
+    def _roughly_tangents(self, edges: np.ndarray, lo: Array, hi: Array) -> list[Array]:
+        legs = np.moveaxis(self._legs[edges], 1, 0)
+        return [polar_at(legs, pair) for pair in ((lo, lo), (lo, hi), (hi, hi))]
 
 
 def _polar(points: list[Point], at: tuple[Fraction, ...]) -> Point:

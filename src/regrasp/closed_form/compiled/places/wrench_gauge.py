@@ -24,7 +24,7 @@ import numpy as np
 from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
-from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, support_of_cubics
+from regrasp.closed_form.compiled.places.cubic_arcs import CONTROL, at_point, support_of_cubics
 from regrasp.closed_form.compiled.places.eroded import add_middle, support_of_eroded
 
 NORMAL, DISC, ERODED = 0, 1, 2
@@ -53,7 +53,6 @@ def support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-
         return
     for c in range(7):
         out[c] = 0.0
-    slant = sqrt(1.0 + mu * mu)
     for j in range(first, last + 1):
         nx, ny = sides[j, 4], sides[j, 5]
         a = lo if j == first else sides[j, 6]
@@ -64,20 +63,8 @@ def support_of_arc(sides, first, last, lo, hi, law, y, out):  # type: ignore[no-
             u = a if end == 0 else b
             along = u - sides[j, 8]
             px, py = sides[j, 0] + along * sides[j, 2], sides[j, 1] + along * sides[j, 3]
-            vx, vy = y[0] - y[2] * py, y[1] + y[2] * px
-            ahead, across = nx * vx + ny * vy, ny * vx - nx * vy
-            aside = abs(across)
-            if size == DISC and ahead > 0.0 and aside <= mu * ahead:
-                value = sqrt(ahead * ahead + aside * aside)
-                per = 1.0 / value if value > 0.0 else 0.0
-                normal, tangent = ahead * per, across * per
-            else:
-                value = ahead + mu * aside
-                normal, tangent = 1.0, mu if across >= 0.0 else -mu
-                if size == DISC:
-                    value, normal, tangent = value / slant, normal / slant, tangent / slant
+            value, fx, fy, normal = at_point(nx, ny, px, py, mu, size, y)
             if value > out[0]:
-                fx, fy = normal * nx + tangent * ny, normal * ny - tangent * nx
                 out[0], out[1], out[2] = value, j, u
                 out[3], out[4], out[5], out[6] = fx, fy, px * fy - py * fx, normal
 
