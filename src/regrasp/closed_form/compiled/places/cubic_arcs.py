@@ -56,18 +56,28 @@ def _tangent(sides, j, u, v):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
+def _tangents(sides, j, c, a, b):  # type: ignore[no-untyped-def]
+    """Coordinate c of the coefficients of the tangent of a part."""
+    return _derivative(sides, j, c, a, a), _derivative(sides, j, c, a, b), _derivative(sides, j, c, b, b)
+
+
+@njit(**VIEWS)
 def fan(sides, j, a, b):  # type: ignore[no-untyped-def]
     """The outermost tangents of a part, the clockwise one first."""
-    lx, ly = _tangent(sides, j, a, a)
-    hx, hy = lx, ly
-    if a < b:
-        for k in range(2):
-            x, y = _tangent(sides, j, a if k == 0 else b, b)
-            if lx * y - ly * x < 0.0:
-                lx, ly = x, y
-            if hx * y - hy * x > 0.0:
-                hx, hy = x, y
-    return lx, ly, hx, hy
+    return _outermost(_tangents(sides, j, 0, a, b), _tangents(sides, j, 1, a, b))
+
+
+@njit(**VIEWS)
+def _outermost(x, y):  # type: ignore[no-untyped-def]
+    """The clockwise one and the other of three vectors, of length 1."""
+    low, high = 0, 0
+    for k in range(1, 3):
+        if x[low] * y[k] - y[low] * x[k] < 0.0:
+            low = k
+        if x[high] * y[k] - y[high] * x[k] > 0.0:
+            high = k
+    one, other = 1.0 / sqrt(x[low] ** 2 + y[low] ** 2), 1.0 / sqrt(x[high] ** 2 + y[high] ** 2)
+    return one * x[low], one * y[low], other * x[high], other * y[high]
 
 
 @njit(**VIEWS)
@@ -122,12 +132,6 @@ def _points(sides, j, c, a, b):  # type: ignore[no-untyped-def]
         polar(sides, j, c, a, a, a), polar(sides, j, c, a, a, b),
         polar(sides, j, c, a, b, b), polar(sides, j, c, b, b, b),
     )  # fmt: skip
-
-
-@njit(**VIEWS)
-def _tangents(sides, j, c, a, b):  # type: ignore[no-untyped-def]
-    """Coordinate c of the coefficients of the tangent of a part."""
-    return _derivative(sides, j, c, a, a), _derivative(sides, j, c, a, b), _derivative(sides, j, c, b, b)
 
 
 @njit(**VIEWS)
@@ -213,7 +217,7 @@ def support_of_cubics(sides, first, last, lo, hi, mu, size, y, out):  # type: ig
         most, r, fx, fy, torque = _edges_of_cones(x, z, tx, tz, mu, y)
         scale, common = 1.0, False
         if size == DISC:
-            lx, ly, hx, hy = fan(sides, j, a, b)
+            lx, ly, hx, hy = _outermost(tx, tz)
             # the clockwise edge of the last cone n + mu t, n = (-t_y, t_x), and the other of the first
             cx, cy, dx, dy = mu * hx - hy, mu * hy + hx, -mu * lx - ly, -mu * ly + lx
             common = cx * dy - cy * dx > 0.0
