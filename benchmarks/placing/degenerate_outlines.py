@@ -90,7 +90,8 @@ def row(
     result["lies"] += ["hangs"] * late
     if friction > NONE:
         samples = all_of(points_of(outline, POINTS[fingers], in_holes=holes), fingers)
-        found, held = best(samples, task)
+        leveled = chosen is not None and task.deviations is not None
+        found, held = best(samples, task, chosen.bound if leveled else 0.0)
         result |= {"held": held, "best": found if held else None}
         if held and chosen is None and result["end"].startswith("refus"):
             result["lies"].append("refused")

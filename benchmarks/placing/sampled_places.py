@@ -76,8 +76,12 @@ def all_of(points: tuple[Array, Array], fingers: int) -> Places:
     return Places(points[0][few], points[1][few])
 
 
-def best(places: Places, task: Task) -> tuple[float, bool]:
-    """The best value of the placements, and whether some hold; where none does, the worst value there is."""
+def best(places: Places, task: Task, above: float = 0.0) -> tuple[float, bool]:
+    """The best value of the placements, and whether some hold; where none does, the worst value there is.
+
+    above: of what is answered or withstood, a level from which on it is worth to know: the best is this if
+    none is better.
+    """
     if task.objective == "wrench_ball":
         radii = [ball(p, n, task) for p, n in zip(*places, strict=True)]
         return max(radii), max(radii) > 0
@@ -85,8 +89,8 @@ def best(places: Places, task: Task) -> tuple[float, bool]:
         held = places.some(_holds(places, task, 0.0))
         if not len(held.positions):
             return 0.0, False
-        found = _answered(held, task) if task.objective == "answered" else _withstood(held, task)
-        return found, True
+        held = held.some(_holds(held, task, above)) if above else held
+        return (_answered if task.objective == "answered" else _withstood)(held, task, above), True
     values = norms(places, task)
     found = float(values.min(initial=np.inf))
     return (-found if task.objective in LARGEST else found), found < np.inf
@@ -133,9 +137,11 @@ def _holds(places: Places, task: Task, level: float) -> Array:
     return held
 
 
-def _answered(held: Places, task: Task) -> float:
-    """The largest level that one of those that hold answers."""
-    low, high = 0.0, 1.0
+def _answered(held: Places, task: Task, low: float) -> float:
+    """The largest level that one of those that answer one answers."""
+    if not len(held.positions):
+        return low
+    high = max(1.0, 2 * low)
     while len(more := _holds(held, task, high)):
         held, low, high = held.some(more), high, 2 * high
     for _ in range(HALVINGS):
@@ -147,12 +153,12 @@ def _answered(held: Places, task: Task) -> float:
     return low
 
 
-def _withstood(held: Places, task: Task) -> float:
+def _withstood(held: Places, task: Task, found: float) -> float:
     """The largest level that one withstands, by linear programs; those that do not answer more are left out.
 
     Polygons around the circles of limits, of few sides, say first what none withstands more than.
     """
-    found, left = 0.0, np.random.default_rng(0).permutation(len(held.positions))
+    left = np.random.default_rng(0).permutation(len(held.positions))
     while len(left):
         each, left = [held.some(i) for i in left[:FIRST]], left[FIRST:]
         most = np.array([withstood(*one, task.friction, task.deviations, ROUGH, False) for one in each])

@@ -45,7 +45,7 @@ class WithstoodLevel(AnsweredLevel):
     def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
         """The set-points, and the states that they turn into under each deviation."""
         first = self.state(grasp)
-        factor = first.value * (1 - _ROUNDING)
+        factor = first.value * (1 - _ROUNDING) if first.value > _GAIN else 0.0  # else friction is rounding
         if not 0 <= factor < inf:
             return None
         changes = (response(grasp) @ (factor * self.deviations).T).T.reshape(-1, len(grasp), 2)
