@@ -72,3 +72,39 @@ def test_where_no_friction_is_needed_nothing_is_searched(monkeypatch) -> None:
         )
         assert chosen.gap <= 1e-3
         assert rg.verify(chosen).ok
+
+
+@pytest.mark.parametrize("friction", [0.0, 1e-12])
+@pytest.mark.parametrize("fingers", [2, 3])
+def test_normals_of_a_circle_make_no_torque(fingers: int, friction: float) -> None:
+    """Fingers pass its centre by: a load that does not is held by none, which is proven at once."""
+    circle = rg.Outline.ellipse(1, 1)
+    with pytest.raises(rg.Infeasible, match=r"not by forces of 1.02e\+06 N either") as refused:
+        rg.choose_grasp(circle, fingers, rg.Wrench([0, -1], 0.02), friction=friction, objective="peak")
+    assert rg.verify(refused.value.certificate).ok
+    assert len(refused.value.certificate.children) < 10
+
+
+@pytest.mark.parametrize(
+    ("objective", "height", "friction"),
+    [("effort", 0.01, 0.0), ("effort", 0.003, 0.3), ("sum_normal", 0.01, 0.3)],
+)
+def test_two_fingers_at_the_ends_of_a_flat_ellipse(objective: str, height: float, friction: float) -> None:
+    """They push up along normals that turn within a hundredth of the length."""
+    flat = rg.Outline.ellipse(2, height)
+    found = rg.choose_grasp(flat, 2, rg.Wrench([0, -1], 0.04), friction=friction, objective=objective)
+    assert found.gap <= 1e-3
+    assert rg.verify(found).ok
+
+
+def test_set_points_that_withstand_by_rounding_alone_withstand_nothing() -> None:
+    """Without friction a deviation's part along a side is left: cones of 1e-12 took a factor of 2e-11."""
+    half = np.arange(16) * np.pi / 8
+    star = np.where(np.arange(16) % 2, 0.02, 1.0)[:, None] * np.column_stack([np.cos(half), np.sin(half)])
+    deviations = rg.LoadSet.hull([rg.Wrench([0.3, 0]), rg.Wrench([-0.3, 0]), rg.Wrench([0, 0], 0.1)])
+    found = rg.choose_grasp(
+        rg.Outline(star), 3, rg.Wrench([0, -1]), friction=1e-12, objective="wrench", max_force=3,
+        disturbance=deviations, from_corners=0.0, most_boxes=200, tolerance=1e-2,
+    )  # fmt: skip
+    assert found.value == 0
+    assert rg.verify(found).ok

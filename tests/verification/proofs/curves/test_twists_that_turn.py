@@ -247,21 +247,21 @@ def test_a_game_is_that_of_a_linear_program() -> None:
 
 
 def flower() -> tuple[rg.Outline, rg.LoadSet]:
-    """A smooth outline, and six loads."""
+    """A smooth outline, and twelve loads, of which fixed twists leave two fingers some boxes."""
     angle = np.arange(8) * np.pi / 4
     radius = np.array([1.3, 1.2, 1, 1, 1.2, 0.9, 1, 1.1])[:, None]
     shape = rg.Outline.smooth(radius * np.column_stack([np.cos(angle), np.sin(angle)]))
     loads = rg.LoadSet.hull([
-        rg.Wrench([x, y], t) for x, y in ((1, 0), (-0.5, 0.9), (-0.5, -0.9)) for t in (0.05, -0.05)
+        rg.Wrench([np.cos(a), np.sin(a)], t) for a in np.arange(6) * np.pi / 3 for t in (0.1, -0.1)
     ])  # fmt: skip
     return shape, loads
 
 
 def test_a_search_is_closed_by_them() -> None:
     shape, loads = flower()
-    given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "most_boxes": 2000}
-    chosen = rg.choose_grasp(shape, 2, loads, **given)
-    assert chosen.gap <= 1e-3
+    given = {"friction": 0.6, "objective": "friction_use", "max_force": 4, "most_boxes": 2000}
+    chosen = rg.choose_grasp(shape, 2, loads, tolerance=1e-4, **given)
+    assert chosen.gap <= 1e-4
     proof = chosen.certificate
     assert proof.motions is not None
     assert proof.movers is not None
@@ -294,11 +294,11 @@ def test_of_a_search_cut_short_what_was_closed_is_left() -> None:
         if bound == kept:
             raise KeyboardInterrupt
 
-    given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "tolerance": 1e-5}
+    given = {"friction": 0.6, "objective": "friction_use", "max_force": 4, "tolerance": 1e-6}
     cut = rg.choose_grasp(shape, 2, loads, most_boxes=2000, progress=noted, **given)
     *_, before, kept = sorted(set(bounds) - {0.0})
     assert cut.bound == kept
-    assert 1e-5 < cut.gap < 0.5 * (cut.value - before) / cut.value
+    assert 1e-6 < cut.gap < 0.6 * (cut.value - before) / cut.value
     ended = rg.choose_grasp(shape, 2, loads, most_boxes=2000, progress=interrupting, **given)
     assert ended.bound == kept
     for chosen in (cut, ended):
@@ -309,10 +309,10 @@ def test_of_a_search_cut_short_what_was_closed_is_left() -> None:
 def test_twists_take_so_much_memory_at_most(monkeypatch: pytest.MonkeyPatch) -> None:
     shape, loads = flower()
     monkeypatch.setattr(turning_search, "_NUMBERS", 2)
-    given = {"friction": 0.4, "objective": "friction_use", "max_force": 4, "tolerance": 1e-5}
+    given = {"friction": 0.6, "objective": "friction_use", "max_force": 4, "tolerance": 1e-6}
     cut = rg.choose_grasp(shape, 2, loads, most_boxes=2000, **given)
     motions = cut.certificate.motions
     assert motions is not None
-    assert cut.gap > 1e-4
+    assert cut.gap > 1e-5
     assert motions.size < 2 * 2000 + 6 * motions.shape[1]
     assert rg.verify(cut).ok

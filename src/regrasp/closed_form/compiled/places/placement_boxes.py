@@ -138,13 +138,14 @@ def to_split(sides, arcs, ends, seen, near, narrow):  # type: ignore[no-untyped-
             j = first
             length = sqrt(sides[j, 2] ** 2 + sides[j, 3] ** 2)
             width = (ends[i, 1] - ends[i, 0]) * length
-            if width < narrow:
+            # a short part that turns is no place yet: its normals differ
+            bent = bend(sides, j, ends[i, 0], ends[i, 1]) if curved else 0.0
+            if max(width, bent) < narrow:
                 continue
             matters = 1e-3 * width
             if seen[i, 0] <= seen[i, 1]:
                 matters = (seen[i, 1] - seen[i, 0]) * length + 1e-6 * width
-            if curved:
-                matters += 0.5 * bend(sides, j, ends[i, 0], ends[i, 1])
+            matters += 0.5 * bent
             if near:  # only a smaller box tells whether fingers can be far enough apart
                 matters = width
         if matters > most:

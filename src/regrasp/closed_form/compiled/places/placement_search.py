@@ -305,6 +305,8 @@ def _loop(digest: str) -> Any:
                     )
                 else:
                     known = bound_by(sides, arcs[child], ends[child], bounding, b, twists[node], work[:11])
+                if sides.shape[1] > CONTROL:  # of a part of a curve a twist may prove a little less
+                    bounds[child] = min(bounds[child], known)
                 if known >= level:
                     bounds[child], other[child] = known, -1
                 else:
