@@ -51,13 +51,13 @@ def most_on_part(
         ):
             term[r] += often * value
     edges = max((ahead + mu * abs(aside)) / speed for ahead, aside, speed in zip(*terms, strict=True))
-    edges = max(edges, Fraction(0)) * root_above(_dot(m, m))
+    edges = Fraction(max(edges, Fraction(0)) * root_above(_dot(m, m)))
     c, e = cone_edges(ends[1], mu)[0], cone_edges(ends[0], mu)[1]
     if not force or _cross(c, e) <= 0:
         return edges
     cosine = _dot(*ends) / root_above(_dot(ends[0], ends[0]) * _dot(ends[1], ends[1]))
     wide = root_above(2 / (1 + cosine))
-    found = [edges / root_below(1 + mu**2) * wide]
+    found = [edges / root_below(Fraction(1 + mu**2)) * wide]
     for v in along:
         found += [_dot(d, v) / root_below(_dot(d, d)) * wide for d in (c, e) if _dot(d, v) > 0]
         if _cross(c, v) > 0 and _cross(v, e) > 0:
