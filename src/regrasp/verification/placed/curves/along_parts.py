@@ -36,12 +36,12 @@ def most_on_part(
     force: bool,
     y: list[Fraction],
 ) -> Fraction | None:
-    """An upper bound of sigma on a part; None where its tangent turns too far.
+    """An upper bound of sigma on a part; None where its tangent turns by a quarter or is 0.
 
     hull: control points. tangents: coefficients. ends: the outermost of these, the clockwise one first.
     """
     m = tangents[1]
-    if not all(_dot(t, m) > 0 and 4 * _dot(t, m) ** 2 >= _dot(t, t) * _dot(m, m) for t in tangents):
+    if not all(_dot(t, m) > 0 for t in tangents) or _dot(*ends) <= 0:
         return None
     along, terms = [velocity(y, p) for p in hull], [[Fraction(0)] * 6 for _ in range(3)]
     for r, k, i, often in _BINOMIALS:
@@ -68,17 +68,21 @@ def most_on_part(
 def roughly_on_part(
     hull: list[Array], tangents: list[Array], ends: tuple[Array, Array], mu: float, force: bool, y: Array
 ) -> Array:
-    """(m,) the same of points (m, 2), unit ``ends`` and twists (m, 3), in doubles; infinite for none."""
+    """(m,) the same of points (m, 2), unit ``ends`` and twists (m, 3), in doubles.
+
+    Infinite for none, and where a tangent is more than 60 degrees from m, as rounding matters more there.
+    """
+    size = np.hypot(*tangents[1].T)[:, None]  # by which all are divided, so that no product is too small
+    tangents = [t / size for t in tangents]
     m = tangents[1]
-    size = np.hypot(*m.T)
-    fine = np.all([2 * _dots(t, m) >= np.hypot(*t.T) * size for t in tangents], axis=0)
+    fine = np.all([2 * _dots(t, m) >= np.hypot(*t.T) for t in tangents], axis=0)
     along = [np.stack([y[:, 0] - y[:, 2] * p[:, 1], y[:, 1] + y[:, 2] * p[:, 0]], axis=1) for p in hull]
     ahead, aside, speed = np.zeros((3, 6, len(y)))
     for r, k, i, often in _BINOMIALS:
         ahead[r] += often * _crosses(tangents[i], along[k])
         aside[r] += often * _dots(tangents[i], along[k])
         speed[r] += often * _dots(tangents[i], m)
-    most = np.maximum((size * (ahead + mu * np.abs(aside)) / speed).max(axis=0), 0.0)
+    most = np.maximum(((ahead + mu * np.abs(aside)) / speed).max(axis=0), 0.0)
     if force:
         slant = np.hypot(1, mu)
         first, last = ends
