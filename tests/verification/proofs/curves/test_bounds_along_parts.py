@@ -97,7 +97,7 @@ def test_what_it_is_above_falls_with_the_square_of_a_part(mu: Fraction, force: b
         assert most is not None
         places = [done2(curve, legs, lo + width * k / 50, y, mu, force) for k in range(51)]
         above.append(float(most) - float(max(places)) ** 0.5)
-    assert above[0] < 0.1
+    assert above[0] < 0.2
     assert 0 <= above[1] < 0.02 * above[0] + 1e-9
     assert 0 <= above[2] < 0.02 * above[1] + 1e-9
 
