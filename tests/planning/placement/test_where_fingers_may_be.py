@@ -24,6 +24,26 @@ def test_fingers_keep_apart_and_away_from_corners() -> None:
         rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, from_corners=3.0)
 
 
+@pytest.mark.parametrize("more", [{}, {"objective": "angle", "max_force": 20.0, "friction": 1e-3}])
+@pytest.mark.parametrize(
+    ("kept", "words"),
+    [
+        ({}, "no 2 fingers anywhere on this outline hold"),
+        ({"arcs": [[0.0, 1.4]]}, "anywhere on the 10.0% of this outline where they may be hold"),
+        ({"min_distance": 3.0}, "anywhere on this outline, 3 m apart, hold"),
+    ],
+)
+def test_refusals_name_what_keeps_fingers_from_places(
+    kept: dict[str, object], words: str, more: dict[str, object]
+) -> None:
+    """One was of all of the outline, in words, where arcs had left a tenth of it."""
+    ways = rg.LoadSet.hull([rg.Wrench([1, 0]), rg.Wrench([-1, 0]), rg.Wrench([0, -1])])
+    asked = {"friction": 0.0, "from_corners": 0.0, **kept, **more}
+    with pytest.raises(rg.Infeasible) as none:
+        rg.choose_grasp(BRACKET, 2, ways, **asked)  # type: ignore[arg-type]
+    assert words in str(none.value)
+
+
 def test_what_cannot_be_answered_is_refused() -> None:
     for given, words in (
         ({"objective": "best"}, "objective must be one of sum_normal"),

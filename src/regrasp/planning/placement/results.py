@@ -32,6 +32,8 @@ _AS_FOUND = 1.01  # a grasp whose forces come out larger than the search found i
 _DIFFERENT = 0.05  # of the length
 _OTHERS = 4
 _AT_ONCE = 1_000_000  # numbers
+_ALL = 0.9  # of the outline: what is left out near corners is no news
+_FAR = 0.01  # of the size: a least distance that refuses placements
 
 
 @dataclass(frozen=True)
@@ -96,8 +98,8 @@ def chosen_at_level(
             else "were found to hold the loads; that there are none is not proven"
         )
         raise Infeasible(
-            f"no {search.fingers} fingers anywhere on this outline {what}, with friction {asked.friction:g} "
-            f"and forces of at most {limit:g} N",
+            f"no {search.fingers} fingers anywhere on {_where(search)} {what}, with friction "
+            f"{asked.friction:g} and forces of at most {limit:g} N",
             proof,
         )
 
@@ -163,6 +165,14 @@ def proof_of(search: Search, asked: Asked, bound: float) -> PlacementProof:
     return search.proof(bound, read_only(edges), asked.shape.centre_of_mass)
 
 
+def _where(search: Search) -> str:
+    """In words, the places that were asked about: a refusal may be of what keeps fingers from better ones."""
+    sides = search.sides
+    share = float(np.ptp(sides.ends, axis=1) @ sides.lengths[sides.edges] / sides.lengths.sum())
+    where = "this outline" if share > _ALL else f"the {share:.1%} of this outline where they may be"
+    return where if search.apart < _FAR * sides.size else f"{where}, {search.apart:g} m apart,"
+
+
 def _none_holds(search: Search, asked: Asked) -> Infeasible:
     proof = proof_of(search, asked, min(search.bound, search.largest))
     if search.best < inf:
@@ -177,7 +187,7 @@ def _none_holds(search: Search, asked: Asked) -> Infeasible:
         limited += f", each finger pushing with {least:g} N or more" if least else ""
         far = "" if largest < inf else f", not by forces of {proof.bound:.3g} N either"
         return Infeasible(
-            f"no {search.fingers} fingers anywhere on this outline hold the loads, with friction "
+            f"no {search.fingers} fingers anywhere on {_where(search)} hold the loads, with friction "
             f"{search.friction:g}{limited}{far}",
             proof,
         )
