@@ -56,8 +56,25 @@ def test_asked_to_end_it_leaves_nothing(name: str, tmp_path: Path) -> None:
     with started(tmp_path) as process:
         process.send_signal(number)
         _, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (128 + number, "\nEnded.\n")
+    assert (process.returncode, err) == (128 + number, "Ended.\n")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["long.toml"]
+
+
+@posix
+def test_a_search_that_answers_interrupts_by_its_best_hears_who_asks_it_to_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It took SIGTERM for an interrupt, went on to write files, and no second SIGTERM was heard."""
+    from regrasp.planning.placement import search
+
+    def asked_to_end(*_: object, **__: object) -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(search.Search, "norm_at", asked_to_end)
+    assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
+    code, _, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures")
+    assert (code, err) == (statuses.TERMINATED, "Ended.\n")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["grasp.toml"]
 
 
 @posix

@@ -51,8 +51,10 @@ for command in (demo, new, explore, plan, verify, simulate, schema, bench, sweep
     commands.add_command(command)
 
 
-class _Ended(KeyboardInterrupt):
-    """A signal that asks the program to end. Everything clears up as at an interrupt from the keyboard."""
+class _Ended(SystemExit):
+    """A signal that asks the program to end. Everything clears up as at an interrupt from the keyboard, which
+    some searches answer by the best so far; this they do not hear.
+    """
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -97,17 +99,17 @@ def _run() -> int:
         if wants_json() and facts is not None:
             say_json(facts)
         return VERIFIED
+    except click.ClickException as wrong:
+        status, message, error = BAD_INPUT, wrong.format_message(), wrong
+        wrong.show()
+    except (click.Abort, KeyboardInterrupt, _Ended) as stop:
+        status, message = _stopped(stop)
+        error = stop
+        _complain(message)
     except SystemExit as stop:  # click's way out, of completion and where nobody reads what it prints
         if stop.code == 1 and _COMPLETING not in os.environ:
             return PIPE_CLOSED
         raise
-    except click.ClickException as wrong:
-        status, message, error = BAD_INPUT, wrong.format_message(), wrong
-        wrong.show()
-    except (click.Abort, KeyboardInterrupt) as stop:
-        status, message = _stopped(stop)
-        error = stop
-        _complain(message)
     except RegraspError as problem:
         status, message, error = status_of(problem), str(problem), problem
         _complain(f"Error: {message}")
@@ -117,10 +119,9 @@ def _run() -> int:
 
 
 def _stopped(stop: BaseException) -> tuple[int, str]:
-    """The status of a run that was stopped; click puts its own error around the signal's."""
-    cause = stop if isinstance(stop, _Ended) else stop.__cause__
-    if isinstance(cause, _Ended):
-        return (TERMINATED if cause.number == signal.SIGTERM else HUNG_UP), "Ended."
+    """The status of a run that was stopped, and what is said."""
+    if isinstance(stop, _Ended):
+        return (TERMINATED if stop.number == signal.SIGTERM else HUNG_UP), "Ended."
     return INTERRUPTED, "Interrupted."
 
 

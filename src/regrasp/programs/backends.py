@@ -205,7 +205,7 @@ def answered_quickly(program: Program, entries: Array | None = None) -> tuple[Ar
 
     try:
         return solved_again(program, program.A.data if entries is None else entries)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemExit):
         raise
     except BaseException:  # Rust's panics are no exceptions
         return None
