@@ -52,8 +52,10 @@ for command in (demo, new, explore, plan, verify, simulate, schema, bench, sweep
 
 
 class _Ended(SystemExit):
-    """A signal that asks the program to end. Everything clears up as at an interrupt from the keyboard, which
-    some searches answer by the best so far; this they do not hear.
+    """A signal that asks the program to end.
+
+    Everything clears up as at an interrupt from the keyboard, which searches answer by the best so far; this
+    they do not hear.
     """
 
     def __init__(self, number: int) -> None:
