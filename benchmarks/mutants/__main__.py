@@ -68,13 +68,20 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "boxes": (
         [
             f"verification/placed/{name}.py"
-            for name in ("placements", "straight", "cubic", "forces/*", "clear_boxes", "roots", "groups")
+            for name in (
+                "placements",
+                "straight",
+                "cubic",
+                "forces/*",
+                "clear_boxes",
+                "roots",
+                "groups",
+                "by_side",
+            )
         ],
         [
-            *(
-                f"verification/proofs/test_{name}.py"
-                for name in ("boxes*", "planar*", "proofs*", "trees*", "twists*")
-            ),
+            *(f"verification/proofs/test_{name}.py" for name in ("boxes*", "planar*", "proofs*", "trees*")),
+            "verification/proofs/twists/test_*.py",
             "verification/limits/test_*.py",
             "verification/proofs/curves/test_[ct]*.py",
             "verification/by_hand/test_tied_by_hand.py",

@@ -27,7 +27,7 @@ LIMITS = {
         ("bracket", 2, "friction_use", 76),
         ("bracket", 2, "answered", 108),
         ("ellipse", 2, "peak", 77),
-        ("ellipse", 3, "peak", 560),
+        ("ellipse", 3, "peak", 831),
         ("ellipse", 2, "friction_use", 271),
         ("ellipse", 2, "answered", 95),
     ],
