@@ -114,14 +114,9 @@ def _places() -> None:
     finally:
         searching.MANY = many
     rg.choose_grasp(
-        rg.Outline.ellipse(2, 1),
-        3,
-        loads,
-        friction=0.4,
-        objective="friction_use",
-        max_force=4.0,
+        rg.Outline.ellipse(2, 1), 3, loads, friction=0.4, objective="friction_use", max_force=4.0,
         most_boxes=512,
-    )
+    )  # fmt: skip
     rg.choose_grasp(rg.Mesh.box(1, 1, 1), 3, rg.Wrench([0, 0, -1.0]), friction=0.6, tolerance=0.1)
 
 

@@ -17,7 +17,7 @@ from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.sides import RingSides, Sides
 
 MOST_BOXES = 200_000
-"""Boxes of a search unless told otherwise: 500 to 800 bytes each, with their proof."""
+"""Boxes of a search unless told otherwise: 500 to 800 bytes each with their proof, 1,600 by pairs."""
 _AT_A_TIME, _WORK = 256, 5000  # boxes, of so many sides times loads, lest an interrupt waits
 _TRIED = 4096
 _LATE = 4096  # boxes without any placement found, after which points are tried

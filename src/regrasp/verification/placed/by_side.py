@@ -31,7 +31,10 @@ def wrong_by_side(proof: Proof) -> list[str]:
         return ["proof: twists for each side go with boxes, a largest force and straight sides"]
     if np.shape(boxes) != (len(boxes), 2) or np.shape(twists) != (len(boxes), 3):
         return [f"proof: by_side and side_twists must have shape {(len(boxes), 2)} and {(len(boxes), 3)}"]
-    return [] if np.isfinite(twists).all() else ["proof: its numbers must be finite"]
+    if not np.isfinite(twists).all():
+        return ["proof: its numbers must be finite"]
+    there = np.isin(np.asarray(boxes)[:, 0], np.arange(len(proof.children)))
+    return [] if there.all() else [f"proof: by_side is about boxes from 0 to {len(proof.children) - 1}"]
 
 
 class BySide:

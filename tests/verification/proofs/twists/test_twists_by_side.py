@@ -98,6 +98,12 @@ def test_shapes_that_do_not_fit_are_said() -> None:
     assert said(sided([RIGHT, [0, np.nan, 1]])) == "proof: its numbers must be finite"
 
 
+@pytest.mark.parametrize("box", [-1, 10**6])
+def test_boxes_that_are_not_there_are_said(box: int) -> None:
+    wrong = sided([RIGHT, LEFT, LEFT], [(0, 0), (0, 1), (box, 1)])
+    assert said(wrong) == "proof: by_side is about boxes from 0 to 0"
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_against_a_box_for_each_side(seed) -> None:
     """The largest bound is the least over sides of the largest over twists."""

@@ -19,10 +19,8 @@ from regrasp.planning.placement.sides import Sides
 
 _GAPS = (0.03,)  # proven on the way, while less is asked
 _BLOCK = 128  # sides that are cut from the ends of an arc on which fingers are alike
-_COARSE, _FEWER = (
-    16,
-    0.9,
-)  # sides of both others, from which on sides at the ends are left out, and their rest
+_COARSE = 16  # sides of both other fingers, from which on sides at the ends of the wide arc are left out
+_FEWER = 0.9  # of the wide arc, what is left of it then at most
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _SHORTEST = 2e-3  # of the size, of stretches of a side
 _TURNED = 0.1  # of the distance at which a normal passes the centre, the longest stretch of a side
