@@ -26,6 +26,7 @@ LOADS = rg.LoadSet.hull(
 )
 
 GEAR = gear()
+IN_SPACE = rg.LoadSet.hull([rg.Wrench([x, y, -1.8]) for x, y in ((0.5, 0), (-0.5, 0), (0, 0.5))])
 ELLIPSE = rg.Outline.ellipse(2, 1)
 MOST = 7000
 
@@ -68,6 +69,33 @@ def test_threads_change_no_number_and_parts_no_answer(
     for first, second in ((one, alone), (alone, one)):
         low, high = (first.value, second.bound) if objective == "force" else (first.bound, second.value)
         assert low <= high * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("objective", "shape", "more"),
+    [
+        ("force", C, {"max_force": 4.0, "most_boxes": 600}),  # by twists of all loads together
+        ("friction_use", C, {"max_force": 4.0, "most_boxes": 600}),  # by those that move with fingers
+        ("friction_use", ELLIPSE, {"max_force": 4.0, "most_boxes": 300}),  # by those that turn with them
+        ("peak_normal", rg.Mesh.box(0.04, 0.03, 0.05), {"most_boxes": 600}),
+        ("friction_use", rg.Mesh.box(0.04, 0.03, 0.05), {"max_force": 4.0, "most_boxes": 400}),
+    ],
+    ids=["joined", "moving", "turning", "space", "space, a level"],
+)
+def test_rounds_of_boxes_are_the_same_on_more_threads(
+    monkeypatch: pytest.MonkeyPatch, objective: str, shape: rg.Outline | rg.Mesh, more: dict[str, Any]
+) -> None:
+    found = []
+    for count in (1, 2, 3):
+        asked: list[int] = []
+        monkeypatch.setattr(parts, "threads", lambda count=count, asked=asked: asked.append(count) or count)
+        loads = LOADS if isinstance(shape, rg.Outline) else IN_SPACE
+        found.append(rg.choose_grasp(shape, 3, loads, friction=0.5, objective=objective, tolerance=1e-3, **more))
+        assert len(asked) > 10
+    one, *others = found
+    assert all(other.to_dict() == one.to_dict() for other in others)
+    assert 0 < len(one.certificate.children)
+    assert rg.verify(one)
 
 
 def test_an_interrupt_within_a_round_leaves_a_whole_proof(monkeypatch: pytest.MonkeyPatch) -> None:

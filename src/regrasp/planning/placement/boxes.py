@@ -3,7 +3,7 @@
 import numpy as np
 
 from regrasp.mechanics.checks import Array
-from regrasp.planning.placement.parts import memory
+from regrasp.planning.placement.parts import memory, split
 from regrasp.planning.placement.sides import Sides
 
 _FIRST = 2048
@@ -44,18 +44,9 @@ class Boxes:
         """The boxes that one is split into, at ``u`` on one side or ``after`` another; none without room."""
         if len(self._heap) < self.count + self.fingers + 1 and not self._grow(most):
             return range(0)
-        arcs, ends, _, _, _, kinds, children, _, _, other, _ = self._boxes
-        same = (arcs[node] == arcs[node, finger]).all(axis=1) & (ends[node] == ends[node, finger]).all(axis=1)
-        alike, start = np.flatnonzero(same), self.count
-        made = range(start, start + len(alike) + 1)
-        self._state[0], kinds[node], children[node] = made.stop, 2, (start, len(made))
-        for right, child in enumerate(made):
-            arcs[child], ends[child], kinds[child], other[child] = arcs[node], ends[node], 0, -1
-            lefts, rights = alike[: len(alike) - right], alike[len(alike) - right :]
-            ends[child, lefts, 1] = ends[child, rights, 0] = u
-            if after is not None:
-                arcs[child, lefts, 1], arcs[child, rights, 0] = after, after + 1
-                ends[child, lefts, 1], ends[child, rights, 0] = self.sides.ends[[after, after + 1], [1, 0]]
+        sides = None if after is None else (after, self.sides.ends[[after, after + 1], [1, 0]])
+        made = split(self._boxes, self.count, node, finger, u, sides)
+        self._state[0] = made.stop
         return made
 
     def parted(self, node: int, finger: int, sides: np.ndarray, twists: Twists, most: int) -> range | None:
@@ -90,9 +81,6 @@ class Boxes:
         have, room = len(self._heap), min(2 * len(self._heap), most)
         if room <= have:
             return False
-        larger = memory(room, self.fingers)
-        for old, new in zip(self._boxes[:-1], larger[:-1], strict=True):
-            new[:have] = old
-        self._boxes = larger
+        self._boxes = memory(room, self.fingers, self._boxes)
         self._heap = np.concatenate([self._heap, np.zeros(room - have, np.int64)])
         return True

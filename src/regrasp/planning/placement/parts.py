@@ -10,17 +10,20 @@ no number of it.
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.threads import threads
 
-_PARTS = 4
+PARTS = 4
+"""Of a round."""
 _EACH = 256  # boxes that a part looks at in a round, at most
 _FROM = 4096  # boxes: smaller searches stay in one part, and as quick as they are
 _OPEN = 64  # boxes of a part at least, or the first of them are much better than what is split after them
 
+Result = TypeVar("Result")
 Boxes = tuple[np.ndarray, ...]
 PartSearch = Callable[["Queue", int], int]
 """Goes on with a queue for so many boxes and says why it ended, as the compiled search does."""
@@ -47,38 +50,76 @@ class Queue:
     @property
     def is_for_parts(self) -> bool:
         """Whether it is long enough."""
-        return bool(self.state[0] >= _FROM and self.state[1] >= _PARTS * _OPEN)
+        return bool(self.state[0] >= _FROM and self.state[1] >= PARTS * _OPEN)
 
     @property
     def has_room(self) -> bool:
         """Whether a round in parts fits into the memory."""
-        return len(self.boxes[2]) - int(self.state[0]) >= _PARTS * _stretch(self.fingers)
+        return len(self.boxes[2]) - int(self.state[0]) >= PARTS * _stretch(self.fingers)
 
 
-def memory(room: int, k: int) -> Boxes:
-    """Arrays for so many boxes, as the compiled search takes them."""
-    return (
+def memory(room: int, k: int, old: Boxes = ()) -> Boxes:
+    """Arrays for so many boxes, as the compiled search takes them; with those that were."""
+    boxes = (
         np.zeros((room, k, 2), np.int64), np.zeros((room, k, 2)), np.zeros(room), np.zeros((room, 3)),
         np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2), np.int64),
         np.zeros((room, k, 8)), np.zeros((room, 3)), np.full(room, -1), np.zeros((1, 3)),
     )  # fmt: skip
+    for values, known in zip(boxes[:-1], old, strict=False):
+        values[: len(known)] = known
+    return boxes
 
 
-def search_in_parts(whole: Queue, search: PartSearch, each: int = _EACH) -> list[int]:
+def side_by_side(work: Callable[[int], Result], count: int = PARTS) -> list[Result]:
+    """What ``work`` returns of each part, by number; threads share as many as ``count`` of them."""
+    beside = min(threads(), count, PARTS)
+    if beside < 2:
+        return [work(i) for i in range(PARTS)]
+    with ThreadPoolExecutor(beside) as pool:
+        return list(pool.map(work, range(PARTS)))
+
+
+def whole(work: Callable[[], Result]) -> Result:
+    """What ``work`` returns: an interrupt, which reaches the main thread alone, waits for its end."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(work).result()
+
+
+def split(
+    boxes: Boxes, start: int, node: int, finger: int, u: float, sides: tuple[int, Array] | None
+) -> range:
+    """Make the boxes, from ``start`` on, that one is split into: an arc at ``u``, or after one of its sides.
+
+    sides: the last side on the left, its end and the beginning of the next.
+    """
+    arcs, ends, _, _, _, kinds, children, _, _, other, _ = boxes
+    same = (arcs[node] == arcs[node, finger]).all(axis=1) & (ends[node] == ends[node, finger]).all(axis=1)
+    alike = np.flatnonzero(same)
+    made = range(start, start + len(alike) + 1)
+    kinds[node], children[node] = 2, (start, len(made))
+    for right, child in enumerate(made):
+        arcs[child], ends[child], kinds[child], other[child] = arcs[node], ends[node], 0, -1
+        lefts, rights = alike[: len(alike) - right], alike[len(alike) - right :]
+        ends[child, lefts, 1] = ends[child, rights, 0] = u
+        if sides is not None:
+            arcs[child, lefts, 1], arcs[child, rights, 0] = sides[0], sides[0] + 1
+            ends[child, lefts, 1], ends[child, rights, 0] = sides[1]
+    return made
+
+
+def search_in_parts(queue: Queue, search: PartSearch, each: int = _EACH) -> list[int]:
     """One round of ``each`` boxes a part; why each part ended. There is room for it (``has_room``)."""
-    # an interrupt reaches the main thread alone, and the round is whole before it ends the search
-    with ThreadPoolExecutor(1 + threads()) as pool:
-        return pool.submit(_round, whole, search, pool, min(each, _EACH)).result()
+    return whole(lambda: _round(queue, search, min(each, _EACH)))
 
 
-def _round(whole: Queue, search: PartSearch, pool: ThreadPoolExecutor, each: int) -> list[int]:
+def _round(whole: Queue, search: PartSearch, each: int) -> list[int]:
     made, stretch = int(whole.state[0]), _stretch(whole.fingers)
     waiting = _ordered(whole.heap[: whole.state[1]], whole.boxes)
-    best, rest = np.split(waiting, [_PARTS * _EACH])
-    dealt = [best[i::_PARTS] for i in range(_PARTS)]
-    starts = [made + i * stretch for i in range(_PARTS)]
+    best, rest = np.split(waiting, [PARTS * _EACH])
+    dealt = [best[i::PARTS] for i in range(PARTS)]
+    starts = [made + i * stretch for i in range(PARTS)]
     parts = [_part(whole, nodes, start) for nodes, start in zip(dealt, starts, strict=True)]
-    ended = list(pool.map(lambda part: search(part, each), parts))
+    ended = side_by_side(lambda i: search(parts[i], each))
     left = [rest]
     for part, nodes, start in zip(parts, dealt, starts, strict=True):
         left.append(_put_back(whole, part, nodes, start))

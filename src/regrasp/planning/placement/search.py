@@ -1,8 +1,9 @@
 """Running the compiled branch and bound, and reading what it found."""
 
 from collections.abc import Callable
+from copy import copy
 from itertools import combinations
-from math import inf
+from math import hypot, inf
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.reserve import RESERVE, kept_friction
 from regrasp.planning.placement.boxes import Boxes
 from regrasp.planning.placement.laws import Law
-from regrasp.planning.placement.parts import Queue, memory, search_in_parts
+from regrasp.planning.placement.parts import Queue, search_in_parts
 from regrasp.planning.placement.proofs.box_rows import rows_of
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.sides import RingSides, Sides
@@ -46,6 +47,7 @@ class Search(Boxes):
         super().__init__(sides, fingers)
         self.friction, self.law, self.apart = friction, law, apart
         self.unit = max(float(np.abs(loads / [1, 1, sides.size]).max()), limits[1]) or 1.0
+        self.loads = loads[:0]
         self.under(loads)
         self._table = np.ascontiguousarray(sides.table())
         self._found, self._tried = np.full(1 + 2 * fingers, inf), np.zeros((_TRIED, 1 + 2 * fingers))
@@ -57,6 +59,10 @@ class Search(Boxes):
 
     def under(self, loads: Array) -> None:
         """From now on, of these loads (L, 3) [N, N m]."""
+        from regrasp.closed_form.compiled.places.placement_search import spare
+
+        if len(loads) != len(self.loads):
+            self._spare = spare(self.fingers, len(loads))
         self.loads = loads
         self._wanted = np.ascontiguousarray(-loads / [1, 1, self.sides.size] / self.unit)
 
@@ -129,7 +135,7 @@ class Search(Boxes):
 
     def excluded(self, boxes: np.ndarray, fixed: float) -> int:
         """How many of some boxes are excluded at a level of the norm [N] now, before one that is not."""
-        from regrasp.closed_form.compiled.places.placement_search import search, spare
+        from regrasp.closed_form.compiled.places.placement_search import search
 
         done, some = 0, 1
         bounds, kinds = self._boxes[2], self._boxes[5]
@@ -138,8 +144,8 @@ class Search(Boxes):
             bounds[heap], kinds[heap] = -1.0, 0  # to be bounded anew, which is all that is done with each
             state, none = np.array([2, len(heap), 0]), np.full(1 + 2 * self.fingers, inf)
             search(
-                *self.terms(fixed), 0.0, 0.0, 0.0, self._boxes, heap, state, none,
-                self._tried[:1], len(heap), spare(self.fingers, len(self._wanted)),
+                *self.terms(fixed), 0.0, 0.0, 0.0, self._boxes, heap, state, none, self._tried[:1], len(heap),
+                self._spare,
             )  # fmt: skip
             if state[1]:
                 return done + int(kinds[boxes[done : done + some]].argmin())
@@ -157,23 +163,10 @@ class Search(Boxes):
         """Sides, loads, law and a level [N] as compiled loops take them."""
         return self._table, self._wanted, self._law(self.friction, self.friction, self.law), fixed / self.unit
 
-    def moved(self, node: int, fixed: float, room: tuple[Any, ...]) -> Array | None:
-        """Exclude a box at a level [N] by twists that move with fingers, or say where a placement holds."""
-        from regrasp.closed_form.compiled.places.moving_twists import GONE, HELD, moved
-
-        u, twists = np.zeros(self.fingers), np.zeros((len(self.loads), 3 + 2 * self.fingers))
-        how = moved(*self.terms(fixed), *self.box(node), u, twists, room)
-        if how == GONE:
-            few, twists[:, 2] = np.flatnonzero(twists.any(axis=1)), twists[:, 2] / self.sides.size
-            self.leave(node, None, (few, twists[few]))
-        lo, hi = self._boxes[1][node].T
-        return lo + u * (hi - lo) if how == HELD else None
-
     def are_apart(self, places: np.ndarray, u: Array) -> bool:
         """Whether fingers are as far apart as they must be."""
-        points = self.sides.points(places, u)
-        away = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
-        return bool((away + np.diag(np.full(len(u), inf)) >= self.apart).all())
+        points = self.sides.points(places, u).tolist()
+        return all(hypot(p[0] - q[0], p[1] - q[1]) >= self.apart for p, q in combinations(points, 2))
 
     def forget(self, level: float, places: np.ndarray, u: Array) -> None:
         """Look for a first placement again: one on these sides reaches a level, a better one is sought."""
@@ -200,21 +193,35 @@ class Search(Boxes):
             self.sides, self.fingers, mu, self.loads, self.law, self.apart, self.narrow, self.limits
         )
 
-    def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None) -> float:
-        """The norm of forces of a placement for the worst load [N]; of another law without any limits."""
-        k = len(u)
-        from regrasp.closed_form.compiled.places.placement_search import search, spare
+    def norm_at(self, places: np.ndarray, u: Array, law: Law | None = None, most: float = inf) -> float:
+        """The norm of forces of a placement for the worst load [N]; of another law without any limits.
+
+        most: beyond this it need not be known.
+        """
+        from regrasp.closed_form.compiled.places.placement_search import value_of
 
         friction = kept_friction(self.friction, 2 * RESERVE)
-        boxes = memory(1 + k + 1, k)
-        boxes[0][0], boxes[1][0] = places[:, None], u[:, None]
-        found = np.full(1 + 2 * k, inf)
-        search(
-            self._table, self._wanted, self._law(friction, friction, law or self.law), inf, 0.0, 0.0, 0.0,
-            boxes, np.zeros(8, np.int64), np.array([1, 1, 0]), found, np.zeros((1, 1 + 2 * k)), 1,
-            spare(k, len(self._wanted)),
-        )  # fmt: skip
-        return float(found[0]) * self.unit
+        codes = self._law(friction, friction, law or self.law)
+        at = np.repeat(places[:, None], 2, axis=1), np.repeat(u[:, None], 2, axis=1)
+        found = value_of(self._table, self._wanted, codes, most / self.unit, *at, self._spare)
+        return float(found) * self.unit
+
+    def is_within(self, places: np.ndarray, u: Array, most: float) -> bool:
+        """Whether the norm of forces of a placement is at most this [N]."""
+        return self.norm_at(places, u, most=most * (1 + _PRECISE)) <= most
+
+    def holds(self, places: np.ndarray, u: Array, most: float) -> bool:
+        """The same, with fingers as far apart as they must be."""
+        return self.is_within(places, u, most) and self.are_apart(places, u)
+
+    def beside(self) -> "Search":
+        """This search for a thread of its own, which looks at boxes and changes none but those."""
+        from regrasp.closed_form.compiled.places.placement_search import spare
+
+        other = copy(self)
+        other._boxes = (*self._boxes[:-1], np.zeros_like(self._boxes[-1]))
+        other._spare = spare(self.fingers, len(self._wanted))
+        return other
 
     def _law(self, mu: float, usable: float, law: Law) -> tuple[float, ...]:
         """As the compiled search takes it; forces of another law than that of the search have no limits."""

@@ -15,25 +15,12 @@ from numba import njit
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.patches import patch_gauge, patch_joint, patch_support
 from regrasp.closed_form.compiled.patches.patch_gauge import bound_by, gauge, reached, workspace
-from regrasp.closed_form.compiled.patches.patch_joint import LOADS, ROWS, bound_together
-from regrasp.closed_form.compiled.places import placement_search
-from regrasp.closed_form.compiled.places.placement_search import (
-    CLOSED,
-    EXCLUDED,
-    FULL,
-    NEAR,
-    OPEN,
-    PAUSED,
-    SPLIT,
-    pop,
-    push,
-)
-from regrasp.closed_form.compiled.places.wrench_gauge import LARGEST
+from regrasp.closed_form.compiled.patches.patch_joint import ROWS, bound_together
+from regrasp.closed_form.compiled.places.placement_search import EXCLUDED, NEAR, OPEN, SPLIT
 from regrasp.compilation import kept
 
 _CORNERS = 3  # rows of a triangle
 _MANY = 1000  # rows of a patch that take time
-_OFTEN = 16  # boxes of which one at least is excluded by all loads together
 _DOUBT = 1e-12  # of the size of a mesh, by which distances may be off
 _AGREE = 1e-6  # of a norm, by which what forces reach and a bound agree
 
@@ -137,9 +124,9 @@ def _halve(rows, spans, tree, radius, patch, state):  # type: ignore[no-untyped-
     a, b, o = first + edge, first + (edge + 1) % _CORNERS, first + (edge + 2) % _CORNERS
     tree[patch, 2] = edge
     for half in range(2):
-        new, row = state[3], state[4]
-        state[3] += 1
-        state[4] += _CORNERS
+        new, row = state[2], state[3]
+        state[2] += 1
+        state[3] += _CORNERS
         tree[patch, half] = new
         tree[new, 0] = tree[new, 1] = tree[new, 2] = -1
         spans[new, 0], spans[new, 1] = row, _CORNERS
@@ -203,79 +190,69 @@ def spare(k: int) -> tuple[Any, ...]:
     )  # fmt: skip
 
 
-def _loop(digest: str) -> Any:
-    @kept("the search for places on surfaces", error_model="numpy", _nrt=False)
-    def search(  # type: ignore[no-untyped-def]
-        surface, radius, loads, trials, law, usable, tolerance, least, narrow, boxes, heap, state,
-        found, tried, budget, spare, together, room,
+def _looking(digest: str) -> Any:
+    @kept("the search for places on surfaces", error_model="numpy", nogil=True, _nrt=False)
+    def look(  # type: ignore[no-untyped-def]
+        first, step, nodes, surface, loads, trials, law, usable, found, level, least, boxes, spare, room,
+        joining, values, proven, twists,
     ):  # fmt: skip
-        """Goes on with a search; see the module. Returns why it ends.
+        """Of every ``step``-th box of ``nodes``: the value of its placement, and what all loads prove of it.
 
         surface: rows (R, 6), points and inward normals; spans (K, 2), first row and rows of each patch; tree
         (K, 3), its halves, -1 for none, and the edge across which a triangle is halved; and balls (G, 9)
-        around groups (``patch_support``). radius: (K,) of each patch. trials: loads, and more that placements
-        tried must hold, too. law: mu, size, norm, precision; usable: mu for placements tried.
-        boxes: patches (N, k), bounds (N,), twists (N, 6), loads' numbers (N,), kinds (N,), first children and
-        their number (N, 2), placements to try (N, k, 6), fingers to split (N,), rows of ``together`` that
-        bound them (N,), -1 for none. state: numbers of boxes, of those in the heap, of placements tried, of
-        patches, of rows, of what was looked at, of rows of ``together``, of boxes whose loads were taken
-        together, and of those excluded so. found: (1 + 6 k) the least value and its spots. together:
-        (T, L, 6) twists of all loads; room: for them. tolerance: where below 0, what is found ends it.
+        around groups (``patch_support``). trials: loads, and more that placements tried must hold, too. law:
+        mu, size, norm, precision; usable: mu for placements tried. found: the least value, which others
+        need not say more of. boxes: patches (N, k), bounds (N,), twists (N, 6), loads' numbers (N,), kinds
+        (N,), first children and their number (N, 2), placements to try (N, k, 6), fingers to split (N,), rows
+        of ``together`` that bound them (N,), -1 for none. joining: whether loads are taken together, which
+        writes ``proven`` (n,), 0 for what was not, by ``twists`` (n, L, 6); room: for them.
         """
         _ = digest
-        patches, bounds, twists, critical, kinds, children, places, fingers, joined = boxes
-        first, count, wide, seen, twist, work = spare[0], spare[1], spare[2], spare[4], spare[7], spare[8]
-        rows, spans, tree, _ = surface
-        k, looked = patches.shape[1], 0
+        patches, bounds, critical, places = boxes[0], boxes[1], boxes[3], boxes[6]
         mu, size, norm, precision = law
-        trying = (usable, size, norm, precision)
-        if state[0] == 1 and kinds[0] == OPEN and state[2] == 0 and bounds[0] == 0.0:
-            _locate(spans, radius, patches[0], first, count, wide)
-            bounds[0], critical[0] = _judge(
-                surface, patches[0], loads, law, np.inf, 0, twists[0], seen, work, False
-            )
-            fingers[0] = _plan(rows, first, count, wide, narrow, seen, places[0])
-        while state[1] > 0:
-            level = found[0] * (1.0 - tolerance)
-            if bounds[heap[0]] >= level:
-                break
-            if looked >= budget:
-                return PAUSED
-            if state[0] + k + 1 > len(bounds) or state[3] + 2 > len(spans) or state[4] + 6 > len(rows):
-                return FULL
-            if state[6] == len(together):
-                return FULL
-            looked += 1
-            state[5] = work[15][0] + room[6][0]
-            box = pop(heap, state[1], bounds)
-            state[1] -= 1
-            value = value_of(places[box], trials, trying, found[0], critical[box], least, spare)
-            row = state[2] % len(tried)
-            state[2] += 1
-            tried[row, 0] = value
-            for i in range(k):
-                for c in range(6):
-                    tried[row, 1 + 6 * i + c] = places[box, i, c]
-            if value < found[0]:
-                for c in range(6 * k + 1):
-                    found[c] = tried[row, c]
-                if tolerance < 0.0:
-                    push(heap, state[1], bounds, box)
-                    state[1] += 1
-                    return PAUSED
-                level = found[0] * (1.0 - tolerance)
-            if bounds[box] < level and norm == LARGEST and 1 < len(loads) <= LOADS:
-                _locate(spans, radius, patches[box], first, count, wide)
-                # while it pays: where it seldom excludes a box, few more are tried
-                if count.sum() <= ROWS and state[7] <= _OFTEN * (state[8] + _OFTEN):
-                    proven = bound_together(
-                        rows, first, count, loads, mu, size, level, precision, together[state[6]], room
-                    )
-                    state[7] += 1
-                    if proven > bounds[box]:
-                        bounds[box], joined[box] = proven, state[6]
-                        state[6] += 1
-                    state[8] += 1 if proven >= level else 0
+        rows, spans = surface[0], surface[1]
+        corners, count = spare[0], spare[1]
+        for n in range(first, len(nodes), step):
+            box = nodes[n]
+            trying = (usable, size, norm, precision)
+            values[n] = value_of(places[box], trials, trying, found, critical[box], least, spare)
+            proven[n] = 0.0
+            if not joining or bounds[box] >= level:
+                continue
+            total = 0
+            for i in range(patches.shape[1]):
+                corners[i], count[i] = spans[patches[box, i], 0], spans[patches[box, i], 1]
+                total += count[i]
+            if total <= ROWS:
+                proven[n] = bound_together(
+                    rows, corners, count, loads, mu, size, level, precision, twists[n], room
+                )
+
+    return look
+
+
+def _splitting(digest: str) -> Any:
+    @kept("the search for places on surfaces", error_model="numpy", _nrt=False)
+    def split(nodes, surface, radius, level, least, boxes, state, spare, proven, twists, together):  # type: ignore[no-untyped-def]
+        """Excludes or splits boxes that were looked at; how many are left open, too small to be split.
+
+        radius: (K,) of each patch. state: numbers of boxes, of placements tried, of patches, of rows, of what
+        was looked at, of rows of ``together`` (T, L, 6), of boxes whose loads were taken together, and of
+        those excluded so. There is room for all.
+        """
+        _ = digest
+        patches, bounds, of, critical, kinds, children, _, fingers, joined = boxes
+        first, count, wide = spare[0], spare[1], spare[2]
+        rows, spans, tree, _ = surface
+        k = patches.shape[1]
+        for n in range(len(nodes)):
+            box = nodes[n]
+            if proven[n] > bounds[box]:
+                bounds[box], joined[box] = proven[n], state[5]
+                for load in range(twists.shape[1]):
+                    for c in range(6):
+                        together[state[5], load, c] = twists[n, load, c]
+                state[5] += 1
             if bounds[box] >= level:
                 kinds[box] = EXCLUDED
                 continue
@@ -302,36 +279,44 @@ def _loop(digest: str) -> Any:
                 bounds[child], critical[child], kinds[child] = bounds[box], critical[box], OPEN
                 joined[child] = joined[box]
                 for c in range(6):
-                    twists[child, c] = twists[box, c]
+                    of[child, c] = of[box, c]
                 _locate(spans, radius, patches[child], first, count, wide)
                 if least > 0.0 and _too_near(rows, first, count, least):
                     kinds[child] = NEAR
-                    continue
-                w = loads[critical[box]]
-                known = bound_by(surface, patches[child], w, twists[box], mu, size, norm, work[:16])
-                if known > bounds[box]:
-                    bounds[child], joined[child] = known, -1
-                if bounds[child] < level:
-                    proven, load = _judge(
-                        surface, patches[child], loads, law, level, critical[box], twist, seen, work, False
-                    )
-                    if proven > bounds[child]:
-                        bounds[child], critical[child], joined[child] = proven, load, -1
-                        for c in range(6):
-                            twists[child, c] = twist[c]
-                    fingers[child] = _plan(rows, first, count, wide, narrow, seen, places[child])
-                if bounds[child] >= level:
-                    kinds[child] = EXCLUDED
-                else:
-                    push(heap, state[1], bounds, child)
-                    state[1] += 1
-        for n in range(state[1]):
-            kinds[heap[n]] = EXCLUDED
-        state[1] = 0
-        return CLOSED
 
-    return search
+    return split
 
 
-# Numba's cache watches this file only; the digest in the loop's closure makes it watch this, too.
-search = _loop(digest((patch_gauge, patch_joint, patch_support, placement_search)))
+def _bounding(digest: str) -> Any:
+    @kept("the search for places on surfaces", error_model="numpy", nogil=True, _nrt=False)
+    def bound(first, step, nodes, surface, radius, loads, law, level, narrow, boxes, spare):  # type: ignore[no-untyped-def]
+        """Bounds every ``step``-th box of ``nodes``, first by the twist it has, and plans what is next."""
+        _ = digest
+        patches, bounds, twists, critical, _, _, places, fingers, joined = boxes
+        corners, count, wide, seen, twist, work = spare[0], spare[1], spare[2], spare[4], spare[7], spare[8]
+        mu, size, norm, _ = law
+        for n in range(first, len(nodes), step):
+            box = nodes[n]
+            known = bound_by(
+                surface, patches[box], loads[critical[box]], twists[box], mu, size, norm, work[:16]
+            )
+            if known > bounds[box]:
+                bounds[box], joined[box] = known, -1
+            if bounds[box] >= level:
+                continue
+            proven, load = _judge(
+                surface, patches[box], loads, law, level, critical[box], twist, seen, work, False
+            )
+            if proven > bounds[box]:
+                bounds[box], critical[box], joined[box] = proven, load, -1
+                for c in range(6):
+                    twists[box, c] = twist[c]
+            _locate(surface[1], radius, patches[box], corners, count, wide)
+            fingers[box] = _plan(surface[0], corners, count, wide, narrow, seen, places[box])
+
+    return bound
+
+
+# Numba's cache watches this file only; the digest in the loops' closures makes it watch these, too.
+_WATCHED = digest((patch_gauge, patch_joint, patch_support))
+look, split, bound = _looking(_WATCHED), _splitting(_WATCHED), _bounding(_WATCHED)

@@ -324,5 +324,25 @@ def _loop(digest: str) -> Any:
     return search
 
 
+def _value(digest: str) -> Any:
+    @kept("the search for places", error_model="numpy", nogil=True, _nrt=False)
+    def value_of(sides, loads, law, most, arcs, ends, spare):  # type: ignore[no-untyped-def]
+        """What the worst load needs of a placement, a box of no width; some value beyond ``most``.
+
+        sides, loads, law, arcs, ends, spare: as of ``search``.
+        """
+        _ = digest
+        _, usable, size, norm, precision, limit, margin = law
+        work, _, nowhere, _, twist = spare
+        law = (usable, size, norm, limit, margin)
+        found, _ = _judge(
+            sides, arcs, ends, loads, law, precision, most, 0, twist[0], work, nowhere, True
+        )  # fmt: skip
+        return found
+
+    return value_of
+
+
 # Numba's cache watches this file only; the digest in the loop's closure makes it watch these, too.
-search = _loop(digest((cubic_arcs, eroded, least_norm, limited, placement_boxes, two_twists, wrench_gauge)))
+_WATCHED = digest((cubic_arcs, eroded, least_norm, limited, placement_boxes, two_twists, wrench_gauge))
+search, value_of = _loop(_WATCHED), _value(_WATCHED)

@@ -154,8 +154,8 @@ def curved_sides(outline: Outline, control: Array) -> CurvedSides:
 def _at(control: Array, t: Array) -> Array:
     """(m, 2) points of cubics (m, 4, 2)."""
     s, t = (1 - t)[:, None], t[:, None]
-    p = np.moveaxis(control, 1, 0)
-    result: Array = s**3 * p[0] + 3 * s**2 * t * p[1] + 3 * s * t**2 * p[2] + t**3 * p[3]
+    p, q, r, e = (control[:, i] for i in range(4))
+    result: Array = s**3 * p + 3 * s**2 * t * q + 3 * s * t**2 * r + t**3 * e
     return result
 
 

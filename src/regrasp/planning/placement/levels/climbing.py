@@ -141,8 +141,7 @@ def improved(
             for way in (sign * step * way for way in ways for sign in (-1, 1)):
                 on, there = moved(search.sides, places, u, way)
                 level.put(search, level.beyond(best, _SLOW))
-                least = search.norm_at(on, there) if search.are_apart(on, there) else inf
-                if least > level.max_force * (1 - SURE):
+                if not search.holds(on, there, level.max_force * (1 - SURE)):
                     continue
                 reached = level.reached(search, best, on, there)
                 if reached > best:
@@ -160,8 +159,8 @@ def _slid_below(search: Search, norm: float, starts: list[Placed]) -> tuple[np.n
     """Where the first of some placements comes that reaches a norm by sliding; None where none does."""
 
     def less(places: np.ndarray, u: Array, than: float) -> float:
-        found = search.norm_at(places, u) if search.are_apart(places, u) else inf
-        return found if found < than else inf
+        found = search.norm_at(places, u, most=than)
+        return found if found < than and search.are_apart(places, u) else inf
 
     for _, places, u in starts:
         start = search.norm_at(places, u), places, u

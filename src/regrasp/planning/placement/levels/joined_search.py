@@ -5,14 +5,19 @@ each are left to twists that move with them (``moving_twists``).
 """
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import nan
+from typing import Any
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.boxes import Twists
 from regrasp.planning.placement.levels.climbing import improved, next_level, settled
 from regrasp.planning.placement.levels.level import SURE, Level
+from regrasp.planning.placement.levels.moving_search import twists_or_place
+from regrasp.planning.placement.levels.rounds import Rounds
 from regrasp.planning.placement.search import Progress, Search
 
 MOST_LOADS = 64
@@ -24,8 +29,17 @@ _STRICT = 1e-9
 _LEAST = 0.15  # of an arc, that each part has
 _GAPS = (0.03,)  # proven on the way, while less is asked
 
-Twists = tuple[np.ndarray, Array]
-"""Loads, and their twists with what each finger adds."""
+Place = tuple[np.ndarray, Array]
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Of a box: what excludes it, placements that hold, where to split it: a finger, u, a side or None."""
+
+    near: bool = False
+    twists: Twists | None = None
+    places: Sequence[Place] = ()
+    at: tuple[int, float, int | None] | None = None
 
 
 def run_joined(
@@ -64,9 +78,6 @@ class _Joined:
     """Boxes not looked at, ``waiting``, the widest first."""
 
     def __init__(self, search: Search, level: Level, tolerance: float, most: int) -> None:
-        from regrasp.closed_form.compiled.places.all_loads import room_for_all
-        from regrasp.closed_form.compiled.places.moving_twists import room_to_move
-
         self.search, self.level, self.most = search, level, most
         self.limit = level.max_force * (1 + _STRICT)
         self.best: float | None = None
@@ -76,9 +87,7 @@ class _Joined:
         self._loose: dict[int, Twists] = {}
         self._parent: dict[int, int] = {}
         self._gaps, self._tolerance = [t for t in _GAPS if t > tolerance], tolerance
-        loads, k = len(search.loads), search.fingers
-        self._rooms = room_for_all(loads, k), room_to_move(loads, k)
-        self._out = np.zeros((loads, 3)), np.zeros((k, 5, 2)), np.zeros(k)
+        self._rounds = Rounds(search, self._judged, self._memory)
 
     def run(self, told: Callable[[], None]) -> None:
         """Exclude boxes or split them, at one gap after the other."""
@@ -116,73 +125,85 @@ class _Joined:
     def _emptied(self, told: Callable[[], None]) -> bool:
         """Whether all boxes were looked at."""
         while self.waiting and self.aim < self.level.top(self.search):
-            inside = self._looked_at(self.waiting[0])
-            if inside is None:
-                return False
-            self._parent.update(dict.fromkeys(inside, self.waiting.popleft()))
-            self.waiting.extend(inside)
+            aim = self.aim
+            for node, found in self._rounds.next(self.waiting):
+                inside = self._inside(node, found)
+                if inside is None:
+                    return False
+                self._parent.update(dict.fromkeys(inside, self.waiting.popleft()))
+                self.waiting.extend(inside)
+                if self.aim != aim:
+                    self._rounds.begin()
+                    break
             told()
         return not self.waiting
 
-    def _looked_at(self, node: int) -> range | None:
+    def _inside(self, node: int, found: _Found) -> range | None:
         """The boxes that one is split into: none where it is excluded or narrow; None without room."""
+        if found.near or found.twists is not None:
+            self.search.leave(node, None, found.twists)
+        for places, u in found.places:
+            if self.search.holds(places, u, self.level.max_force * (1 - SURE)):
+                self.best, *at = improved(self.search, self.level, self.aim, places, u)
+                self.search.forget(self.best, *at)
+                if self.search.interrupted:
+                    raise KeyboardInterrupt
+                self._put_beyond(self.best)
+        if found.at is None:
+            return range(0)
+        finger, u_at, after = found.at
+        return self.search.halved(node, finger, u_at, self.most, after) or None
+
+    def _memory(self) -> tuple[Any, ...]:
+        from regrasp.closed_form.compiled.places.all_loads import room_for_all
+        from regrasp.closed_form.compiled.places.moving_twists import room_to_move
+
+        loads, k = len(self.search.loads), self.search.fingers
+        out = np.zeros((loads, 3)), np.zeros((k, 5, 2)), np.zeros(k)
+        return out, room_for_all(loads, k), room_to_move(loads, k)
+
+    def _judged(self, search: Search, node: int, room: Any) -> _Found:
         from regrasp.closed_form.compiled.places.all_loads import GONE, NEAR, joined
 
-        search, sides = self.search, self.search.sides
+        sides, most = search.sides, self.level.max_force * (1 - SURE)
         arcs, ends = search.box(node)
         counts = arcs[:, 1] - arcs[:, 0] + 1
         i = int(counts.argmax())
         if counts[i] > _SIDES:
-            return self._halved(node, i, 0.0, int(arcs[i].sum()) // 2)
-        twists, seen, spread = self._out
+            return _Found(at=(i, 0.0, int(arcs[i].sum()) // 2))
+        (twists, seen, spread), to_join, to_move = room
         apart = search.apart / sides.size
-        how = joined(*search.terms(self.limit), arcs, ends, apart, twists, seen, spread, self._rooms[0])
+        how = joined(*search.terms(self.limit), arcs, ends, apart, twists, seen, spread, to_join)
         if how == NEAR:
-            search.leave(node, None)
-            return range(0)
+            return _Found(near=True)
         if how == GONE:
             few = np.flatnonzero(twists.any(axis=1))
             moving = np.zeros((len(few), 3 + 2 * search.fingers))
             moving[:, :3] = twists[few] / [1, 1, sides.size]
-            search.leave(node, None, (few, moving))
-            return range(0)
+            return _Found(twists=(few, moving))
         pressed = seen[:, 0].mean(axis=1)
-        self._try(*self._nearest(arcs, ends, pressed))
+        places = [place for place in [self._nearest(arcs, ends, pressed)] if search.holds(*place, most)]
         if counts[i] > 1:
             i = int(np.where(counts > 1, spread, -1.0).argmax())
             first, last = arcs[i].tolist()
             at = int(np.searchsorted(sides.ends[:, 1], pressed[i]))
             least = int(_LEAST * counts[i])
-            return self._halved(node, i, 0.0, min(max(at, first + least), last - 1 - least))
+            return _Found(places=places, at=(i, 0.0, min(max(at, first + least), last - 1 - least)))
         lengths = np.diff(ends, axis=1)[:, 0] * sides.lengths[sides.edges[arcs[:, 0]]]
         i = int(lengths.argmax())
         if lengths[i] < _COARSE * sides.size:
-            u = search.moved(node, self.limit, self._rooms[1])
-            if node in search.moving:
-                return range(0)
-            if u is not None:
-                self._try(arcs[:, 0].copy(), u)
+            found = twists_or_place(search, node, self.limit, to_move)
+            if isinstance(found, tuple):
+                return _Found(twists=found, places=places)
+            places += [] if found is None else [(arcs[:, 0].copy(), found)]
         narrow = lengths[i] <= _NARROW * sides.size
-        return range(0) if narrow else self._halved(node, i, float(ends[i].mean()), None)
-
-    def _halved(self, node: int, finger: int, u: float, after: int | None) -> range | None:
-        return self.search.halved(node, finger, u, self.most, after) or None
+        return _Found(places=places, at=None if narrow else (i, float(ends[i].mean()), None))
 
     def _nearest(self, arcs: np.ndarray, ends: Array, u: Array) -> tuple[np.ndarray, Array]:
         """Places on sides near to u."""
         sides = self.search.sides
         places = np.clip(np.searchsorted(sides.ends[:, 1], u), arcs[:, 0], arcs[:, 1])
         return places, np.clip(np.clip(u, *sides.ends[places].T), *ends.T)
-
-    def _try(self, places: np.ndarray, u: Array) -> None:
-        """Go on from a placement that is better."""
-        search, level = self.search, self.level
-        if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
-            self.best, *at = improved(search, level, self.aim, places, u)
-            search.forget(self.best, *at)
-            if search.interrupted:
-                raise KeyboardInterrupt
-            self._put_beyond(self.best)
 
     def _known(self, node: int) -> Twists | None:
         """What excluded a box, or one around it, at the level that was passed."""

@@ -70,7 +70,7 @@ class Level(ABC):
     def of(self, search: Search, places: np.ndarray, u: Array) -> float:
         """The objective of a placement; NaN where it does not hold at all."""
         self.put(search, self.start)
-        if not search.norm_at(places, u) <= self.max_force:
+        if not search.is_within(places, u, self.max_force):
             return nan
         return self.value(self.reached(search, self.start, places, u))
 
@@ -80,7 +80,7 @@ class Level(ABC):
         for _ in range(_HALVINGS):
             middle = 0.5 * (lo + hi)
             self.put(search, middle)
-            if search.norm_at(places, u) <= self.max_force * (1 - SURE):
+            if search.is_within(places, u, self.max_force * (1 - SURE)):
                 lo = middle
             else:
                 hi = middle

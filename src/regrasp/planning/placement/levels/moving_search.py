@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.boxes import Twists
 from regrasp.planning.placement.levels.climbing import improved, settled
 from regrasp.planning.placement.levels.level import SURE, Level
+from regrasp.planning.placement.levels.rounds import Rounds
 from regrasp.planning.placement.search import Progress, Search
 
 COARSE = 0.1
@@ -17,6 +19,10 @@ COARSE = 0.1
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _RAISED = 0.1  # of the tolerance, the least that a placement in such an arc is better by
 _STRICT = 1e-9
+WIDE, EXCLUDED = "a finger on sides", "by fixed twists"
+
+Found = str | Twists | Array | None
+"""Of a box: one of those, twists that exclude it, where (k,) a placement holds, or nothing."""
 
 
 def closed_by_moving(
@@ -47,6 +53,20 @@ def closed_by_moving(
     return beyond
 
 
+def twists_or_place(search: Search, node: int, limit: float, room: Any) -> Twists | Array | None:
+    """Twists that move with fingers and exclude a box at a level [N]; or (k,) where a placement holds."""
+    from regrasp.closed_form.compiled.places.moving_twists import GONE, HELD, moved
+
+    (arcs, ends), k = search.box(node), search.fingers
+    u, twists = np.zeros(k), np.zeros((len(search.loads), 3 + 2 * k))
+    how = moved(*search.terms(limit), arcs, ends, u, twists, room)
+    if how == GONE:
+        few, twists[:, 2] = np.flatnonzero(twists.any(axis=1)), twists[:, 2] / search.sides.size
+        return few, twists[few]
+    lo, hi = ends.T
+    return lo + u * (hi - lo) if how == HELD else None
+
+
 class Moving:
     """Boxes of one side for each finger, the widest first."""
 
@@ -54,7 +74,7 @@ class Moving:
         self.search, self.level, self.best, self.tolerance = search, level, best, tolerance
         self.limit = level.max_force * (1 + _STRICT)
         self.aim = level.beyond(best, tolerance)
-        self.room = self.memory(len(search.loads), search.fingers)
+        self._rounds = Rounds(search, self._judged, lambda: self.memory(len(search.loads), search.fingers))
         level.put(search, self.aim)
 
     def memory(self, loads: int, fingers: int) -> tuple[Any, ...]:
@@ -72,33 +92,54 @@ class Moving:
             told()
         waiting = deque(search.left.tolist())
         while waiting and self.goes_on():
-            node = waiting.popleft()
             told()
-            arcs, ends = search.box(node)
-            if (arcs[:, 0] != arcs[:, 1]).any():
-                break
-            if search.excluded(np.array([node]), self.limit) or self.followed(node):
-                continue
-            lengths = np.diff(ends, axis=1)[:, 0] * search.sides.lengths[search.sides.edges[arcs[:, 0]]]
-            i = int(lengths.argmax())
-            if lengths[i] > _NARROW * search.sides.size:
-                inside = search.halved(node, i, float(ends[i].mean()), most)
-                if not inside:
+            aim = self.aim
+            for node, found in self._rounds.next(waiting):
+                if not self.goes_on() or not self._taken(node, found, waiting, most):
+                    return
+                if self.aim != aim:
+                    self._rounds.begin()
                     break
-                waiting += inside
-            elif self.raised(arcs[:, 0].copy(), ends.mean(axis=1)):
-                waiting.append(node)
+
+    def _judged(self, search: Search, node: int, room: Any) -> Found:
+        arcs, _ = search.box(node)
+        if (arcs[:, 0] != arcs[:, 1]).any():
+            return WIDE
+        return EXCLUDED if search.excluded(np.array([node]), self.limit) else self.look(search, node, room)
+
+    def _taken(self, node: int, found: Found, waiting: deque[int], most: int) -> bool:
+        """Go on from the first box that waits, by what was found of it; whether that is possible."""
+        search = self.search
+        arcs, ends = search.box(node)
+        lengths = np.diff(ends, axis=1)[:, 0] * search.sides.lengths[search.sides.edges[arcs[:, 0]]]
+        i = int(lengths.argmax())
+        if isinstance(found, tuple):
+            self.leave(node, found)
+        elif isinstance(found, np.ndarray) and self.better(arcs[:, 0].copy(), found) is not None:
+            return True  # it is judged again
+        elif found is WIDE:
+            return False
+        elif found is not EXCLUDED and lengths[i] > _NARROW * search.sides.size:
+            inside = search.halved(node, i, float(ends[i].mean()), most)
+            waiting += inside
+            if not inside:
+                return False
+        elif found is not EXCLUDED and self.raised(arcs[:, 0].copy(), ends.mean(axis=1)):
+            waiting.append(node)
+        waiting.popleft()
+        return True
 
     def goes_on(self) -> bool:
         """Whether there is a better level."""
         return True
 
-    def followed(self, node: int) -> bool:
-        """Whether twists exclude a box; a placement that holds is gone on from."""
-        u = self.search.moved(node, self.limit, self.room)
-        if u is not None:
-            self.better(self.search.box(node)[0][:, 0].copy(), u)
-        return node in self.search.moving
+    def look(self, search: Search, node: int, room: Any) -> Found:
+        """Twists that exclude a box, or where a placement holds."""
+        return twists_or_place(search, node, self.limit, room)
+
+    def leave(self, node: int, twists: Twists) -> None:
+        """Take a box for excluded."""
+        self.search.leave(node, None, twists)
 
     def raised(self, places: np.ndarray, u: Array) -> bool:
         """Whether a placement in a box that is not split is better, by less than what is asked.
@@ -122,7 +163,7 @@ class Moving:
         """Go on from a placement where it is better, to the best near to it; None where it is not."""
         search, level = self.search, self.level
         level.put(search, self.aim)
-        if not search.are_apart(places, u) or search.norm_at(places, u) > level.max_force * (1 - SURE):
+        if not search.holds(places, u, level.max_force * (1 - SURE)):
             return None
         best, places, u = improved(search, level, self.aim, places, u)
         self._take(best, places, u)

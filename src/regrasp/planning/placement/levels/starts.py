@@ -20,7 +20,7 @@ def best_start(search: Search, level: FrictionLevel) -> float | None:
         if search.interrupted:  # (``improved``)
             break
         level.put(search, level.start)
-        if search.are_apart(places, u) and search.norm_at(places, u) <= level.max_force * (1 - SURE):
+        if search.holds(places, u, level.max_force * (1 - SURE)):
             reached, *at = improved(search, level, level.start, places, u)
             if best is None or reached > best:
                 best = reached

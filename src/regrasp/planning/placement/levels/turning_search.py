@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.planning.placement.boxes import Twists
 from regrasp.planning.placement.levels.climbing import settled
-from regrasp.planning.placement.levels.level import Level
-from regrasp.planning.placement.levels.moving_search import Moving
+from regrasp.planning.placement.levels.level import SURE, Level
+from regrasp.planning.placement.levels.moving_search import Found, Moving
 from regrasp.planning.placement.search import Progress, Search
 from regrasp.planning.placement.sliding import Placed
 
@@ -97,26 +98,31 @@ class Turning(Moving):
         """Not at the top, without friction: that level is held, as is each beyond it. Nor without memory."""
         return self.aim < self.top and self.free > 0
 
-    def followed(self, node: int) -> bool:
-        """Whether twists exclude a box, in whose middle no placement holds; else it is gone on from."""
+    def look(self, search: Search, node: int, room: Any) -> Found:
+        """Twists that exclude a box in whose middle no placement holds."""
         from regrasp.closed_form.compiled.places.turning_twists import polynomial_twists
 
-        search, size, k = self.search, self.search.sides.size, self.search.fingers
+        size, k = search.sides.size, search.fingers
         arcs, ends = search.box(node)
-        self.better(arcs[:, 0].copy(), ends.mean(axis=1))
+        middle: Array = ends.mean(axis=1)
+        if search.holds(arcs[:, 0].copy(), middle, self.level.max_force * (1 - SURE)):
+            return middle
         if not search.friction > 0:
-            return False
+            return None
         each = zip(arcs[:, 0].tolist(), ends.tolist(), strict=True)
         parts = np.array([search.sides.part(j, lo, hi)[0] for j, (lo, hi) in each]) / size
         terms, loads = (k + 1) * (k + 2) // 2, -search.loads / [1, 1, size] / self.limit
         found = np.zeros((len(loads), 3 * terms + k * 3**k))
-        if not polynomial_twists(parts, search.friction, loads, found, self.room):
-            return False
+        if not polynomial_twists(parts, search.friction, loads, found, room):
+            return None
         found[:, 2 * terms : 3 * terms] /= size
         few = np.flatnonzero(found.any(axis=1))
-        search.leave(node, None, (few, found[few]))
-        self.free -= found[few].size
-        return True
+        return few, found[few]
+
+    def leave(self, node: int, twists: Twists) -> None:
+        """Take a box for excluded, as long as there is memory."""
+        super().leave(node, twists)
+        self.free -= twists[1].size
 
     def better(self, places: np.ndarray, u: Array) -> tuple[np.ndarray, Array] | None:
         """Go on from a placement that is better, and from those that are better still."""
@@ -139,7 +145,7 @@ class Turning(Moving):
 
         def norm(ways: Array) -> float:
             at = moved(ways)
-            return min(search.norm_at(*at), far) if search.are_apart(*at) else far
+            return min(search.norm_at(*at, most=far), far) if search.are_apart(*at) else far
 
         ways = np.zeros(len(u))
         steps = {_STEP, min(_STEP, _NEAR_TOP * (self.top - self.best))}  # as near to the top as levels are

@@ -23,7 +23,8 @@ from regrasp.planning.placement.proofs.patch_proof import PatchProof
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.climbing import Climb
 from regrasp.planning.placement.space.patches import patches_of
-from regrasp.planning.placement.space.surface_search import HELD, MOST_BOXES, MOST_LOOKS, SurfaceSearch
+from regrasp.planning.placement.space.surface_boxes import HELD
+from regrasp.planning.placement.space.surface_search import MOST_BOXES, MOST_LOOKS, SurfaceSearch
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
