@@ -10,8 +10,9 @@ largest resident set (``getrusage``), with ``most_boxes`` of 64 and of more: the
 and their proof. *Interrupts* are sent (SIGINT) after 0.05 to 6 s of a search whose gap is never reached; what
 comes back is a grasp with its gap, verified where its proof is of 10,000 boxes at most, or
 ``KeyboardInterrupt`` where no placement was found. *Late* ones come when there are so many boxes, and tell
-how much clock and processor time there is until the answer. *Threads*: both times of a search by one and two.
-Rows are kept in benchmarks/results.
+how much clock and processor time there is until the answer. *Threads*: both times of a search by one and two;
+and *alone*, the processor time of one that two would not share: what is outside of rounds, and of each round
+half, or its longest part. Rows are kept in benchmarks/results.
 """
 
 import argparse
@@ -24,7 +25,7 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from time import perf_counter, process_time
+from time import perf_counter, process_time, thread_time
 from typing import Any
 
 import numpy as np
@@ -33,8 +34,11 @@ import regrasp as rg
 from brute_force import asked
 from fifty_outlines import outlines
 from kept_rows import keep, rows_in
-from on_surfaces import BOX, THREE
+from on_surfaces import BOX, BRACKET, SIX, THREE
+from regrasp.planning.placement import parts
+from regrasp.planning.placement.levels import rounds
 from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.space import surface_boxes
 from regrasp.planning.placement.space.surface_search import SurfaceSearch
 
 CASES = {
@@ -49,9 +53,13 @@ CASES = {
     "peak, 3, polygon 2, min_normal": ("peak", 3, "polygon 2", {"min_normal": 0.2}),
     "sum_normal, 3, box": ("sum_normal", 3, None, {}),
     "peak, 4, box": ("peak", 4, None, {}),
+    "peak_normal, 3, bracket": ("peak_normal", 3, None, {}),
 }
 RESULTS = Path(__file__).parents[1] / "results" / "memory_and_interrupts.json"
-OF_THREADS = (("answered, 3, heart", 100_000), ("peak, 3, polygon 2", 100_000), ("force, 3, gear", 20_000))
+OF_THREADS = (
+    ("answered, 3, heart", 100_000), ("peak, 3, polygon 2", 100_000), ("force, 3, gear", 20_000),
+    ("peak_normal, 3, bracket", 4000),
+)  # fmt: skip
 OF_MEMORY = ("effort, 4, polygon 2", "sum_normal, 3, box", "peak, 4, box")
 ENDLESS = ("friction_use, 3, spline 2", "wrench, 3, letter L", "peak, 3, polygon 2, min_normal")
 """Searches in which other things than boxes take the time, or nothing is found."""
@@ -66,8 +74,9 @@ def search(case: str, most: int | None) -> rg.ChosenGrasp:
     objective, fingers, name, more = CASES[case]
     more = more | {"tolerance": TINY} | ({} if most is None else {"most_boxes": most})
     if name is None:
-        loads = rg.LoadSet.hull(map(rg.Wrench.from_vector, THREE))
-        return rg.choose_grasp(BOX, fingers, loads, friction=0.5, objective=objective, **more)
+        mesh, wrenches, friction = (BRACKET, SIX, 0.6) if "bracket" in case else (BOX, THREE, 0.5)
+        loads = rg.LoadSet.hull(map(rg.Wrench.from_vector, wrenches))
+        return rg.choose_grasp(mesh, fingers, loads, friction=friction, objective=objective, **more)
     outline = dict(outlines())[name]
     _, given, _ = asked(outline, objective, 1)
     return rg.choose_grasp(outline, fingers, friction=0.4, objective=objective, **given, **more)
@@ -79,7 +88,7 @@ def child(case: str, most: int | None, boxes: int | None) -> None:
         signal.SIGINT, signal.default_int_handler
     )  # shells have what is in the background ignore it
     search(case, 64)
-    begun = [] if boxes is None else interrupted_at(boxes)
+    begun, shared = [] if boxes is None else interrupted_at(boxes), shared_by_two()
     print("ready", flush=True)
     found: dict[str, Any] = {}
     begin, used = perf_counter(), process_time()
@@ -91,6 +100,7 @@ def child(case: str, most: int | None, boxes: int | None) -> None:
     if begun:
         begin, used, found["made"] = begun
     found |= {"seconds": perf_counter() - begin, "processor": process_time() - used}
+    found["alone"] = found["processor"] - sum(shared)
     print(
         json.dumps(found | {"memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024}), flush=True
     )
@@ -118,6 +128,29 @@ def interrupted_at(boxes: int) -> list[Any]:
     Search.goes_on = some  # type: ignore[method-assign]
     SurfaceSearch.count = property(lambda search: noted(counted(search)))  # type: ignore[assignment]
     return begun
+
+
+def shared_by_two() -> list[float]:
+    """Processor time that a second thread would take off the first, to be filled by each round."""
+    spared: list[float] = []
+    inside = parts.side_by_side
+
+    def timed(work: Callable[[int], Any], count: int = parts.PARTS) -> list[Any]:
+        took = []
+
+        def one(part: int) -> Any:
+            begin = thread_time()
+            result = work(part)
+            took.append(thread_time() - begin)
+            return result
+
+        result = inside(one, count)
+        spared.append(sum(took) - max(0.5 * sum(took), *took))
+        return result
+
+    for module in (parts, rounds, surface_boxes):
+        module.side_by_side = timed  # type: ignore[attr-defined]
+    return spared
 
 
 def started(case: str, most: int, *more: str, threads: int = 1) -> subprocess.Popen[str]:
@@ -154,6 +187,7 @@ def threads(keep: Keep, cases: Sequence[str]) -> None:
     for case, most in ((case, most) for case, most in OF_THREADS if case in cases):
         found = {count: answer(case, most, threads=count) for count in (1, 2)}
         kept = {f"{what} {n}": found[n][what] for n in found for what in ("seconds", "processor")}
+        kept["alone"] = found[1]["alone"]
         keep(
             f"threads; {case}", kept | {"boxes": found[1]["boxes"], "gaps": [found[n]["gap"] for n in found]}
         )
@@ -218,14 +252,15 @@ def tables(kept: dict[str, Any]) -> str:
         lines.append(f"| {name} | {int(most):,} | {row['boxes']:,} | {row['memory'] / 1e6:.0f} | {each} |")
     lines += header(
         "search", "not split", "one thread: clock, processor [s]", "two: clock, processor [s]",
-        "processor per clock, one and two", "the same gap",
+        "processor per clock, one and two", "alone [s]", "one per alone", "the same gap",
     )  # fmt: skip
     for case, row in rows_of(kept, "threads"):
         times = [[row[f"{what} {n}"] for what in ("seconds", "processor")] for n in (1, 2)]
         shown = " | ".join(f"{clock:.1f}, {used:.1f}" for clock, used in times)
         ratio = ", ".join(f"{used / clock:.2f}" for clock, used in times)
         same = "yes" if len(set(row["gaps"])) == 1 else "**no**"
-        lines.append(f"| {case} | {row['boxes']:,} | {shown} | {ratio} | {same} |")
+        alone = f"{row['alone']:.2f} | {row['processor 1'] / row['alone']:.2f}" if "alone" in row else " | "
+        lines.append(f"| {case} | {row['boxes']:,} | {shown} | {ratio} | {alone} | {same} |")
     return "\n".join(lines)
 
 
