@@ -68,7 +68,7 @@ class SurfaceBoxes:
         self._radius = _room(patches.radius / self.size, room)
         self._balls = patches.balls / np.repeat([self.size, 1.0], [4, 5])
         self._boxes = _memory(FIRST_BOXES, fingers)
-        self._heap = [(0.0, 0)]  # bounds and numbers of the boxes that are open
+        self._heap = [(0.0, 0)]  # bounds of the boxes that are open; the newest of equal ones first
         self._state = np.array([1, 0, len(patches.spans), len(rows), 0, 0, 0, 0])
         self._together = np.zeros((FIRST_BOXES, len(loads), 6))
         self._never = HELD * NEVER  # boxes are excluded from there, while nothing is found
@@ -114,9 +114,9 @@ class SurfaceBoxes:
             return FULL
         few: list[int] = []
         while heap and heap[0][0] < level and len(few) < many:
-            few.append(heappop(heap)[1])
+            few.append(-heappop(heap)[1])
         if not few:
-            boxes[4][[node for _, node in heap]] = 1
+            boxes[4][[-node for _, node in heap]] = 1
             heap.clear()
             return CLOSED
         nodes = np.array(few)
@@ -132,7 +132,7 @@ class SurfaceBoxes:
             if tolerance < 0:
                 self._at = int(nodes[best])
                 for node in few:
-                    heappush(heap, (boxes[1][node], node))
+                    heappush(heap, (boxes[1][node], -node))
                 return PAUSED
         self._state[6] += np.count_nonzero(proven)
         self._state[7] += np.count_nonzero(proven >= level)
@@ -146,7 +146,7 @@ class SurfaceBoxes:
         gone = boxes[1][made] >= level
         boxes[4][made[gone]] = 1
         for node in made[~gone].tolist():
-            heappush(heap, (boxes[1][node], node))
+            heappush(heap, (boxes[1][node], -node))
         return None
 
     def _looked_at(self, nodes: np.ndarray, level: float) -> tuple[Array, Array, Array]:
