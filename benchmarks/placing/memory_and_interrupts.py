@@ -135,7 +135,7 @@ def shared_by_two() -> list[float]:
     spared: list[float] = []
     inside = parts.side_by_side
 
-    def timed(work: Callable[[int], Any], count: int = parts.PARTS) -> list[Any]:
+    def timed(work: Callable[[int], Any], *boxes: int) -> list[Any]:
         took = []
 
         def one(part: int) -> Any:
@@ -144,7 +144,7 @@ def shared_by_two() -> list[float]:
             took.append(thread_time() - begin)
             return result
 
-        result = inside(one, count)
+        result = inside(one, *boxes)
         spared.append(sum(took) - max(0.5 * sum(took), *took))
         return result
 

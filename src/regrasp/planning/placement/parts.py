@@ -19,6 +19,7 @@ from regrasp.threads import threads
 
 PARTS = 4
 """Of a round."""
+_SHARED = 8  # boxes of a round at least: a thread takes longer to begin than fewer to be judged
 _EACH = 256  # boxes that a part looks at in a round, at most
 _FROM = 4096  # boxes: smaller searches stay in one part, and as quick as they are
 _OPEN = 64  # boxes of a part at least, or the first of them are much better than what is split after them
@@ -70,10 +71,10 @@ def memory(room: int, k: int, old: Boxes = ()) -> Boxes:
     return boxes
 
 
-def side_by_side(work: Callable[[int], Result], count: int = PARTS) -> list[Result]:
-    """What ``work`` returns of each part, by number; threads share as many as ``count`` of them."""
-    beside = min(threads(), count, PARTS)
-    if beside < 2:
+def side_by_side(work: Callable[[int], Result], boxes: int = PARTS * _EACH) -> list[Result]:
+    """What ``work`` returns of each part, by number; threads share parts of so many boxes together."""
+    beside = min(threads(), PARTS)
+    if beside < 2 or boxes < _SHARED:
         return [work(i) for i in range(PARTS)]
     with ThreadPoolExecutor(beside) as pool:
         return list(pool.map(work, range(PARTS)))
