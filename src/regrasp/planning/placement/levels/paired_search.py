@@ -86,6 +86,7 @@ class Paired(Moving):
         self.top, edges = level.top(search), search.sides.edges
         self._is_long = np.bincount(edges)[edges] > 1
         self._how, self._memory = np.zeros(len(edges), np.int8), room_for_sides()
+        self._room = self.memory(len(search.loads), search.fingers)
         self._twists, self._loads = np.zeros((MOST_TWISTS, 3)), np.zeros(MOST_TWISTS, np.int64)
 
     def run(self, most: int, told: Callable[[], None]) -> None:
@@ -149,8 +150,12 @@ class Paired(Moving):
         if self._is_near(arcs, ends):
             search.leave(node, None)
             return []
-        if self.followed(node):
+        found = self.look(search, node, self._room)
+        if isinstance(found, tuple):
+            self.leave(node, found)
             return []
+        if isinstance(found, np.ndarray):
+            self.better(arcs[:, 0].copy(), found)
         lengths = np.diff(ends, axis=1)[:, 0] * sides.lengths[sides.edges[arcs[:, 0]]]
         i = int(lengths.argmax())
         if lengths[i] > _NARROW * sides.size:
