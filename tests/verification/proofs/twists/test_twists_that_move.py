@@ -9,6 +9,7 @@ import regrasp as rg
 from proofs import everything, planar
 from regrasp.closed_form.compiled.places.moving_twists import room_to_move
 from regrasp.planning.placement.laws import law_of
+from regrasp.planning.placement.levels.moving_search import twists_or_place
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import Sides
 from regrasp.verification.placed.placements import _Checked
@@ -80,8 +81,7 @@ def test_a_search_finds_them() -> None:
         sides = Sides(SQUARE, np.array([0]), np.array([[0.0, 1.0]]))
         search = Search(sides, 1, friction, LOADS, law_of("friction_use")[1], 1e-6, 10.0)
         assert not search.excluded(np.array([0]), 1e6)
-        assert search.moved(0, 1e6, room_to_move(2, 1)) is None
-        numbers, twists = search.moving[0]
+        numbers, twists = twists_or_place(search, 0, 1e6, room_to_move(2, 1))
         assert sorted(numbers) == [0, 1]
         assert (twists[:, 4] / twists[:, 2]).tolist() == pytest.approx([-4, -4], rel=0.05)
         assert said(moving(twists, [(0, n) for n in numbers], friction=friction)) == ""
@@ -92,10 +92,8 @@ def test_a_search_finds_a_placement_instead() -> None:
     sides = Sides(SQUARE, np.array([0]), np.array([[0.0, 1.0]]))
     loads = np.array([[0, -1, -2.0], [0, -1, -2.0]])
     search = Search(sides, 1, 0.75, loads, law_of("friction_use")[1], 1e-6, 10.0)
-    for limit, held in (1.01, [0.5]), (0.99, None):
-        u = search.moved(0, limit, room_to_move(2, 1))
-        assert u == held
-        assert (0 in search.moving) == (held is None)
+    assert twists_or_place(search, 0, 1.01, room_to_move(2, 1)) == [0.5]
+    assert isinstance(twists_or_place(search, 0, 0.99, room_to_move(2, 1)), tuple)
 
 
 @pytest.mark.parametrize(
