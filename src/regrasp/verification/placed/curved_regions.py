@@ -14,32 +14,23 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 from regrasp.verification.exact import RESOLUTION
-from regrasp.verification.placed.cubic import polar_at
+from regrasp.verification.placed.curves.pieces import ROUNDING, Pieces
 
 _WIDEST = 1.5  # [rad] of gamma
-_ROUNDING = 2.0**-46
 
 
-def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float, friction: float) -> bool:
+def beside(pieces: Pieces, span: Array, ends: Array, normal: Array, inner: float, friction: float) -> bool:
     """Whether fingers at ``ends`` (2, 2), of one normal and friction ``inner``, stand for those of a span.
 
-    control: (k, 4, 2) of the curve. span: (2,) number of the cubic and fraction of it passed, from and to.
+    span: (2,) number of the piece and fraction of it passed, from and to.
     """
-    lo, hi = span.tolist()
-    edges = np.arange(np.floor(lo), max(np.ceil(hi), np.floor(lo) + 1))
-    a, b = np.maximum(lo - edges, 0.0), np.minimum(hi - edges, 1.0)
-    pieces = np.moveaxis(control[edges.astype(int) % len(control)], 1, 0)
-    points = np.concatenate([polar_at(pieces, at) for at in ((a, a, a), (a, a, b), (a, b, b), (b, b, b))])
-    ways = np.diff(pieces, axis=0)
-    tangents = np.concatenate([polar_at(ways, at) for at in ((a, a), (a, b), (b, b))])
+    points, tangents, doubt = pieces.hull(*span.tolist())
     apart = np.abs(np.arctan2(tangents @ normal, tangents @ [normal[1], -normal[0]]))
-    doubt = _ROUNDING * np.hypot(*ways.T).max()
     if not ((apart + atan(inner) - atan(friction)) * np.hypot(*tangents.T) <= -doubt).all():
         return False
     chord = ends[1] - ends[0]
     length = float(np.hypot(*chord))
-    reach = float(np.abs(control).max())
-    slack = float(RESOLUTION) * reach
+    slack = float(RESOLUTION) * pieces.reach
     if length <= slack:
         return bool((np.hypot(*(points - ends[0]).T) <= slack).all())
     t = chord / length
@@ -47,7 +38,7 @@ def beside(control: Array, span: Array, ends: Array, normal: Array, inner: float
     if gamma > _WIDEST:
         return False
     along, off = (points - ends[0]) @ t, np.abs(points @ [-t[1], t[0]] - ends[0] @ [-t[1], t[0]]).max()
-    need = off * tan(gamma) + _ROUNDING * reach * (1 + tan(gamma))
+    need = off * tan(gamma) + ROUNDING * pieces.reach * (1 + tan(gamma))
     return bool(along.min() >= need and along.max() + need <= length)
 
 
@@ -77,15 +68,7 @@ def _cut(cells: Array, box: Array) -> list[tuple[Array, Array]]:
     return []
 
 
-def chords(control: Array, span: Array) -> float:
+def chords(pieces: Pieces, span: Array) -> float:
     """The length of a span from below [m], and nearly all of it."""
     at = np.linspace(span[0], span[1], 65)
-    return float(np.hypot(*np.diff([point_at(control, u) for u in at], axis=0).T).sum())
-
-
-def point_at(control: Array, u: float) -> Array:
-    """(2,) the point at a place."""
-    edge = int(np.floor(u))
-    at = np.array([u - edge])
-    result: Array = polar_at(control[edge % len(control)][:, None], (at, at, at))[0]
-    return result
+    return float(np.hypot(*np.diff([pieces.point(u) for u in at], axis=0).T).sum())

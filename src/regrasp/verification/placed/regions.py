@@ -4,8 +4,8 @@ Fix all fingers but one, which may be anywhere between two ends of an arc of a s
 ends hold a load, with normal forces N_a and N_b of that finger. Mixed with weights 1 - c and c, its forces
 press at c N_b / ((1 - c) N_a + c N_b) of the way, which runs from 0 to 1 with c; so for each place between
 there are forces, mixtures of those at the ends, that hold the load there. Cones and limits are convex and
-keep them. Finger by finger, the corners of a box of arcs prove the whole of it. On curves the corners are
-beside it (``curved_regions``).
+keep them. Finger by finger, the corners of a box of arcs prove the whole of it. On curves, and on rows of
+sides, the corners are beside it (``curved_regions``).
 """
 
 from fractions import Fraction
@@ -19,12 +19,14 @@ from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, dot, exact, least_angle, root
-from regrasp.verification.placed.curved_regions import beside, chords, covered, point_at
+from regrasp.verification.placed.curved_regions import beside, chords, covered
+from regrasp.verification.placed.curves.pieces import Cubics, Pieces, StraightSides
 from regrasp.verification.placed.protocol import Shape
 from regrasp.verification.placed.widest import Widest, widest_wrong
 from regrasp.verification.verdict import Verification
 
 _TO_THE_END = 1 - 2e-6  # of the way to the end of a side, which counts as all of it
+_ALIKE = 1e-9  # normals on a curve, at arc lengths that are off by rounding
 _TURNED = 4 * float(RESOLUTION)  # normals that differ by no more are the same
 
 
@@ -33,6 +35,9 @@ class Curved(Shape, Protocol):
 
     def points(self, s: float) -> Array:
         """(2,) the point at an arc length [m]."""
+
+    def normals(self, s: float) -> Array:
+        """(2,) the unit normal into the object there; at a vertex that of the side after it."""
 
 
 class Regions(Protocol):
@@ -60,7 +65,7 @@ class Regions(Protocol):
 
     @property
     def spans(self) -> Array | None:
-        """(k, 2) of arcs on a curve: number of the cubic and fraction of it passed; None on a polygon."""
+        """(k, 2) of arcs not on one side each: number of the piece and fraction of it passed; else None."""
 
     @property
     def cells(self) -> Array | None:
@@ -116,10 +121,12 @@ def above_own(grasp: Grasp, limit: float) -> list[str]:
 def _check_corners(regions: Regions) -> list[str]:
     """That every load has a state at every combination of ends, and that arcs are on straight sides."""
     control = regions.shape.cubics()
-    if control is not None and regions.widest is not None:
-        return ["that arcs are the widest is proven on straight sides alone"]
-    if control is not None:
-        return _check_curved(regions, control)
+    if control is not None or regions.spans is not None:
+        if regions.widest is not None:
+            return ["that arcs are the widest is proven of arcs on one straight side each alone"]
+        if control is not None:
+            return _check_curved(regions, Cubics(control))
+        return _check_curved(regions, StraightSides(np.asarray(regions.shape.polygon())))
     rings = rings_of(regions.shape)
     vertices, along = np.concatenate(rings), np.concatenate([np.roll(r, -1, axis=0) - r for r in rings])
     lengths = np.hypot(*along.T)
@@ -162,9 +169,9 @@ def rings_of(shape: Any) -> list[Array]:
     return [np.asarray(shape.polygon()), *(hole[::-1] for hole in getattr(shape, "hole_polygons", tuple)())]
 
 
-def _check_curved(regions: Regions, control: Array) -> list[str]:
+def _check_curved(regions: Regions, pieces: Pieces) -> list[str]:
     """The same on a curve, where the ends are those of chords beside it."""
-    k, n, spans = len(regions.grasp), len(control), np.asarray(regions.spans)
+    k, n, spans = len(regions.grasp), pieces.count, np.asarray(regions.spans)
     if not spans.shape == np.shape(regions.arcs) == (k, 2):
         return ["an arc and its span are needed for each finger"]
     if np.shape(regions.places) != (k,):
@@ -179,29 +186,35 @@ def _check_curved(regions: Regions, control: Array) -> list[str]:
     each, rest = divmod(len(regions.corners), len(cells))
     if rest:
         return ["some states of corners are missing"]
-    slack = float(RESOLUTION) * float(np.abs(control).max())
+    slack = float(RESOLUTION) * pieces.reach
     for i in range(k):
         place, half = float(regions.places[i]), regions.half_width
         if not np.hypot(*(regions.shape.points(place) - regions.grasp.positions[i])) <= 100 * slack:
             return [f"contact {i + 1} is not at its place"]
+        away = 100 * slack
+        normals = (regions.shape.normals(s) for s in (place, place - away, place + away))
+        if not any(np.abs(n - regions.grasp.normals[i]).max() <= _ALIKE for n in normals):
+            return [f"contact {i + 1} has another normal than its place"]
         before, after = place - regions.arcs[i, 0], regions.arcs[i, 1] - place
-        if not (half >= 0 and half - min(before, after) <= slack):
+        room = [_TO_THE_END * away for away in pieces.to_corners(place)]
+        short = max(min(half, room[0]) - before, min(half, room[1]) - after)
+        if not (0 <= half < inf and short <= slack):
             return [f"arc {i + 1} is less than the half width {half:.12g} about its place"]
-        if not before + after <= 2 * chords(control, spans[i]) + slack:
+        if not before + after <= 2 * chords(pieces, spans[i]) + slack:
             return [f"arc {i + 1} is longer than its span"]
         for u, s in zip(spans[i], regions.arcs[i], strict=True):
-            if not np.hypot(*(point_at(control, float(u)) - regions.shape.points(s))) <= 100 * slack:
+            if not np.hypot(*(pieces.point(float(u)) - regions.shape.points(s))) <= 100 * slack:
                 return [f"the span of arc {i + 1} is another arc"]
     for number, cell in enumerate(cells):
         states = regions.corners[number * each : (number + 1) * each]
-        broken = _cell_wrong(regions, control, cell, states, slack)
+        broken = _cell_wrong(regions, pieces, cell, states, slack)
         if broken:
             return broken
     return []
 
 
 def _cell_wrong(
-    regions: Regions, control: Array, cell: Array, states: tuple[GraspState, ...], slack: float
+    regions: Regions, pieces: Pieces, cell: Array, states: tuple[GraspState, ...], slack: float
 ) -> list[str]:
     """That states beside a curve stand for all places of a cell (k, 2)."""
     k, first, last = len(cell), states[0].grasp, states[-1].grasp
@@ -211,7 +224,7 @@ def _cell_wrong(
     for i in range(k):
         at = np.array([first.positions[i], last.positions[i]])
         friction = float(regions.grasp.frictions[i])
-        if not beside(control, cell[i], at, first.normals[i], float(first.frictions[i]), friction):
+        if not beside(pieces, cell[i], at, first.normals[i], float(first.frictions[i]), friction):
             return [f"the corners do not stand for all places of arc {i + 1}"]
         ends.append(list(at))
     return _missing(regions, states, ends, first.normals, first.frictions, slack)

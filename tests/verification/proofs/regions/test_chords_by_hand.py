@@ -7,7 +7,8 @@ import pytest
 
 from proofs import bent
 from regrasp.verification.exact import RESOLUTION
-from regrasp.verification.placed.curved_regions import beside, chords, covered, point_at
+from regrasp.verification.placed.curved_regions import beside, chords, covered
+from regrasp.verification.placed.curves.pieces import Cubics, StraightSides
 
 pytestmark = pytest.mark.oracle
 
@@ -18,14 +19,16 @@ SQUARE = bent([[-2, -1], [2, -1], [2, 1], [-2, 1]])
 """Around from the lower left, 12 long."""
 FLOOR = bent([[2, 0], [4, 0], [4, 4], [0, 4], [0, 0]])
 """The lower side is two pieces, from 4 to 6: x = 2 (u - 4)."""
+PIECES = Cubics(FLOOR), StraightSides(FLOOR[:, 0])
 
 
 def stands(lo, hi, x0, x1, *, height=0.0, inner=0.5, friction=0.5 + 1e-12, tilt=0.0) -> bool:
-    """Chords below the lower side, from x0 to x1."""
-    ends = np.array([[x0, -height], [x1, -height]])
-    return beside(
-        FLOOR, np.array([4 + lo / 2, 4 + hi / 2]), ends, np.array([-sin(tilt), cos(tilt)]), inner, friction
-    )
+    """Chords below the lower side, from x0 to x1; both kinds of pieces agree."""
+    ends, normal = np.array([[x0, -height], [x1, -height]]), np.array([-sin(tilt), cos(tilt)])
+    span = np.array([4 + lo / 2, 4 + hi / 2])
+    cubic, straight = (beside(pieces, span, ends, normal, inner, friction) for pieces in PIECES)
+    assert cubic == straight
+    return cubic
 
 
 @pytest.mark.parametrize(("lo", "hi"), [(0.25, 1.5), (1.0, 3.0), (2.0, 3.5), (0.0, 4.0)])
@@ -68,7 +71,7 @@ def test_places_of_a_curve_are_those_of_its_cubics() -> None:
     for u in np.linspace(0, 5.9, 60):
         t, c = u % 1, CURVE[int(u) % 3]
         weights = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3]
-        assert point_at(CURVE, float(u)) == pytest.approx(weights @ c, abs=1e-12)
+        assert Cubics(CURVE).point(float(u)) == pytest.approx(weights @ c, abs=1e-12)
 
 
 @pytest.mark.parametrize("friction", [0.6, 1.5])
@@ -78,7 +81,7 @@ def test_chords_beside_a_curve_are_those_that_samples_allow(friction) -> None:
     for _ in range(150):
         lo = float(rng.uniform(0, 3))
         hi = lo + float(rng.choice([0.02, 0.1]))
-        points = np.array([point_at(CURVE, u) for u in np.linspace(lo, hi, 21)])
+        points = np.array([Cubics(CURVE).point(u) for u in np.linspace(lo, hi, 21)])
         tangents = np.diff(points, axis=0)
         tangents /= np.hypot(*tangents.T)[:, None]
         t = points[-1] - points[0]
@@ -91,7 +94,7 @@ def test_chords_beside_a_curve_are_those_that_samples_allow(friction) -> None:
         more = float(rng.uniform(0, 0.5)) * length
         shift = off * np.array([-t[1], t[0]])
         ends = np.array([points[0] - more * t + shift, points[-1] + more * t + shift])
-        found = beside(CURVE, np.array([lo, hi]), ends, normal, inner, friction)
+        found = beside(Cubics(CURVE), np.array([lo, hi]), ends, normal, inner, friction)
         inward = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
         apart = np.arccos(np.clip(inward @ normal, -1, 1)).max()
         gamma = abs(angle) + atan(inner)
@@ -110,9 +113,9 @@ def test_chords_beside_a_curve_are_those_that_samples_allow(friction) -> None:
 
 def test_chords_are_as_long_as_their_span() -> None:
     for lo, hi, long in (0.25, 0.5, 1), (0.5, 1.5, 3), (0, 2, 6), (3, 3, 0), (-1, 1, 6):
-        assert chords(SQUARE, np.array([lo, hi], dtype=float)) == pytest.approx(long, rel=1e-12)
-    round_trip = chords(CURVE, np.array([0.0, 3.0]))
-    fine = np.array([point_at(CURVE, u) for u in np.linspace(0, 3, 3001)])
+        assert chords(Cubics(SQUARE), np.array([lo, hi], dtype=float)) == pytest.approx(long, rel=1e-12)
+    round_trip = chords(Cubics(CURVE), np.array([0.0, 3.0]))
+    fine = np.array([Cubics(CURVE).point(u) for u in np.linspace(0, 3, 3001)])
     longer = np.hypot(*np.diff(fine, axis=0).T).sum()
     assert 0.999 * longer < round_trip < longer
 
@@ -165,22 +168,22 @@ def test_rounding_is_left_room_for() -> None:
         assert stands(1, 1.5, 1 - bit, 3) == stands(1, 1.5, 0, 1.5 + bit) == good
         far = FLOOR - 10
         ends = np.array([[-9 - factor * 10 * 1.5 * 2.0**-46, -10.0], [-6, -10]])
-        assert beside(far, np.array([4.5, 4.75]), ends, np.array([0.0, 1]), 0.5, 0.6) == good
+        assert beside(Cubics(far), np.array([4.5, 4.75]), ends, np.array([0.0, 1]), 0.5, 0.6) == good
     uneven = np.array([[[0.0, 0], [1, 0], [4, 0], [9, 0]]])  # ways of 1, 3 and 5
     for factor, good in (5.1, True), (4.9, False):
         friction = tan(atan(0.5) + factor * 2.0**-46)
         ends = np.array([[-1.0, 0], [10, 0]])
-        assert beside(uneven, np.array([0.0, 1]), ends, np.array([0.0, 1]), 0.5, friction) == good
+        assert beside(Cubics(uneven), np.array([0.0, 1]), ends, np.array([0.0, 1]), 0.5, friction) == good
 
 
 def test_the_farthest_place_of_a_curve_counts() -> None:
     """A piece that rises by 0.2: forces at its upper end meet the chord a tenth before its foot."""
-    up = np.array([[[0.0, 0], [1, 0], [2, 0.2], [3, 0.2]]])
+    up, whole = np.array([[[0.0, 0], [1, 0], [2, 0.2], [3, 0.2]]]), np.array([0.0, 1])
     for sign in 1, -1:
         for by, good in (1e-9, True), (-1e-9, False):
             for ends in ([-0.1 - by, 4], [-1, 3.1 + by]):
                 chord = np.array([[ends[0], 0], [ends[1], 0]])
-                found = beside(sign * up, np.array([0.0, 1]), sign * chord, np.array([0.0, sign]), 0.5, 1.0)
+                found = beside(Cubics(sign * up), whole, sign * chord, np.array([0.0, sign]), 0.5, 1.0)
                 assert found == good
 
 
@@ -190,7 +193,34 @@ def test_pieces_end_where_the_next_begins() -> None:
     chord = np.array([[-4.0, 0], [10, 0]])
     for off, good in (1e-9, True), (-1e-9, False):
         friction = tan(atan(0.5) + atan(0.4) + off)
-        assert beside(steps, np.array([0.0, 2]), chord, np.array([0.0, 1]), 0.5, friction) == good
+        assert beside(Cubics(steps), np.array([0.0, 2]), chord, np.array([0.0, 1]), 0.5, friction) == good
+
+
+def test_sides_that_meet_are_each_within_the_cones() -> None:
+    """A floor that rises by 0.1 at (3, 0): the chord is level, and its cones are those of both sides."""
+    rising = StraightSides(np.array([[0.0, 0], [3, 0], [6, 0.3], [6, 4], [0, 4]]))
+    normal = np.array([0.0, 1])
+    for lo, hi, off, more in (0.5, 1.5, 0.15, atan(0.1)), (0.25, 1.0, 0.0, 0.0), (1.0, 1.5, 0.15, atan(0.1)):
+        x0, x1 = 3 * lo, 3 * hi
+        for by, good in (1e-9, True), (-1e-9, False):
+            span, friction = np.array([lo, hi]), tan(atan(0.5) + more + by)
+            ends = np.array([[x0 - 1, 0], [x1 + 1, 0]])
+            assert beside(rising, span, ends, normal, 0.5, friction) == good
+            for short in (0, 1):
+                ends = np.array([[x0 - 1, 0], [x1 + 1, 0]])
+                ends[short, 0] = (x0, x1)[short] + (2 * short - 1) * (0.5 * off + by)
+                assert beside(rising, span, ends, normal, 0.5, 0.7) == good
+    assert rising.point(1.5).tolist() == [4.5, 0.15]
+    assert rising.point(5 + 1.5) == pytest.approx([4.5, 0.15])
+
+
+def test_a_corner_turns_by_more_than_five_degrees() -> None:
+    for degrees, back, ahead in (4.9, 2.0, 8.0), (5.1, 2.0, 2.0), (-4.9, 2.0, 8.0), (-5.1, 2.0, 2.0):
+        far = [[4.0, 0], [4 + 6 * cos(np.radians(degrees)), 6 * sin(np.radians(degrees))]]
+        sides = StraightSides(np.array([[0.0, 0], *far, [far[1][0], 9], [0, 9]]))
+        assert sides.to_corners(2.0) == pytest.approx((back, ahead))
+        assert sides.to_corners(1.0) == pytest.approx((back - 1, ahead + 1))
+    assert Cubics(FLOOR).to_corners(2.0) == (np.inf, np.inf)
 
 
 def test_cells_may_be_many() -> None:

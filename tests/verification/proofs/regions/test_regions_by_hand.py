@@ -12,7 +12,7 @@ import pytest
 import regrasp as rg
 from proofs import bent
 from regrasp.verification.exact import RESOLUTION
-from regrasp.verification.placed.curved_regions import point_at
+from regrasp.verification.placed.curves.pieces import Cubics
 
 pytestmark = pytest.mark.oracle
 
@@ -36,13 +36,26 @@ class Regions:
 SIDES = bent([[-2, -1], [2, -1], [2, 1], [-2, 1]])
 """Around from the lower left, 12 long: the lower side from 0 to 4, the upper from 6 to 10."""
 WIDE = 0.25
+SHAPES = {"cubics": lambda: SIDES, "sides": lambda: None}
+
+
+@pytest.fixture(params=SHAPES, autouse=True)
+def pieces(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The square is one of cubics, or a polygon, whose verdicts are the same but for its corners."""
+    monkeypatch.setitem(SHAPES, "is", SHAPES[request.param])
+    return request.param
 
 
 def points(s: float) -> np.ndarray:
     s = s % 12
     edge = int(np.searchsorted([4, 6, 10, 12], s, side="right"))
     start, whole = ((0, 4), (4, 2), (6, 4), (10, 2))[edge]
-    return point_at(SIDES, edge + (s - start) / whole)
+    return Cubics(SIDES).point(edge + (s - start) / whole)
+
+
+def normals(s: float) -> np.ndarray:
+    edge = int(np.searchsorted([4, 6, 10, 12], s % 12, side="right"))
+    return np.array([[0.0, 1], [-1, 0], [0, -1], [1, 0]])[edge]
 
 
 def pair(low: float, high: float, friction: float) -> rg.Grasp:
@@ -59,7 +72,9 @@ def regions(**changes) -> Regions:
     """Both fingers may be a quarter to either side of the middle; corners are an eighth beyond."""
     ends = (-WIDE - 0.125, WIDE + 0.125)
     given = {
-        "shape": SimpleNamespace(cubics=lambda: SIDES, polygon=lambda: SIDES[:, 0], points=points),
+        "shape": SimpleNamespace(
+            cubics=SHAPES["is"], polygon=lambda: SIDES[:, 0], points=points, normals=normals
+        ),
         "grasp": pair(0, 0, 0.5 + 1e-12), "places": np.array([2.0, 8.0]), "half_width": WIDE,
         "arcs": np.array([[2 - WIDE, 2 + WIDE], [8 - WIDE, 8 + WIDE]]),
         "spans": np.array([[0.5 - WIDE / 4, 0.5 + WIDE / 4], [2.5 - WIDE / 4, 2.5 + WIDE / 4]]),
@@ -169,6 +184,7 @@ def test_how_near_is_the_same_is_a_part_of_the_largest_coordinate(scale) -> None
                     cubics=lambda: scale * (SIDES + off),
                     polygon=lambda: scale * (SIDES[:, 0] + off),
                     points=lambda s: scale * (points(s / scale) + off),
+                    normals=lambda s: normals(s / scale),
                 ),
                 grasp=moved(good.grasp, place),
                 places=scale * good.places,
@@ -208,10 +224,14 @@ def test_a_half_width_is_that_of_the_shorter_side(k, end) -> None:
         assert good or f"arc {k + 1} is less than the half width" in found or "arc 1 is less" in found
 
 
-def test_what_regions_on_curves_need() -> None:
+def test_what_regions_on_curves_need(pieces: str) -> None:
     good = regions()
+    without = {
+        "cubics": "an arc and its span are needed for each finger",
+        "sides": "4 states of corners are missing",
+    }
+    assert said(replace(good, spans=None)) == without[pieces]
     for changes, words in (
-        ({"spans": None}, "an arc and its span are needed"),
         ({"spans": good.spans[:1]}, "an arc and its span are needed"),
         ({"arcs": good.arcs[:1]}, "an arc and its span are needed"),
         ({"arcs": good.arcs[:1], "spans": good.spans[:1]}, "an arc and its span are needed"),

@@ -155,4 +155,4 @@ def test_no_such_proof_is_one_on_a_curve() -> None:
     grasp = rg.Grasp(shape.contact_at(s * shape.length, friction=0.6) for s in (0.7, 0.8))
     regions = rg.contact_regions(shape, grasp, DOWN)
     assert regions.widest is None
-    assert "straight sides alone" in said(replace(regions, widest=found().widest))
+    assert "one straight side each alone" in said(replace(regions, widest=found().widest))

@@ -10,10 +10,9 @@ from regrasp.mechanics.loads.load_set import LoadSet
 from regrasp.mechanics.wrench import Wrench
 from regrasp.mesh.mesh import Mesh
 from regrasp.outline.outline import Outline
-from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.loads import check_planar, inner_and_outer
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
-from regrasp.planning.placement.regions.curved import CurvedPlaces, on_curve
+from regrasp.planning.placement.regions.curved import on_curve
 from regrasp.planning.placement.regions.face_patches import FaceRegions
 from regrasp.planning.placement.regions.on_faces import regions_on_faces
 from regrasp.planning.placement.regions.straight import on_sides
@@ -57,7 +56,8 @@ def contact_regions(
     finger is where it stands. So corners prove regions, and the half width is exact to rounding. From there
     the ends of the arcs are moved out one after the other as far as they go. On a curve chords beside parts
     of the arcs, and the cones that all points of a part share, take the place of sides (``curved``):
-    what is returned is proven, too, if not always the widest. On a mesh regions are polygons on
+    what is returned is proven, too, if not always the widest; so are regions that go on past vertices of a
+    polygon that are no corners. On a mesh regions are polygons on
     flat faces, around discs; their corners prove them where forces there hold a little torque about each
     normal on top.
 
@@ -71,11 +71,11 @@ def contact_regions(
         max_force: limit on every force, beside those of the contacts, of which the least counts for all [N];
             three times the least that the grasp needs if there is none.
         widest: what is as large as can be: how far all may be off ``together``, the ``least`` arc, or the
-            ``product`` of all arcs. On polygons how wide a least arc can be is proven
-            (``ContactRegions.widest``); the product is found by trading one end of an arc for others while
-            that helps, which nothing proves the largest. On curves both are what up to a hundred questions
-            find, from regions that are wide together; on a mesh the least radius is that of all together,
-            and the product, of the areas of the polygons, is sought as on curves.
+            ``product`` of all arcs. On polygons how wide a least arc can be is proven, of arcs on one side
+            each (``ContactRegions.widest``); the product is found by trading one end of an arc for others
+            while that helps, which nothing proves the largest. On curves both are what up to a hundred
+            questions find, from regions that are wide together; on a mesh the least radius is that of all
+            together, and the product, of the areas of the polygons, is sought as on curves.
 
     Raises:
         Infeasible: Where the grasp itself does not hold the loads.
@@ -102,8 +102,9 @@ def contact_regions(
     check_planar(load)
     _, loads = inner_and_outer(load, 1e-3)
     _check_count(len(loads), _STATES // 2 ** len(grasp), grasp)
-    if not isinstance(shape.boundary, PolygonBoundary):
-        return on_curve(CurvedPlaces(shape, grasp, loads), given, widest)
+    control = shape.cubics()
+    if control is not None:
+        return on_curve(shape, control, grasp, loads, given, widest)
     return on_sides(shape, grasp, loads, given, widest)
 
 

@@ -26,18 +26,19 @@ class ContactRegions(Sealed):
         grasp: the contacts in the middle of it all.
         places: (k,) their arc lengths [m].
         arcs: (k, 2) arc lengths at which regions begin and end: all may be anywhere in theirs at once [m].
-        half_width: every finger may be so far off, to either side or to the end of its side less two
-            millionths of the way, all at once [m].
+        half_width: every finger may be so far off, to either side or to the corner that ends its side less
+            two millionths of the way, all at once [m].
         alone: (k, 2) how far one finger may be off, back and ahead, while the others are at their places: not
             proven by ``corners``, nor judged by ``regrasp.verify`` [m].
         max_force: no force need be larger [N].
-        corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12). On a curve
-            they are beside it, at the ends of chords, with the cones that all points of a part share, cell by
-            cell.
-        spans: (k, 2) of arcs on a curve, number of the cubic and fraction of it passed; None on a polygon.
-        cells: (c, k, 2) boxes of parts of the arcs, as ``spans``, which cover all of them; None on a polygon.
+        corners: states at all combinations of ends of the arcs, load by load: the proof (fact 12). On curves,
+            and past vertices that are no corners, they are beside them, at the ends of chords, with the cones
+            that all points of a part share, cell by cell.
+        spans: (k, 2) of arcs on a curve or past vertices, number of the cubic or of the side and fraction of
+            it passed; None of arcs on one side each.
+        cells: (c, k, 2) boxes of parts of the arcs, as ``spans``, which cover all of them; None without.
         widest: the proof that around the same places no least arc is longer than its ``bound``, where that is
-            what was asked for on a polygon; None elsewhere.
+            what was asked for, of arcs on one side each; None elsewhere.
     """
 
     _what = "regions"
@@ -61,7 +62,7 @@ class ContactRegions(Sealed):
 
     @property
     def ended(self) -> np.ndarray:
-        """(k, 2) whether the side of a finger ends, back and ahead, before it is ``half_width`` off."""
+        """(k, 2) whether there is a corner, back or ahead, before a finger is ``half_width`` off."""
         away = np.abs(self.arcs - self.places[:, None])
         return np.asarray(away < self.half_width * (1 - _ENDED))
 

@@ -10,6 +10,8 @@ The shorter parts are, the less it loses: a box that is not proven so is halved 
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -34,26 +36,49 @@ from regrasp.planning.states.choosing import choose_state
 ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
 _BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
 _CELLS, _STATES = 16, 4096  # at most
+_ALIKE = 1e-6  # of turns of parts: the first of those that are as wide is halved, whatever rounding says
+_KEPT = 4096  # parts of the outline
 _LITTLE = 0.02  # parts that turn by less are not halved [rad]
 _ON_CURVES, _OUT = 11, 6  # halvings, those after a search
+_WAYS: Array = np.array([-1.0, 1.0])
 _STEEP = 1.3  # angles of forces to a chord's normal of no more are tried [rad]
 
 
-class CurvedPlaces:
-    """Parts of a smooth outline around contacts of one grasp, and whether loads are held all over them."""
+@dataclass(frozen=True)
+class _Part:
+    """Of an outline: a point, the direction of its chord, how far from that point it is along it and off it.
 
-    def __init__(self, shape: Outline, grasp: Grasp, loads: Array) -> None:
-        control = shape.cubics()
-        assert control is not None
-        self.shape, self.loads = shape, loads
-        self.sides: CurvedSides = curved_sides(shape, control)
-        self.places = np.array([shape.nearest(c.position + shape.centre_of_mass) for c in grasp])
-        for contact, s in zip(grasp, self.places, strict=True):
-            away = np.hypot(*(shape.points(s) - contact.position)) / self.sides.size
-            if away + np.hypot(*(shape.normals(s) - contact.normal)) > ON_CURVE:
-                raise InvalidInput(f"contact {contact.name} is not on the outline, with its inward normal")
-        at = [shape.contact_at(float(s), friction=0.0) for s in self.places]
-        self.grasp = Grasp(map(moved, grasp, at))
+    turned: how far its tangents are from one another [rad].
+    """
+
+    base: Array
+    tangent: Array
+    along: tuple[float, float]
+    off: float
+    turned: float
+
+
+class CurvedPlaces:
+    """Parts of an outline around contacts of one grasp, and whether loads are held all over them.
+
+    sides: all of its outer boundary, as cubics. places: (k,) arc lengths of the contacts [m]. room: (k, 2)
+    those beyond which regions do not go, a corner or a quarter of the outline away.
+    """
+
+    def __init__(
+        self, shape: Outline, sides: CurvedSides, grasp: Grasp, places: Array, loads: Array
+    ) -> None:  # fmt: skip
+        self.shape, self.sides, self.grasp, self.places, self.loads = shape, sides, grasp, places, loads
+        self._part = lru_cache(_KEPT)(self._part_between)
+        self.far, corners = 0.25 * shape.length, shape.boundary.corners
+        away = (_WAYS[:, None] * (corners - self.places[:, None, None])) % shape.length
+        reach = np.minimum(away.min(axis=2, initial=np.inf), self.far)
+        self.room: Array = self.places[:, None] + _WAYS * reach
+
+    def at_corners(self, box: Array) -> np.ndarray:
+        """(k, 2) which ends of arcs are nearly as far as a corner."""
+        away, reach = (np.abs(ends - self.places[:, None]) for ends in (box, self.room))
+        return np.asarray((reach < self.far) & (away >= (1 - 3 * LESS) * reach))
 
     def spans(self, box: Array) -> Array:
         """(k, 2) the u of arc lengths (k, 2), which may run past the start."""
@@ -75,8 +100,8 @@ class CurvedPlaces:
             if self.need(cell, limit) <= limit:
                 proven.append(cell)
                 continue
-            turns = [_turned(self.sides.hull(lo, hi)[1])[2] for lo, hi in cell]
-            i = int(np.argmax(turns))
+            turns = [self._part(lo, hi).turned for lo, hi in cell.tolist()]
+            i = int(np.argmax(np.array(turns) >= (1 - _ALIKE) * max(turns)))
             if turns[i] < _LITTLE or len(proven) + len(left) + 2 > most:
                 return None
             left += [cell.copy(), cell]
@@ -86,28 +111,24 @@ class CurvedPlaces:
     def corners(self, span: Array) -> tuple[Array, Array, float] | None:
         """(k, 2, 2) points, (k, 2) normals and friction of fingers beside parts; None where cones differ."""
         mu = float(self.grasp.frictions[0]) * (1 - LESS)
-        points, normals, angles, wide = [], [], [], []
-        for lo, hi in span:
-            hull, tangents = self.sides.hull(lo, hi)
-            middle, turn, turned = _turned(tangents)
-            n = middle * np.cos(turn) + np.array([-middle[1], middle[0]]) * np.sin(turn)
-            wide.append(turned / 2)
-            angles.append(np.arctan(mu) - wide[-1])
-            normals.append([-n[1], n[0]])
-            points.append(hull)
-        alpha = min(angles) - (1e-9 if max(wide) > 0 else 0.0)
-        if alpha < 0 or max(wide) > 0.5:
+        parts = [self._part(lo, hi) for lo, hi in span.tolist()]
+        turned = max(part.turned for part in parts)
+        alpha = np.arctan(mu) - turned / 2 - (1e-9 if turned > 0 else 0.0)
+        if not 0 <= alpha <= _STEEP or turned > 1:
             return None
         ends = []
-        for hull, n in zip(points, np.array(normals), strict=True):
-            t = np.array([n[1], -n[0]])  # the chord lies along the middle tangent
-            base = hull[0]
-            along, off = (hull - base) @ t, np.abs((hull - base) @ n).max()
-            if alpha > _STEEP:
-                return None
-            reach = off * np.tan(alpha) + (_BEYOND * self.sides.size if np.ptp(along) > 0 else 0.0)
-            ends.append([base + (along.min() - reach) * t, base + (along.max() + reach) * t])
-        return np.array(ends), np.array(normals), float(np.tan(alpha))
+        for part in parts:
+            lo, hi = part.along
+            reach = part.off * np.tan(alpha) + (_BEYOND * self.sides.size if lo < hi else 0.0)
+            ends.append(part.base + np.array([[lo - reach], [hi + reach]]) * part.tangent)
+        return np.array(ends), np.array([[-p.tangent[1], p.tangent[0]] for p in parts]), float(np.tan(alpha))
+
+    def _part_between(self, lo: float, hi: float) -> "_Part":
+        points, tangents = self.sides.hull(lo, hi)
+        middle, turn, turned = _turned(tangents)
+        t = middle * np.cos(turn) + np.array([-middle[1], middle[0]]) * np.sin(turn)
+        along, off = (points - points[0]) @ t, (points - points[0]) @ [-t[1], t[0]]
+        return _Part(points[0], t, (float(along.min()), float(along.max())), float(np.abs(off).max()), turned)
 
     def need(self, span: Array, limit: float = np.inf) -> float:
         """The largest least force that a corner needs, or one above a limit [N]; infinite for none."""
@@ -148,26 +169,44 @@ class CurvedPlaces:
         return tuple(states)
 
 
-def on_curve(around: CurvedPlaces, given: float | None, widest: str) -> ContactRegions:
+def on_curve(
+    shape: Outline, control: Array, grasp: Grasp, loads: Array, given: float | None, widest: str
+) -> ContactRegions:
     """What ``contact_regions`` finds on a smooth outline."""
-    at, k = around.places, len(around.places)
+    sides = curved_sides(shape, control)
+    places = np.array([shape.nearest(c.position + shape.centre_of_mass) for c in grasp])
+    for contact, s in zip(grasp, places, strict=True):
+        away = np.hypot(*(shape.points(s) - contact.position)) / sides.size
+        if away + np.hypot(*(shape.normals(s) - contact.normal)) > ON_CURVE:
+            raise InvalidInput(f"contact {contact.name} is not on the outline, with its inward normal")
+    at = [shape.contact_at(float(s), friction=0.0) for s in places]
+    around = CurvedPlaces(shape, sides, Grasp(map(moved, grasp, at)), places, loads)
+    least = around.need(around.spans(np.stack([places, places], axis=1)))
+    return widest_around(around, limit_of(least, given, around.grasp, loads), widest)
+
+
+def widest_around(around: CurvedPlaces, limit: float, widest: str) -> ContactRegions:
+    """Regions whose forces are below a limit [N], by which the grasp itself holds."""
+    at, k, room = around.places, len(around.places), around.room
     single = np.stack([at, at], axis=1)
-    limit = limit_of(around.need(around.spans(single)), given, around.grasp, around.loads)
-    far = 0.25 * around.shape.length
-    ways: Array = np.array([-1.0, 1.0])
 
     def holds(box: Array) -> bool:
         return around.cells(around.spans(box), limit) is not None
 
-    half = (1 - LESS) * farthest(lambda width: holds(single + width * ways), far, _ON_CURVES)
-    box, alone = single + half * ways, np.zeros((k, 2))
+    def off(width: float) -> Array:
+        result: Array = np.clip(single + width * _WAYS, room[:, :1], room[:, 1:])
+        return result
+
+    half = farthest(lambda width: holds(off(width)), float(np.abs(room - single).max()), _ON_CURVES)
+    box, alone = single + (1 - LESS) * (off(half) - single), np.zeros((k, 2))
     for i, end in product(range(k), range(2)):
-        last = at[i] + far * ways[end]
+        last = float(room[i, end])
         box[i, end] = at[i] + (1 - LESS) * (moved_out(holds, box, i, end, last, _ON_CURVES) - at[i])
         alone[i, end] = (1 - LESS) * abs(moved_out(holds, single, i, end, last, _ON_CURVES) - at[i])
     if widest != "together":
-        box = _sought(holds, at, box, far, widest)
-        half = min(half, float(np.abs(box - single).min()))
+        box = _sought(holds, at, box, room, widest)
+    free = ~around.at_corners(box)
+    half = float(np.abs(box - single).min(where=free, initial=(1 - LESS) * half))
     cells = around.cells(around.spans(box), limit)
     if cells is None:
         raise Infeasible("the regions found were left without forces by rounding")
@@ -178,24 +217,24 @@ def on_curve(around: CurvedPlaces, given: float | None, widest: str) -> ContactR
     )  # fmt: skip
 
 
-def _sought(holds: Callable[[Array], bool], at: Array, box: Array, far: float, widest: str) -> Array:
+def _sought(holds: Callable[[Array], bool], at: Array, box: Array, room: Array, widest: str) -> Array:
     """A box of a longer least arc or a larger product of arcs, if one is found."""
-    ways: Array = np.array([-1.0, 1.0])
+    longest = (1 - LESS) * np.abs(room - at[:, None]).ravel()
 
     def there(off: Array) -> Array:
-        return at[:, None] + off.reshape(-1, 2) * ways
+        return at[:, None] + off.reshape(-1, 2) * _WAYS
 
     def score(off: Array) -> float:
-        return float(np.log(np.maximum(off[::2] + off[1::2], 1e-12 * far)).sum())
+        return float(np.log(np.maximum(off[::2] + off[1::2], 1e-12 * longest.max())).sum())
 
     start = np.abs(box - at[:, None]).ravel()
-    seeking = Seeking(lambda off: holds(there(off)), np.full(len(start), far), MOST[widest])
+    seeking = Seeking(lambda off: holds(there(off)), longest, MOST[widest])
     found = there(seeking.least(start))
     if np.ptp(found, axis=1).min() < 1.001 * np.ptp(box, axis=1).min():  # where it began, by rounding
         found = box
     else:
         for i, end in product(range(len(at)), range(2)):
-            found[i, end] = moved_out(holds, found, i, end, at[i] + far * ways[end], _OUT)
+            found[i, end] = moved_out(holds, found, i, end, there(longest)[i, end], _OUT)
     if widest == "least":
         return found
     start, other = (np.abs(each - at[:, None]).ravel() for each in (box, found))

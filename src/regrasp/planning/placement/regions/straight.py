@@ -13,6 +13,7 @@ from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.reachable import sides_of
+from regrasp.planning.placement.regions.bends import around_bends
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
 from regrasp.planning.placement.regions.cuts import Cuts
 from regrasp.planning.placement.regions.growing import farthest, moved_out, traded
@@ -95,11 +96,14 @@ def on_sides(shape: Outline, grasp: Grasp, loads: Array, given: float | None, wi
                 f"a corner of the regions was left without forces by rounding: {error}"
             ) from None
     starts = sides.starts[sides.edges[places]] - sides.edges[places] * lengths
-    return ContactRegions(
+    regions = ContactRegions(
         shape, grasp, read_only(starts + u * lengths), read_only(starts[:, None] + box * lengths[:, None]),
         half * (1 - LESS) ** 2, read_only(alone * (1 - LESS)), limit * (1 + LESS), tuple(corners),
         widest=proof,
     )  # fmt: skip
+    if (sides.edges[places] >= len(shape.polygon())).any():
+        return regions
+    return around_bends(regions, loads, widest)
 
 
 def _plain(grasp: Grasp, load: Wrench, limit: float) -> GraspState:
