@@ -233,6 +233,15 @@ def test_all_of_a_boundary_is_all_but_a_billionth() -> None:
         assert claims._part(proof) == ("" if whole else " on the 100.0% of the outline that was asked about")
 
 
+def test_an_edge_left_out_is_missed_however_short() -> None:
+    for width in 1e-12, 1.0:
+        corners = [[0, 0], [4, 0], [4, 2], [2, 2 + width], [2 - width, 2], [0, 2]]
+        sides = np.array([[e, e, e + 1.0] for e in range(6)])
+        for kept, whole in ([0, 1, 2, 3, 4, 5], True), ([0, 1, 2, 4, 5], False):
+            proof = plain(**vars(BOARD) | {"vertices": np.array(corners), "sides": sides[kept]})
+            assert (claims._part(proof) == "") == whole, (width, kept)
+
+
 @pytest.mark.parametrize("length", [0.5, 2.0])
 def test_the_ball_of_a_pair(length) -> None:
     """Facing fingers with friction 1, a length apart from the middle: a ball of sqrt(2/3) times the limit."""

@@ -241,6 +241,17 @@ def test_children_share_out_fingers_of_one_patch() -> None:
         assert "is not covered by the boxes it is split into" in told(*wrong), wrong
 
 
+def test_boxes_that_are_not_there_take_no_memory() -> None:
+    patches = Patches([(0, 2), (0, 1), (1, 1)], [[1, 2, -1], [-1] * 3, [-1] * 3])
+    for first, count in (
+        (1, 10**10), (1, 2**62), (2**62, 2**62), (10**12, 2), (1, -3), (0, 4), (-1, 5), (-(2**62), 3),
+    ):  # fmt: skip
+        nodes = [([0, 0], (first, count), 0, [0.0] * 6)]
+        nodes += [(list(some), (0, 0), 0, [0.0] * 6) for some in ((1, 1), (1, 2), (2, 2))]
+        proof = solid(CORNERS[:2], NORMALS[:2], [[0, 0, -1, 0, 0, 0]], patches, nodes)
+        assert said(proof) == "proof: the boxes are no tree", (first, count)
+
+
 def test_boxes_are_of_patches_that_are_there() -> None:
     rng, seen = np.random.default_rng(4), 0
     while seen < 3:

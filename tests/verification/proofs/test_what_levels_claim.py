@@ -159,8 +159,28 @@ def test_loads_are_the_deviations_by_a_factor_at_every_scale(scale, arm) -> None
     for factor, fine in ((3.0, True), (4.0, True), (3 * (1 - 0.9e-9), True), (3 * (1 - 1.1e-9), False)):
         assert _scaled_by_less(given, whole, factor) == fine
     assert not _scaled_by_less(given, whole[:2], 3.0)
+    for times, fine in ((0.0, True), (1e-300, True), (-1e-9, False), (-1.0, False)):  # on the other side
+        others = np.array([center, *(center + times * deviations)])
+        assert _scaled_by_less(given, others, 3.0) == fine, times
     none = SimpleNamespace(certificate=given.certificate, deviations=0 * deviations)
     assert not _scaled_by_less(none, np.array([center, center, center]), 3.0)
+
+
+def test_what_is_lost_on_the_other_side_bounds_no_answer() -> None:
+    """A floor of fingers answers nine times as much weight, and no lift of more than the weight."""
+    floor, weight = [[0.1, 1.9]], rg.Wrench([0, -1])
+    given = {"friction": 0.5, "objective": "answered", "max_force": 5.0, "tolerance": 0.1, "arcs": floor}
+    lifts = {y: rg.LoadSet.hull([rg.Wrench([0, y]), rg.Wrench([0, y], -0.01 * y)]) for y in (-1, 1)}
+    down, up = (rg.choose_grasp(SQUARE, 2, weight, disturbance=lifts[y], **given) for y in (-1, 1))
+    assert down.value > 8
+    assert up.bound < 1.2
+    deviations, value = -up.deviations, 1.0
+    loads = [weight, *(rg.Wrench([0, -1 + value * y], value * turn) for _, y, turn in deviations)]
+    states = tuple(rg.choose_state(up.grasp, load, "peak") for load in loads)
+    lie = replace(up, states=states, deviations=deviations, value=value, bound=1.2, others=())
+    assert BETTER in said(lie)
+    backwards = replace(up, deviations=deviations, value=-up.value, bound=-up.value)
+    assert "answered by 0 times or more" in said(backwards)
 
 
 def test_of_loads_in_space_forces_and_torques_have_units_of_their_own() -> None:

@@ -99,12 +99,16 @@ def _is_without_margin(chosen: Chosen, proof: Any) -> bool:
 
 
 def _part(proof: Proof, shape: Any = None) -> str:
-    """Which part of the outline the places are on that a proof is about; empty for all of it."""
+    """Which part of the outline the places are on that a proof is about; empty for all of it.
+
+    All is all but a billionth of it, and no edge left out, however short.
+    """
     share = Touching(proof).share
+    whole = share > 1 - CLOSE and len(np.unique(proof.sides[:, 0])) == len(proof.vertices)
     tied = "" if proof.tied is None else " of fingers that answer by equal stiffness"
     if proof.rings is None and len(getattr(shape, "hole_polygons", tuple)()):
         tied += " outside of holes"
-    return tied if share > 1 - CLOSE else f"{tied} on the {share:.1%} of the outline that was asked about"
+    return tied if whole else f"{tied} on the {share:.1%} of the outline that was asked about"
 
 
 def _apart(proof: Any) -> str:

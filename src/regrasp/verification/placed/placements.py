@@ -169,20 +169,18 @@ class _Checked:
             box = waiting.pop()
             first, count = (int(c) for c in self.proof.children[box])
             if count == 0:
-                broken += self._excluded(box)
+                if wrong := self._excluded(box):  # one is enough, and rationals take their time
+                    return wrong
                 continue
             inside = range(first, first + count)
             if not all(b in left for b in inside):
-                return [*broken, f"proof: box {box} is split into boxes that are not there, or not its own"]
+                return [f"proof: box {box} is split into boxes that are not there, or not its own"]
             left.difference_update(inside)
             waiting += inside
-            if box in self.by_side.rows:
-                broken += self.by_side.violations(box)
-            elif wrong := self._covered(box, inside):  # no box inside need be one
-                return [*broken, *wrong]
-        if left:
-            broken.append("proof: some boxes belong to no other")
-        return broken
+            sided = box in self.by_side.rows
+            if wrong := self.by_side.violations(box) if sided else self._covered(box, inside):
+                return wrong  # no box inside need be one
+        return ["proof: some boxes belong to no other"] if left else []
 
     def _arcs(self, box: int) -> list[Arc]:
         pairs = zip(self.proof.arcs[box].tolist(), self.proof.ends[box].tolist(), strict=True)

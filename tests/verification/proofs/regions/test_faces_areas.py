@@ -135,3 +135,27 @@ def test_of_many_triangles_on_many_planes_none_is_missed() -> None:
         assert on(rest, large, facing) == pytest.approx(1 - 0.5 / 12, rel=1e-9)
         assert on([*rest, 18 * plane], large, facing) == -1
         assert on([*rest, 18 * plane + 17], large, facing) == pytest.approx(1 - (9 - 1) / 18 / 12, rel=1e-9)
+
+
+@pytest.mark.parametrize("size", [3e-4, 1e-5])
+def test_a_face_left_out_is_missed_however_small(size) -> None:
+    """Of a pyramid without its tip; what triangles are over one another makes nothing up for it."""
+    low, high = np.array([[0.0, 0, 0], [3, 0, 0], [0, 3, 0]]), np.array([1.0, 1, 2])
+    vertices = np.concatenate([low, high + size * (low - high)])
+    faces = [[0, 2, 1], [3, 4, 5]]
+    faces += [half for i, j in ((0, 1), (1, 2), (2, 0)) for half in ([i, j, j + 3], [i, j + 3, i + 3])]
+    corners = vertices[faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = -across / np.linalg.norm(across, axis=1)[:, None]
+    assert share_of(corners, inward, vertices, faces) == pytest.approx(1, rel=1e-14)
+    rest = [0, *range(2, 8)]
+    a, b, c = np.moveaxis(corners[rest], 1, 0)
+    for over in 0.0, 4e-7:
+        halves = [(a, a + (0.5 + over / 2) * (b - a), c), (a + (0.5 - over / 2) * (b - a), b, c)]
+        parts = np.concatenate([np.stack(half, axis=1) for half in halves])
+        for left, facing in (corners[rest], inward[rest]), (parts, np.tile(inward[rest], (2, 1))):
+            found = share_of(left, facing, vertices, faces)
+            assert 1 - 1e-6 < found < 1 - 1.9e-9
+        normals = np.concatenate([np.tile(inward[rest], (2, 1)), inward[[1]]])
+        whole = share_of(np.concatenate([parts, corners[[1]]]), normals, vertices, faces)
+        assert whole == pytest.approx(1, rel=1e-12 + 2 * over)

@@ -47,6 +47,8 @@ def check_level(chosen: Chosen, proof: Proof) -> list[str]:
 
 def check_answers(chosen: Chosen) -> list[str]:
     """That states hold the load and then the deviations times the value; as equal springs, of ``wrench``."""
+    if chosen.value < 0:
+        return [f"deviations are answered by 0 times or more, not by {chosen.value:.12g}"]
     first, *others = chosen.states
     shown = np.array([state.load.vector for state in others])
     center = np.asarray(chosen.certificate.loads)[0]
@@ -111,12 +113,12 @@ def _sizes(center: Array, loads: Array) -> Array:
 
 
 def _scaled_by_less(chosen: Chosen, loads: Array, factor: float) -> bool:
-    """Whether loads after the first are it with the deviations by no more than a factor on top.
+    """Whether loads after the first are it with the deviations by 0 times or more, to a factor, on top.
 
-    What does not hold these does not hold them by more either: the first load is between.
+    What does not hold these does not hold them by more either: they are between these and the first load.
     """
     deviations = np.asarray(chosen.deviations)
     if loads[1:].shape != deviations.shape or not deviations.any():
         return False
     own = float(((loads[1:] - loads[0]) * deviations).sum() / (deviations**2).sum())
-    return own <= factor * (1 + CLOSE) and _scaled(chosen, loads[1:], own)
+    return 0 <= own <= factor * (1 + CLOSE) and _scaled(chosen, loads[1:], own)

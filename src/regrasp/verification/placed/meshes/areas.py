@@ -14,9 +14,10 @@ _ASLANT = np.array([0.36, 0.48, 0.8])  # a direction that few faces are at right
 
 
 def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> float:
-    """The part of a mesh's area that triangles (m, 3, 3) with inward normals cover [-].
+    """The part of a mesh's area that triangles (m, 3, 3) with inward normals cover, or less by rounding [-].
 
-    -1 where one of them is not on faces, or where two of them lie over one another.
+    -1 where one of them is not on faces, or where two of them lie over one another. Where a face is left out
+    it is not all, however small the face.
     """
     t = np.asarray(vertices)[np.asarray(faces)]
     cross = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
@@ -24,7 +25,8 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
     surface, reach = _Flat(t, -cross / (2 * whole)[:, None]), float(np.abs(vertices).max())
     given = _Flat(np.asarray(corners), np.asarray(normals))
     alike = _alike(given, surface)
-    used, covered = set(alike.values()), float(sizes[list(alike)].sum())
+    used, twice, covered = set(alike.values()), 0.0, np.zeros(len(whole))
+    covered[list(used)] = whole[list(used)]
     if len(used) < len(alike):
         return -1.0
     for k, triangle in enumerate(given.corners):
@@ -40,17 +42,17 @@ def share_of(corners: Array, normals: Array, vertices: Array, faces: Any) -> flo
             if int(same[0]) in used:
                 return -1.0
             used.add(int(same[0]))
-        elif sum(_common(triangle, t[j], given.normals[k]) for j in on) < size * (1 - _MISSED):
+            covered[same[0]] = whole[same[0]]
+            continue
+        common = np.array([_common(triangle, t[j], given.normals[k]) for j in on])
+        others = given.beside(triangle, given.normals[k], reach)
+        over = [_common(triangle, given.corners[j], given.normals[k]) for j in others if j != k]
+        if common.sum() < size * (1 - _MISSED) or max(over, default=0.0) > _MISSED * size:
             return -1.0
-        else:
-            others = given.beside(triangle, given.normals[k], reach)
-            if any(
-                j != k and _common(triangle, given.corners[j], given.normals[k]) > _MISSED * size
-                for j in others
-            ):
-                return -1.0
-        covered += size
-    return float(covered / whole.sum())
+        covered[on] += common
+        twice += sum(over)
+    share = float((covered.sum() - twice) / whole.sum())
+    return share if (covered >= whole * (1 - _MISSED)).all() else min(share, 1 - 2 * _CLOSE)
 
 
 def share_on(shape: Any, proof: Any) -> float:

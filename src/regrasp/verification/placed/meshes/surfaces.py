@@ -94,7 +94,9 @@ def _boxes_wrong(proof: SurfaceProof) -> list[str]:
     if boxes.min() < 0 or boxes.max() >= len(halves) or boxes[0].any():
         return ["proof: box 0 must give every finger the whole surface, and all boxes patches"]
     parents = np.flatnonzero(children[:, 1])
-    count = children[parents, 1]
+    first, count = children[parents].T
+    if (first < 1).any() or (count < 1).any() or (count > n - first).any():
+        return ["proof: the boxes are no tree"]
     inside = [np.arange(a, a + c) for a, c in children[parents].tolist()]
     everyone = np.sort(np.concatenate([*inside, np.zeros(0, int)]))
     if not np.array_equal(everyone, np.arange(1, n)):
