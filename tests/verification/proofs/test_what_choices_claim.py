@@ -3,7 +3,6 @@
 from dataclasses import replace
 from functools import cache
 from math import inf, nan
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -211,18 +210,6 @@ def test_contacts_on_curves_are_at_their_places() -> None:
         assert np.abs(points_at(s, shape.polygon(), control) - shape.points(s)).max() < 1e-11
     s = np.linspace(-3, 20, 29)
     assert np.abs(points_at(s, SQUARE.polygon(), None) - SQUARE.points(s)).max() < 1e-14
-
-
-@pytest.mark.parametrize("objective", ["peak", "angle"])
-def test_no_grasp_that_was_passed_over_is_better_than_the_bound(objective) -> None:
-    good = chosen(objective)
-    way = -1 if objective in LARGEST else 1
-    for off, fine in ((0.5, True), (0.0, True), (-1e-8, False), (-0.5, False)):
-        passed = (SimpleNamespace(value=good.value + way), SimpleNamespace(value=good.bound + way * off))
-        found = said(replace(good, others=passed))
-        assert (found == "") == fine, off
-        assert fine or "a grasp passed over has the value" in found
-    assert "passed over" in said(replace(good, others=(SimpleNamespace(value=nan),)))
 
 
 def test_a_factor_is_bounded_by_that_of_the_loads_of_the_proof() -> None:

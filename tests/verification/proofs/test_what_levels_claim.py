@@ -239,7 +239,7 @@ def test_slacks_and_shares_are_told() -> None:
 
 
 def test_what_a_grasp_on_a_mesh_claims() -> None:
-    good = on_box()
+    good = replace(on_box(), others=())
     assert said(good) == ""
     proof, grasp = good.certificate, good.grasp
     (state,) = good.states
@@ -291,7 +291,7 @@ def test_what_a_grasp_on_an_outline_claims() -> None:
 
 
 def test_proofs_of_chosen_grasps_are_checked_and_places_are_of_the_mesh() -> None:
-    good = on_box()
+    good = replace(on_box(), others=())
     shape = SimpleNamespace(surface=BOX.surface, centre_of_mass=np.array([0.1, -0.2, 0.3]))
     assert said(replace(good, shape=shape, places=np.asarray(good.places) + shape.centre_of_mass)) == ""
     flat = rg.choose_grasp(

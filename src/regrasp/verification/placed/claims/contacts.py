@@ -1,11 +1,13 @@
 """Whether contacts are fingers that a proof is about, on the shape given, and states hold all its loads."""
 
+from collections.abc import Callable
 from math import inf
 from typing import Any
 
 import numpy as np
 
 from regrasp.mechanics.checks import Array
+from regrasp.mechanics.contact import Contact
 from regrasp.verification.exact import RESOLUTION
 from regrasp.verification.placed.arc_lengths import points_at
 from regrasp.verification.placed.claims.meanings import ANY_LOAD, CLOSE
@@ -30,11 +32,15 @@ def check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:
         if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")
     positions = chosen.grasp.positions
-    if _nearest(positions) < proof.min_distance - float(RESOLUTION) * np.abs(positions).max():
+    apart = proof.min_distance - float(RESOLUTION) * np.abs(positions).max()
+    if _nearest(positions) < apart:
         broken.append("two contacts are nearer than the least distance")
     if chosen.objective not in ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
-    return broken + _off_their_places(chosen, np.asarray(chosen.places) - shape.centre_of_mass)
+    broken += _off_their_places(chosen, np.asarray(chosen.places) - shape.centre_of_mass)
+    return broken or _others_wrong(
+        chosen, apart, lambda c: touches(proof, c), lambda places: np.asarray(places) - shape.centre_of_mass
+    )
 
 
 def check_places(chosen: Chosen, proof: Proof) -> list[str]:
@@ -56,19 +62,45 @@ def check_places(chosen: Chosen, proof: Proof) -> list[str]:
         return [f"the proof is about {proof.fingers} fingers, the grasp has {len(chosen.grasp)}"]
     broken = []
     touching = Touching(proof)
-    slack = float(RESOLUTION) * touching.reach
+    apart = proof.min_distance - float(RESOLUTION) * touching.reach
     for contact in chosen.grasp:
         if contact not in touching:
             broken.append(f"contact {contact.name} is on none of the sides that the proof is about")
         if chosen.objective not in ("friction_use", "angle") and contact.friction > proof.friction:
             broken.append(f"contact {contact.name} has more friction than the proof is about")
-    if _nearest(chosen.grasp.positions) < proof.min_distance - slack:
+    if _nearest(chosen.grasp.positions) < apart:
         broken.append("two contacts are nearer than the least distance")
     if chosen.objective not in ANY_LOAD and not _all_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load of the proof has no state")
     if proof.turned and not _all_turns_shown(chosen, np.asarray(proof.loads)):
         broken.append("a load that a turn makes of one of the proof has no state")
-    return broken + _off_their_places(chosen, points_at(chosen.places, given, control, proof.rings))
+
+    def points(places: Array) -> Array:
+        return points_at(places, given, control, proof.rings)
+
+    broken += _off_their_places(chosen, points(chosen.places))
+    return broken or _others_wrong(chosen, apart, touching.__contains__, points)
+
+
+def _others_wrong(
+    chosen: Chosen, apart: float, is_on: Callable[[Contact], bool], points: Callable[[Array], Array]
+) -> list[str]:
+    """That grasps that were passed over are of such fingers, too; what they are worth no state shows."""
+    frictions = set(chosen.grasp.frictions.tolist())
+    for number, other in enumerate(chosen.others, 1):
+        grasp = other.grasp
+        if grasp.positions.shape != chosen.grasp.positions.shape or not all(map(is_on, grasp)):
+            wrong = "not of fingers where the proof has them"
+        elif not set(grasp.frictions.tolist()) <= frictions:
+            wrong = "of another friction"
+        elif _nearest(grasp.positions) < apart:
+            wrong = "two contacts are nearer than the least distance"
+        elif off := _off_their_places(other, points(other.places)):
+            wrong = off[0]
+        else:
+            continue
+        return [f"grasp {number} of those passed over: {wrong}"]
+    return []
 
 
 def _all_turns_shown(chosen: Chosen, loads: Array) -> bool:
@@ -82,7 +114,7 @@ def _all_turns_shown(chosen: Chosen, loads: Array) -> bool:
     return bool(len(shown) > 2 and around.all() and np.ptp(torques) <= CLOSE * np.abs(torques).max())
 
 
-def _off_their_places(chosen: Chosen, given: Array) -> list[str]:
+def _off_their_places(chosen: Any, given: Array) -> list[str]:
     """That the contacts are at the places that are said, whose points are ``given`` [m]."""
     positions = chosen.grasp.positions
     if given.shape != positions.shape:
