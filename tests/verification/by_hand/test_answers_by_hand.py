@@ -17,6 +17,10 @@ def said(claim) -> str:
     return "; ".join(rg.verify(claim).violations)
 
 
+def passed_over(good, value: float) -> SimpleNamespace:
+    return SimpleNamespace(grasp=good.grasp, places=good.places, value=value)
+
+
 def test_what_is_withstood_is_judged_whoever_says_it() -> None:
     good = withstood()
     verdict = rg.verify(good)
@@ -48,8 +52,8 @@ def test_what_is_withstood_is_judged_whoever_says_it() -> None:
         ("max_force", 2 * (1 - 2e-9), "is above the limit"), ("max_force", None, "needs the limit"),
         ("max_force", 2 * (1 + 1e-9), "the proof proves no bound"), ("min_normal", 0.5, ""),
         ("min_normal", 0.5 * (1 + 2e-9), "a finger pushes with less than 0.5"),
-        ("others", (SimpleNamespace(value=good.bound * (1 + 2e-9)),), "passed over"),
-        ("others", (SimpleNamespace(value=good.bound),), ""), ("places", np.array([1, 2, 3.1]), "off its"),
+        ("others", (passed_over(good, good.bound * (1 + 2e-9)),), "passed over"),
+        ("others", (passed_over(good, good.bound),), ""), ("places", np.array([1, 2, 3.1]), "off its"),
         ("deviations", np.array([[0, -1, 0], [0, 0, 1.1]]), "do not hold the load"),
         ("deviations", good.deviations[::-1].copy(), "do not hold the load"),
     ):  # fmt: skip
