@@ -117,9 +117,13 @@ def test_states_and_grasps_passed_over_are_some() -> None:
     good = vars(withstood())
     flat = good["states"]
     solid = VALUES["FaceRegions"]().grasp
+    other = {"value": 1.0, "grasp": good["grasp"], "places": good["places"]}
+    parted = [
+        SimpleNamespace(**other | part) for part in ({"grasp": solid}, {"places": [[1.0]]}, {"value": "1"})
+    ]
     for name, value in (
         ("states", (None,)), ("states", (*flat[:2], "state")), ("others", (None,)), ("others", (Shy(),)),
-        ("others", (SimpleNamespace(value="1"),)), ("grasp", solid), ("grasp", flat[0]), ("shape", Shy()),
+        *(("others", (part,)) for part in parted), ("grasp", solid), ("grasp", flat[0]), ("shape", Shy()),
     ):  # fmt: skip
         assert said(SimpleNamespace(**good | {name: value})).startswith(f"InvalidInput: {name}"), name
     assert said(SimpleNamespace(**good | {"states": list(flat)})) == ""

@@ -169,7 +169,7 @@ def check_claim(claim: Any) -> None:
             grasp=grasp,
         )
         for k, other in enumerate(claim.others):
-            _check(other, f"others[{k}]", value=_DOUBLE)
+            _check(other, f"others[{k}]", value=_DOUBLE, grasp=grasp, places=places)
         _check_proof(claim.certificate, "certificate")
         has_rings = not in_space and claim.certificate.rings is not None
         _check_shape(claim, **({"hole_polygons": _answers(_RINGS)} if has_rings else {}))
