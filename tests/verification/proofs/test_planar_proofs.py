@@ -247,6 +247,17 @@ def _place(proof, edge: int, t: float):
     return p + t * (q - p) - proof.centre_of_mass, [p[1] - q[1], q[0] - p[0]]
 
 
+def test_numbers_at_the_end_of_doubles_are_no_warning(recwarn) -> None:
+    node = (everything([[0, 0, 1.0]], 1), (0, 0), 0, (0.0, 1.0, 0.0))
+    for far in 1e308, 1e200, 1e-200:
+        sides = np.array([[0, 0, 1.0], [0, 5, 7.0], [0, 9, 12.0]])
+        corners = far * np.array([[0, 0], [1, 0], [1, 1]])
+        assert said(planar(corners, [[0, -1, 0]], [node], sides=sides[:1])) == ""
+        found = rg.verify(planar(corners, [[0, -1, 0]], [node], sides=sides)).violations
+        assert found == ("proof: side 1 is no stretch of an edge",)  # and no line for each
+    assert not len(recwarn)
+
+
 def test_numbers_of_other_types_are_none_to_compute_with() -> None:
     """Refused before, or in words by the check alone."""
     node = (everything([[0, 0, 1.0]], 1), (0, 0), 0, (0.0, 1.0, 0.0))

@@ -29,6 +29,7 @@ from regrasp.verification.verdict import Verification
 _LITTLE = 1e-5  # of an extent: fingers as near as that count as one
 
 
+@np.errstate(all="ignore")  # numbers of others may be of any size: what comes of them is judged
 def verify_chosen(chosen: Chosen) -> Verification:
     """The verdict on a chosen grasp, proof included."""
     broken: list[str] = []
@@ -73,6 +74,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
     )  # fmt: skip
 
 
+@np.errstate(all="ignore")
 def verify_proof(proof: Proof) -> Verification:
     """The verdict on a proof alone."""
     broken = _check_proof(proof)

@@ -149,7 +149,7 @@ class _Checked:
             if b[1] < a[2]
         ]
         if broken:
-            return broken
+            return broken[:1]
         ends = float(self.proof.sides[0, 1]), float(self.proof.sides[-1, 2])
         root = [(0, len(self.sides) - 1, *ends)] * self.proof.fingers
         if self.proof.turned:
