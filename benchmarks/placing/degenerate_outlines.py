@@ -29,6 +29,7 @@ from sampled_places import all_of, best, points_of
 
 RESULTS = Path(__file__).parents[1] / "results" / "degenerate_outlines.json"
 LATE = 20.0  # s after the cap
+LONGEST = 400  # letters of what a refusal says
 UNPROVEN = ("not proven", "rounding decides")  # in what a refusal says
 NONE = 1e-9  # what the judges take for no friction
 POINTS = {2: 40, 3: 16}
@@ -74,13 +75,15 @@ def row(
         )  # fmt: skip
         result |= {"end": "answer", "value": chosen.value, "bound": chosen.bound, "gap": chosen.gap}
     except rg.Infeasible as refusal:
-        proof = refusal.certificate
-        proven = (
-            proof is not None and not any(word in str(refusal) for word in UNPROVEN) and rg.verify(proof).ok
-        )
-        result |= {"end": "refusal, proven" if proven else "refusal", "words": str(refusal)[:100]}
+        proof, words = refusal.certificate, str(refusal)
+        verified = proof is not None and rg.verify(proof).ok
+        proven = verified and not any(word in words for word in UNPROVEN)
+        end = "nothing at the cap" if "an interrupt ended" in words else "refusal"
+        result |= {"end": "refusal, proven" if proven else end, "words": words[:LONGEST]}
+        result["least"] = proof.bound if verified and proof is not None else None
+        result["lies"] += ["not verified"] * (proof is not None and not verified)
     except rg.InvalidInput as refusal:
-        result |= {"end": "refused as input", "words": str(refusal)[:100]}
+        result |= {"end": "refused as input", "words": str(refusal)[:LONGEST]}
     except KeyboardInterrupt:
         result["end"] = "nothing at the cap"
     except Exception as error:
@@ -129,8 +132,9 @@ def table(kept: dict[str, Any]) -> str:
     ends = ("answer", "refusal, proven", "refusal", "refused as input", "nothing at the cap")
     lines = [
         "| outline | searches | gap reached | answers with a gap | refused with proof | not proven | "
-        "refused as input | nothing at the cap | longest [s] of a processor | wrong |",
-        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+        "refused as input | nothing at the cap | of both, with a bound | longest [s] of a processor | "
+        "wrong |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
     ]
     for name in SHAPES:
         rows = [(key, r) for key, r in kept.items() if key.startswith(f"{name}; ")]
@@ -140,9 +144,11 @@ def table(kept: dict[str, Any]) -> str:
             r["end"] == "answer" and r["gap"] <= (1e-2 if "; wrench," in key else 1e-3) for key, r in rows
         ]
         counts = [sum(r["end"] == end for _, r in rows) for end in ends]
+        bounded = sum(r["end"] in (ends[2], ends[4]) and (r.get("least") or 0) > 0 for _, r in rows)
         lines.append(
             f"| {name} | {len(rows)} | {sum(small)} | {counts[0] - sum(small)} | {counts[1]} | {counts[2]} | "
-            f"{counts[3]} | {counts[4]} | {max(r.get('processor', r['seconds']) for _, r in rows):.1f} | "
+            f"{counts[3]} | {counts[4]} | {bounded} | "
+            f"{max(r.get('processor', r['seconds']) for _, r in rows):.1f} | "
             f"{sum(bool(r['lies']) for _, r in rows)} |"
         )
     return "\n".join(lines)

@@ -77,6 +77,24 @@ def test_a_search_that_answers_interrupts_by_its_best_hears_who_asks_it_to_end(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["grasp.toml"]
 
 
+def test_a_search_that_is_interrupted_before_it_found_anything_says_its_bound(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from regrasp.planning.placement import search
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    for name in ("goes_on", "norm_at"):
+        monkeypatch.setattr(search.Search, name, interrupted)
+    assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
+    code, _, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures")
+    assert code == statuses.INTERRUPTED
+    assert err.startswith("Interrupted: ")
+    assert "no placement was found that holds the loads" in err
+    assert len(err.splitlines()) == 1
+
+
 @posix
 @pytest.mark.parametrize("delay", [0.03, 0.06, 0.1, 0.15, 0.25, 0.4, 0.7])
 def test_an_interrupt_at_any_moment_is_one_line(delay: float, tmp_path: Path) -> None:

@@ -114,7 +114,7 @@ def _run() -> int:
         raise
     except RegraspError as problem:
         status, message, error = status_of(problem), str(problem), problem
-        _complain(f"Error: {message}")
+        _complain(f"{'Interrupted' if status == INTERRUPTED else 'Error'}: {message}")
     if wants_json():
         say_json(facts_of(error, status, message))
     return status

@@ -22,6 +22,7 @@ from regrasp.planning.placement.constrained.constraints import (
     check_constraints,
     run_constrained,
 )
+from regrasp.planning.placement.knife_edges import on_edges
 from regrasp.planning.placement.laws import Law, law_of
 from regrasp.planning.placement.levels.ball import BallLevel
 from regrasp.planning.placement.levels.level import Level
@@ -206,6 +207,8 @@ def choose_grasp(
             slide_best(search)
         if not search.closed and mu > 0:
             _spare_friction(search, half, max(most // 10, _FEW))
+        if search.bound < (1 - half) * search.best:
+            _try_edges(search)
     return _told(chosen_by_norm(search, asked), law, progress)
 
 
@@ -215,6 +218,16 @@ def _told(chosen: ChosenGrasp, law: Law, progress: Progress | None) -> ChosenGra
         with suppress(KeyboardInterrupt):
             progress(chosen.bound ** (1 / law.power), chosen.value ** (1 / law.power))
     return chosen
+
+
+def _try_edges(search: Search) -> None:
+    """Take placements on a knife's edge, too."""
+    with suppress(KeyboardInterrupt):
+        more = on_edges(search)[:_KEPT]
+        if more:
+            search.take(search.placements()[:_KEPT] + more)
+            if more[0][0] < search.best:
+                search.note(*more[0])
 
 
 def _spare_friction(search: Search, tolerance: float, most: int) -> None:

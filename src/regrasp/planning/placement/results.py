@@ -1,7 +1,8 @@
 """From what a search found to a grasp with forces, or to words why there is none."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from math import inf
 from typing import TypeVar
@@ -16,9 +17,10 @@ from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.outline.polygon import PolygonBoundary
 from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
+from regrasp.planning.placement.knife_edges import on_edges
 from regrasp.planning.placement.laws import LARGEST, Law
 from regrasp.planning.placement.levels.ball import BallLevel
-from regrasp.planning.placement.levels.level import AnsweredLevel, Level, Shown
+from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel, Level, Shown
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.search import Search
 from regrasp.planning.placement.sides import RingSides, Sides
@@ -34,6 +36,8 @@ _OTHERS = 4
 _AT_ONCE = 1_000_000  # numbers
 _ALL = 0.9  # of the outline: what is left out near corners is no news
 _FAR = 0.01  # of the size: a least distance that refuses placements
+_FRICTIONS = (1e-6, 1e-4, 1e-2)  # more than what none holds with, where some may
+_EACH, _ROUGH, _SOME_BOXES = 10, 0.5, 1000
 
 
 @dataclass(frozen=True)
@@ -55,24 +59,9 @@ class Asked:
 
 def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     """The best grasp of a search for the least norm. ``Infeasible`` where there is none."""
-    power, around = asked.law.power, search.anew()
-    around.under(asked.loads)
-
-    def judged(
-        grasp: Grasp, norm: float, places: np.ndarray, u: Array
-    ) -> tuple[list[ChosenState], ChosenState] | None:
-        limits = {"max_force": asked.max_force, "min_normal": asked.min_normal or None}
-        states = [
-            choose_state(grasp, Wrench.from_vector(w), asked.objective, **limits)  # type: ignore[arg-type]
-            for w in asked.loads
-        ]
-        worst = max(states, key=lambda state: state.value)
-        found = around.norm_at(places, u)  # of the loads around a round set: more than of those in it
-        return (states, worst) if worst.value <= _AS_FOUND * max(norm, found) ** power else None
-
-    found = _first(search, asked, judged)
+    power, around, found = asked.law.power, _around(search, asked), _with_states(search, asked)
     if found is None:
-        raise _none_holds(search, asked)
+        raise _none_holds(search, asked) from _interrupt_of(search)
     grasp, places, u, (states, worst) = found
     bound = min(search.bound, worst.value ** (1 / power))
     shown = tuple(map(_plain, states))
@@ -85,36 +74,74 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     )  # fmt: skip
 
 
+def _interrupt_of(search: Search) -> KeyboardInterrupt | None:
+    """What ended a search, if an interrupt did: the cause of a refusal that is no proof."""
+    return KeyboardInterrupt() if search.interrupted and len(search.left) else None
+
+
+def _around(search: Search, asked: Asked) -> Search:
+    """For norms of the loads around a round set: more than of those in it."""
+    around = search.anew()
+    around.under(asked.loads)
+    return around
+
+
+def _with_states(
+    search: Search, asked: Asked
+) -> tuple[Grasp, np.ndarray, Array, tuple[list[ChosenState], ChosenState]] | None:
+    """The best placement tried of a search for the least norm, its states, and the worst of them."""
+    power, around = asked.law.power, _around(search, asked)
+
+    def judged(
+        grasp: Grasp, norm: float, places: np.ndarray, u: Array
+    ) -> tuple[list[ChosenState], ChosenState] | None:
+        limits = {"max_force": asked.max_force, "min_normal": asked.min_normal or None}
+        states = [
+            choose_state(grasp, Wrench.from_vector(w), asked.objective, **limits)  # type: ignore[arg-type]
+            for w in asked.loads
+        ]
+        worst = max(states, key=lambda state: state.value)
+        found = around.norm_at(places, u)
+        return (states, worst) if worst.value <= _AS_FOUND * max(norm, found) ** power else None
+
+    return _first(search, asked, judged)
+
+
 def chosen_at_level(
     search: Search, asked: Asked, level: Level, best: float | None, beyond: float
 ) -> ChosenGrasp:
     """The best grasp of a search for a level. ``Infeasible`` where there is none."""
     limit = level.max_force
     if best is None:
-        proof = proof_of(search, asked, _above(search, limit) if search.closed else 0.0)
-        what = (
-            "hold the loads"
-            if search.closed
-            else "were found to hold the loads; that there are none is not proven"
-        )
+        least = min(search.bound, limit) if isinstance(level, AnsweredLevel | FrictionLevel) else 0.0
+        proof = proof_of(search, asked, _above(search, limit) if search.closed else least)
+        who = f"no {search.fingers} fingers anywhere on {_where(search)}"
+        given = f"with friction {asked.friction:g} and forces of at most {limit:g} N"
+        if search.closed:
+            raise Infeasible(f"{who} hold the loads, {given}", proof)
+        top = level.value(level.top(search))
+        needed = f", and forces of {least:.6g} N are needed at the least" if least else ""
+        ended = "an interrupt ended the search" if search.interrupted else "allow more by most_boxes"
         raise Infeasible(
-            f"no {search.fingers} fingers anywhere on {_where(search)} {what}, with friction "
-            f"{asked.friction:g} and forces of at most {limit:g} N",
+            f"{who} were found to hold the loads, {given}{needed}; {asked.objective} is nowhere better than "
+            f"{top:.6g}; it is not proven that there are none: {ended}",
             proof,
-        )
+        ) from _interrupt_of(search)
 
     def judged(grasp: Grasp, negative: float, *_: Array) -> Shown | None:
         return level.shown(grasp, asked.objective, asked.loads, -negative)
 
     found = _first(search, asked, judged)
-    if found is None:
-        raise Infeasible(
-            "placements that hold the loads are so few that rounding decides, and none of those tried has "
-            "forces inside the cones and the limit"
-        )
-    grasp, places, u, (states, value) = found
     level.put(search, beyond)
     bound = level.value(beyond)
+    if found is None:
+        trivial = not search.closed or bound == 0.0
+        raise Infeasible(
+            "placements that hold the loads are so few that rounding decides, and none of those tried has "
+            f"forces inside the cones and the limit; {asked.objective} is nowhere better than {bound:.6g}",
+            proof_of(search, asked, 0.0 if trivial else _above(search, limit)),
+        ) from _interrupt_of(search)
+    grasp, places, u, (states, value) = found
     bound = max(bound, value) if asked.objective in LARGEST else min(bound, value)
     trivial = not search.closed or bound == 0.0
     return ChosenGrasp(
@@ -134,8 +161,8 @@ def _above(search: Search, limit: float) -> float:
 def _first(
     search: Search,
     asked: Asked,
-    judged: Callable[[Grasp, float, np.ndarray, Array], tuple[Sequence[GraspState], T] | None],
-) -> tuple[Grasp, np.ndarray, Array, tuple[Sequence[GraspState], T]] | None:
+    judged: Callable[[Grasp, float, np.ndarray, Array], T | None],
+) -> tuple[Grasp, np.ndarray, Array, T] | None:
     """The best placement tried whose forces come out as found, fingers in the order of the boundary."""
     for norm, places, u in search.placements()[:_ATTEMPTS]:
         order = np.argsort(u, kind="stable")
@@ -175,33 +202,61 @@ def _where(search: Search) -> str:
 
 def _none_holds(search: Search, asked: Asked) -> Infeasible:
     proof = proof_of(search, asked, min(search.bound, search.largest))
+    least = f"none needs less than {proof.bound:.6g} N"
     if search.best < inf:
         return Infeasible(
             "placements that hold the loads are so few that rounding decides, and none of those tried has "
-            f"forces inside the cones; no placement needs less than {proof.bound:.6g} N",
+            f"forces inside the cones; {least}{_with_more_friction(search, asked)}",
             proof,
         )
     if not len(search.left):
-        largest, least = search.limits
+        largest, low = search.limits
         limited = f" and forces of at most {largest:g} N" if largest < inf else ""
-        limited += f", each finger pushing with {least:g} N or more" if least else ""
+        limited += f", each finger pushing with {low:g} N or more" if low else ""
         far = "" if largest < inf else f", not by forces of {proof.bound:.3g} N either"
         return Infeasible(
             f"no {search.fingers} fingers anywhere on {_where(search)} hold the loads, with friction "
             f"{search.friction:g}{limited}{far}",
             proof,
         )
+    why = f"{search.count} boxes were looked at, allow more by most_boxes"
+    if search.interrupted:
+        why = f"an interrupt ended the search after {search.count} boxes"
+    elif search.closed:
+        why = "what is left is too narrow to be split, on a knife's edge"
     if asked.constrained:
         return Infeasible(
-            f"no placement was found that holds the loads and keeps the constraints; without them none needs "
-            f"less than {proof.bound:.6g} N, and that there is none with them is not proven",
+            f"no placement was found that holds the loads and keeps the constraints; without them {least}, "
+            f"and that there is none with them is not proven: {why}",
             proof,
         )
+    more = _with_more_friction(search, asked)
     return Infeasible(
-        f"no placement was found that holds the loads, and none needs less than {proof.bound:.6g} N; it is "
-        f"not proven that there is none: {search.count} boxes were looked at, allow more by most_boxes",
+        f"no placement was found that holds the loads, and {least}{more}; it is not proven that there is "
+        f"none: {why}",
         proof,
     )
+
+
+def _with_more_friction(search: Search, asked: Asked) -> str:
+    """In words, a friction a little larger with which a placement is found that holds the loads, and how."""
+    if search.interrupted or asked.constrained:
+        return ""
+    near = search.placements()[:_EACH]
+    for more in _FRICTIONS:
+        wider = search.anew(search.friction + more)
+        with suppress(KeyboardInterrupt):
+            there = [(wider.norm_at(places, u), places, u) for _, places, u in near]
+            there = [placed for placed in there if placed[0] < inf] + on_edges(wider)[:_EACH]
+            if there:
+                wider.take(there)
+            else:
+                wider.run(_ROUGH, _SOME_BOXES, None)
+        found = _with_states(wider, replace(asked, friction=wider.friction))
+        if found is not None:
+            value = found[-1][1].value
+            return f" (with friction {wider.friction:.9g} one does hold them, {asked.objective} {value:.6g})"
+    return ""
 
 
 def grasp_at(sides: Sides, places: np.ndarray, u: Array, friction: float) -> Grasp | None:

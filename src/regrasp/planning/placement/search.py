@@ -23,6 +23,7 @@ _AT_A_TIME, _WORK = 256, 5000  # boxes, of so many sides times loads, lest an in
 _TRIED = 4096
 _LATE = 4096  # boxes without any placement found, after which points are tried
 _POINTS = {2: 60, 3: 24, 4: 14}  # of so many fingers: about 2,000 placements
+_NARROWER, _NARROWEST = 0.1, 1e-8  # where nothing was found, of arcs as fractions of the size
 _PRECISE = 1e-7
 _SAFE = 1e-9  # of a bound, given up to rounding
 
@@ -69,7 +70,7 @@ class Search(Boxes):
     def run(self, tolerance: float, most: int, progress: Progress | None) -> None:
         """Search until no placement can be better by the fraction ``tolerance``, or ``most`` boxes are used.
 
-        An interrupt from the keyboard ends the search, too, and leaves what it has found.
+        An interrupt from the keyboard ends the search, too, and leaves what it has found, if anything.
         """
         try:
             going, tried = True, False
@@ -80,12 +81,21 @@ class Search(Boxes):
                     tried = True
                     for placed in self.on_points()[:1]:
                         self.note(*placed)
+                if self.best == inf and self.closed and self.count < most:
+                    going = self._narrowed()
                 if progress is not None:
                     progress(self.bound, self.best)
         except KeyboardInterrupt:
             self.interrupted = True
-            if self.best == inf:
-                raise
+
+    def _narrowed(self) -> bool:
+        """Whether boxes too narrow to be split are left, which are from now on, for nothing was found."""
+        left = self.left
+        if not len(left) or self.narrow < _NARROWEST:
+            return False
+        self.narrow *= _NARROWER
+        self._heap[: len(left)], self._state[1], self.closed = left, len(left), False
+        return True
 
     def on_points(self) -> list[tuple[float, np.ndarray, Array]]:
         """Placements on some points spread evenly, the best first, as ``placements``."""

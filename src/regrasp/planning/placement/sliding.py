@@ -64,8 +64,6 @@ def slide_best(search: Search, share: float = 1.0) -> None:
                 search.note(*better)
     except KeyboardInterrupt:
         search.interrupted = True
-        if search.best == inf:
-            raise
 
 
 def one_by_one(fingers: int) -> Callable[[], Array]:

@@ -137,14 +137,13 @@ def run_constrained(
         if search.best < inf and not search.interrupted:
             search.accept(*_slid(search, (search.best, *search.found), value, _FIRST, _LAST))
     except KeyboardInterrupt:
-        if search.best == inf:
-            raise
+        search.interrupted = True
 
 
 def _begun(search: Search, kept: Constraints, value: Value) -> list[Placed]:
     """Placements that keep the constraints, the best last: of points on the sides, or slid from there.
 
-    An interrupt leaves those found before, if there are any, and the search knows (``interrupted``).
+    An interrupt leaves those found before, and the search knows (``interrupted``).
     """
     seeds = sampled(search, kept.may, kept.leaving(search) if kept.removable else None)[:_SEEDS]
     found = sorted(seeds, key=lambda placed: -placed[0])
@@ -157,8 +156,6 @@ def _begun(search: Search, kept: Constraints, value: Value) -> list[Placed]:
             found += sliding
     except KeyboardInterrupt:
         search.interrupted = True
-        if not found:
-            raise
     return sorted(found, key=lambda placed: -placed[0])
 
 

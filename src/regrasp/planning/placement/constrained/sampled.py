@@ -52,8 +52,6 @@ def sampled(search: Search, may: May, leaving: float | None) -> list[Placed]:
             found.extend(_grown(search, may, leaving))
     except KeyboardInterrupt:
         search.interrupted = True
-        if not any(norm < inf for norm, *_ in found):
-            raise
     found = sorted((placed for placed in found if placed[0] < inf), key=lambda placed: placed[0])
     taken: dict[tuple[int, ...], int] = {}
     first: list[Placed] = []

@@ -77,6 +77,7 @@ class BallLevel(Level):
     def shown(self, grasp: Grasp, objective: str, loads: Array, level: float) -> Shown | None:
         """A state under the wrench that is hardest, and the radius."""
         radius, weakest = ball(grasp.positions, grasp.normals, self.friction, self.max_force, self.length)
+        radius = radius if radius > _NONE * self.max_force else 0.0
         for back in AT_THE_EDGE:
             load = Wrench.from_vector((1 - back) * radius * weakest * [1.0, 1.0, self.length])
             with suppress(Infeasible):

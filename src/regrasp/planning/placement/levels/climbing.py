@@ -61,8 +61,6 @@ def run_level(
             if progress is not None:
                 progress(level.value(top), nan if best is None else level.value(best))
     except KeyboardInterrupt:
-        if best is None:
-            raise
         search.closed, search.interrupted = False, True
     if best is None:
         search.closed = search.closed and search.excluded(search.left, fixed) == len(search.left)

@@ -56,9 +56,9 @@ def run_joined(
     try:
         joined.run(told)
     except KeyboardInterrupt:
-        if joined.best is None:
-            raise
         search.interrupted = True
+        if joined.best is None:
+            return None, joined.aim
         return joined.best, joined.cut_short()
     if joined.best is None:
         left = search.left

@@ -34,7 +34,9 @@ def best_level(
         best, beyond = run_joined(search, level, tolerance, most, progress)
     else:
         best, beyond = run_level(search, level, tolerance, most, progress)
-    if (joined or search.narrow > narrow) and best is None and not search.closed:  # few places hold
+    if (
+        (joined or search.narrow > narrow) and best is None and not (search.closed or search.interrupted)
+    ):  # few places hold
         search = search.anew()
         search.narrow, moving = narrow, curved and friction
         best, beyond = run_level(search, level, tolerance, most, progress)

@@ -119,7 +119,7 @@ def choose_on_mesh(
             min(bound**power, worst), read_only(spots[:, :3] + shape.centre_of_mass),
             _others(search, few, spots, objective, shape, _DIFFERENT * root), _proof(search, bound),
         )  # fmt: skip
-    raise _none_holds(search)
+    raise _none_holds(search) from (KeyboardInterrupt() if search.interrupted else None)
 
 
 def _at_level(
@@ -131,12 +131,13 @@ def _at_level(
     if not climb.kept:
         what = "hold the loads"
         if not search.closed:
-            what = "were found to hold the loads; that there are none is not proven"
+            ended = " (an interrupt ended the search)" if search.interrupted else ""
+            what = f"were found to hold the loads, and that there are none is not proven{ended},"
         raise Infeasible(
             f"no {search.fingers} fingers anywhere on this mesh {what}, with friction {friction:g} and "
             f"forces of at most {limit:g} N",
             _proof(search, float(np.nextafter(limit, inf)) if search.closed else 0.0),
-        )
+        ) from (KeyboardInterrupt() if search.interrupted else None)
     found: list[tuple[Array, Grasp, Sequence[GraspState], float]] = []
     for reached, spots in climb.kept[::-1][:_ATTEMPTS]:
         if any(_apart(spots, other[0]) < least for other in found):
@@ -253,8 +254,11 @@ def _none_holds(search: SurfaceSearch) -> Infeasible:
             f"edge alone, where rounding decides{two}; none needs less than {proof.bound:.6g} N",
             proof,
         )
+    why = f"{search.count} boxes were looked at, allow more by most_boxes"
+    if search.interrupted:
+        why = f"an interrupt ended the search after {search.count} boxes"
     return Infeasible(
         f"no placement was found whose forces hold the loads, and none needs less than {proof.bound:.6g} N; "
-        f"it is not proven that there is none: {search.count} boxes were looked at, allow more by most_boxes",
+        f"it is not proven that there is none: {why}",
         proof,
     )

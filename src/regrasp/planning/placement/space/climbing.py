@@ -73,8 +73,6 @@ class Climb:
             self.beyond = self._settled(aim)
         except KeyboardInterrupt:
             search.closed, search.interrupted, self.beyond = False, True, self.top
-            if not self.kept:
-                raise
 
     def _holds(self, spots: Array) -> bool:
         return self.search.norm_at(spots) <= self.level.max_force * (1 - _SURE)

@@ -55,8 +55,6 @@ class SurfaceSearch(SurfaceBoxes):
             self._slide(0.1 * _STEP, _SHORTEST)
         except KeyboardInterrupt:
             self.interrupted = True
-            if self.best == inf:
-                raise
 
     def begin_level(self, *, together: bool) -> None:
         """Look for a placement with forces up to the limit; whether loads may be taken together."""

@@ -15,6 +15,7 @@ from regrasp.closed_form.least.face_newton import INSIDE
 from regrasp.mechanics.checks import Array
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.reserve import NEGLIGIBLE
+from regrasp.mechanics.state import GraspState
 from regrasp.mechanics.value import kept
 from regrasp.planning.states.objectives import Bound, ConvexObjective
 from regrasp.planning.states.solving import Chooser, Polish
@@ -135,7 +136,16 @@ def polished(
         found: Array = best
         return found
     settled = chooser.settled(best, frictions, limits) if is_no_worse else None
-    return forces if settled is None else settled
+    return forces if settled is None or _is_worse(chooser, objective, settled, forces) else settled
+
+
+def _is_worse(chooser: Chooser, objective: ConvexObjective, forces: Array, others: Array) -> bool:
+    """Whether forces (n, w) are worse than others: what was moved into limits may be."""
+    found, before = (
+        objective.value(GraspState(chooser.grasp, chooser.load, chooser.grasp.cones.forces(each)))
+        for each in (forces, others)
+    )
+    return found < before if objective.maximise else found > before
 
 
 POLISH = Polish(at_first_sight, polished)
