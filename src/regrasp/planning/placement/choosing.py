@@ -38,6 +38,7 @@ from regrasp.planning.states.objectives import Objective
 FROM_CORNERS = 1e-3
 """Default distance of fingers from corners, as a fraction of the length of the outline."""
 _SPARED = 1e-6  # of the friction, where placements on edges of cones are passed over
+_ON_EDGES = 5  # placements, lest others are not looked at for them
 _KEPT, _FEW = 10, 1000  # placements, however those were found; boxes at the least
 _SHORT = 0.25  # of the work of sliding otherwise
 DISTINCT = 1e-6
@@ -223,9 +224,9 @@ def _told(chosen: ChosenGrasp, law: Law, progress: Progress | None) -> ChosenGra
 def _try_edges(search: Search) -> None:
     """Take placements on a knife's edge, too."""
     with suppress(KeyboardInterrupt):
-        more = on_edges(search)[:_KEPT]
+        more = on_edges(search)[:_ON_EDGES]
         if more:
-            search.take(search.placements()[:_KEPT] + more)
+            search.take(search.placements() + more)
             if more[0][0] < search.best:
                 search.note(*more[0])
 

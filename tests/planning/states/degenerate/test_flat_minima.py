@@ -131,3 +131,14 @@ def test_the_face_at_once_is_the_face_that_is_searched(
             assert is_no_worse
             assert abs(answer[0] - searched).max() < 1e-9 * abs(searched).max()
     assert len(given) // 4 < answered < len(given)
+
+
+def test_a_margin_is_no_worse_for_being_polished() -> None:
+    """Forces that were polished past a limit, and moved back into it, had lost 2.5e-6 of their margin."""
+    places = [((0.16604, -1), (0, 1)), ((1, -0.159217), (-1, 0)), ((-1, -0.0199905), (1, 0))]
+    grasp = rg.Grasp(rg.Contact(at, normal, 1.0) for at, normal in places)
+    state = rg.choose_state(grasp, rg.Wrench([0, -1], 0.02 * np.sqrt(2)), "force", max_force=3.0)
+    batch = rg.choose_states(
+        grasp.positions, grasp.normals, 1.0, [0, -1], 0.02 * np.sqrt(2), objective="force", max_force=3.0
+    )
+    assert state.value == pytest.approx(float(batch.values), rel=1e-8)
