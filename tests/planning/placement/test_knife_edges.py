@@ -106,7 +106,7 @@ def test_an_interrupt_before_anything_is_found_is_a_refusal_with_the_bound_so_fa
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    for kind, name in ((Search, "goes_on"), (Search, "terms"), (SurfaceSearch, "_some")):
+    for kind, name in ((Search, "goes_on"), (Search, "terms"), (SurfaceSearch, "some")):
         monkeypatch.setattr(kind, name, interrupted)
     with pytest.raises(rg.Infeasible, match=r"not proven.*an interrupt ended the search") as caught:
         asked(what)
