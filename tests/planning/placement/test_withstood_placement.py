@@ -16,6 +16,7 @@ from regrasp.planning.placement.levels.withstood import WithstoodLevel
 from regrasp.planning.placement.proofs.placement_proof import PlacementProof
 from regrasp.planning.placement.reachable import sides_of
 from regrasp.planning.placement.search import Search
+from regrasp.planning.placement.sliding import moved_past
 
 pytestmark = pytest.mark.oracle
 
@@ -240,3 +241,18 @@ def test_duals_of_one_box_bound_placements_in_another(shape: rg.Outline) -> None
             assert (n >= 0) == (factor > min(bounds))
             assert n < 0 or known.factor(corners, n)[0] <= factor
     assert met > 3
+
+
+@pytest.mark.parametrize("shape", [BRACKET, rg.Outline.ellipse(2, 1)], ids=["bracket", "ellipse"])
+def test_fingers_slide_past_the_ends_of_their_sides(shape: rg.Outline) -> None:
+    sides = sides_of(shape, 0.0)
+    places, u = np.array([0, len(sides.edges) - 1]), np.array([sides.ends[0, 0], sides.ends[-1].mean()])
+    before = np.array([sides.arc_length(int(on), at) for on, at in zip(places, u, strict=True)])
+    way = np.array([-0.31, 0.44])
+    on, at = moved_past(sides, places, u, way)
+    after = np.array([sides.arc_length(int(i), v) for i, v in zip(on, at, strict=True)])
+    gone = (after - before) / shape.length - way
+    # along a cubic u is not proportional to the length
+    assert np.abs(gone - np.round(gone)).max() < (1e-12 if shape is BRACKET else 1e-3)
+    assert (on != places).all()
+    assert ((sides.ends[on, 0] <= at) & (at <= sides.ends[on, 1])).all()

@@ -13,23 +13,28 @@ Placed = tuple[float, np.ndarray, Array]
 """The value of a placement, of which less is better, and the sides and u of its fingers."""
 Value = Callable[[np.ndarray, Array, float], float]
 """Of a placement where it is better than a value given; infinite elsewhere."""
+Move = Callable[[Sides, np.ndarray, Array, Array], tuple[np.ndarray, Array]]
+"""Where fingers come from places and u some way (k,)."""
 _STARTS, _GAINED = 8, 1e-6  # placements, and of a norm, what is worth a step
 _WORK, _PLACEMENTS = 400_000, 2000  # norms for one load each, a second or two of a processor; on points
 _FIRST, _LAST = 0.125, 1e-4  # steps, as parts of an edge
 
 
 def slid(
-    search: Search, placed: Placed, value: Value, step: float, last: float, ways: Callable[[], Array]
-) -> Placed:
+    search: Search, placed: Placed, value: Value, step: float, last: float, ways: Callable[[], Array],
+    move: Move | None = None,
+) -> Placed:  # fmt: skip
     """The best placement that fingers come to, by steps that are halved where none helps.
 
-    step, last: parts of an edge. ways: of all fingers, (w, k) at each step.
+    step, last: parts of what ``move`` counts in, of an edge unless given. ways: of all fingers, (w, k) at
+    each step.
     """
+    move = move or moved
     best, places, u = placed
     while step > last:
         helped = False
         for way in ways():
-            on, at = moved(search.sides, places, u, step * way)
+            on, at = move(search.sides, places, u, step * way)
             if np.array_equal(at, u):
                 continue
             found = value(on, at, best)
@@ -79,3 +84,14 @@ def moved(sides: Sides, places: np.ndarray, u: Array, way: Array) -> tuple[np.nd
         for on, at, by in zip(places, u, way, strict=True)
     ]
     return np.array([on for on, _ in there]), np.array([at for _, at in there])
+
+
+def moved_past(sides: Sides, places: np.ndarray, u: Array, way: Array) -> tuple[np.ndarray, Array]:
+    """Where fingers come some way past the ends of their sides, fractions of all of their length (k,)."""
+    scale = sides.lengths[sides.edges]
+    until = np.cumsum(np.ptp(sides.ends, axis=1) * scale)
+    begin = np.append(0.0, until[:-1])
+    at = begin[places] + (u - sides.ends[places, 0]) * scale[places] + way * until[-1]
+    at %= until[-1]
+    on = np.minimum(np.searchsorted(until, at, side="right"), len(until) - 1)
+    return on, np.clip(sides.ends[on, 0] + (at - begin[on]) / scale[on], *sides.ends[on].T)

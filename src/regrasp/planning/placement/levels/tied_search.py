@@ -23,7 +23,7 @@ from regrasp.planning.placement.sliding import Placed
 
 STRICT = 1e-9
 """Of the limit, by which excluded boxes must be above it."""
-_BOXES = 50  # that a program counts for
+_BOXES = 25  # that a program counts for
 _NARROW = 1e-6  # of the size, of arcs that are not split
 _EVEN = 0.2  # of an arc, that counts where its fingers press in one place under all loads
 _TURN = 0.5  # of the size, that a turn by one radian counts for

@@ -20,7 +20,7 @@ from regrasp.planning.placement.levels.level import AnsweredLevel, Shown
 from regrasp.planning.placement.levels.tied_search import STRICT, TiedSearch
 from regrasp.planning.placement.results import grasp_at
 from regrasp.planning.placement.search import Progress, Search
-from regrasp.planning.placement.sliding import Placed, one_by_one, slid
+from regrasp.planning.placement.sliding import Placed, moved_past, one_by_one, slid
 from regrasp.planning.states.choosing import choose_state
 from regrasp.planning.states.criteria import ChosenState
 
@@ -28,6 +28,7 @@ _SEEDS, _OTHERS, _CLIMBED = 8, 24, 3  # placements that answer most, others judg
 _BATCHES = 8  # of boxes whose placements are the others
 _DIFFERENT = 0.02  # of the size, between others
 _FIRST, _LAST = 0.2, 2e-3  # steps of sliding, as parts of an edge
+_FAR, _NEAR = 0.064, 1e-4  # the same past vertices, as parts of the boundary
 _GAIN = 1e-9  # of a factor, the least that counts
 _ROUNDING = 1e-9
 
@@ -141,7 +142,15 @@ class WithstoodLevel(AnsweredLevel):
             factor = self._factor(search, places, u)
             return -factor if factor > wanted else inf
 
-        return slid(search, placed, less, _FIRST, _LAST, one_by_one(len(placed[2])))
+        k, random = len(placed[2]), np.random.default_rng(0)
+        ways = one_by_one(k)
+
+        def turned() -> Array:  # for ridges along no finger alone
+            return np.concatenate([ways(), ways() @ np.linalg.qr(random.normal(size=(k, k)))[0]])
+
+        # a finger that stays on its edge is stuck on a chord of a fillet
+        far = slid(search, placed, less, _FAR, _NEAR, turned, moved_past)
+        return slid(search, far, less, _FIRST, _LAST, ways)
 
     def of(self, search: Search, places: np.ndarray, u: Array) -> float:
         """What a placement withstands; NaN where it does not hold the load, or not by itself."""
