@@ -74,7 +74,10 @@ def row(
             tolerance=1e-2 if objective == "wrench" else 1e-3, progress=progress, **given,
         )  # fmt: skip
         result |= {"end": "answer", "value": chosen.value, "bound": chosen.bound, "gap": chosen.gap}
-    except rg.Infeasible as refusal:
+    except (rg.Infeasible, KeyboardInterrupt) as stop:
+        refusal = stop.__cause__ if isinstance(stop, KeyboardInterrupt) else stop
+        if not isinstance(refusal, rg.Infeasible):
+            raise
         proof, words = refusal.certificate, str(refusal)
         verified = proof is not None and rg.verify(proof).ok
         proven = verified and not any(word in words for word in UNPROVEN)
@@ -84,8 +87,6 @@ def row(
         result["lies"] += ["not verified"] * (proof is not None and not verified)
     except rg.InvalidInput as refusal:
         result |= {"end": "refused as input", "words": str(refusal)[:LONGEST]}
-    except KeyboardInterrupt:
-        result["end"] = "nothing at the cap"
     except Exception as error:
         result |= {"end": "error", "words": repr(error)[:200], "lies": ["error"]}
     result |= {"seconds": perf_counter() - begin, "processor": process_time() - used, "cap": cap}

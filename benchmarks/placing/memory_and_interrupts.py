@@ -8,11 +8,11 @@
 Each search runs in a process of its own, after a small one that loads the compiled code. *Memory* is its
 largest resident set (``getrusage``), with ``most_boxes`` of 64 and of more: the difference is that of boxes
 and their proof. *Interrupts* are sent (SIGINT) after 0.05 to 6 s of a search whose gap is never reached; what
-comes back is a grasp with its gap, verified where its proof is of 10,000 boxes at most, or a refusal with
-the bound so far where no placement was found. *Late* ones come when there are so many boxes, and tell
-how much clock and processor time there is until the answer. *Threads*: both times of a search by one and two;
-and *alone*, the processor time of one that two would not share: what is outside of rounds, and of each round
-half, or its longest part. Rows are kept in benchmarks/results.
+comes back is a grasp with its gap, verified where its proof is of 10,000 boxes at most, or
+``KeyboardInterrupt`` with the bound so far where no placement was found. *Late* ones come when there are so
+many boxes, and tell how much clock and processor time there is until the answer. *Threads*: both times of a
+search by one and two; and *alone*, the processor time of one that two would not share: what is outside of
+rounds, and of each round half, or its longest part. Rows are kept in benchmarks/results.
 """
 
 import argparse
@@ -95,7 +95,7 @@ def child(case: str, most: int | None, boxes: int | None) -> None:
     try:
         chosen = search(case, most)
         found = {"gap": chosen.gap, "boxes": chosen.certificate.leaves}
-    except rg.Infeasible:
+    except KeyboardInterrupt:
         found = {"interrupted": True}
     if begun:
         begin, used, found["made"] = begun

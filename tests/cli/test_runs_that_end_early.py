@@ -90,9 +90,9 @@ def test_a_search_that_is_interrupted_before_it_found_anything_says_its_bound(
     assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
     code, _, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures")
     assert code == statuses.INTERRUPTED
-    assert err.startswith("Interrupted: ")
+    assert err.startswith("\nInterrupted: ")
     assert "no placement was found that holds the loads" in err
-    assert len(err.splitlines()) == 1
+    assert len(err.splitlines()) == 2
 
 
 @posix

@@ -114,7 +114,7 @@ def _run() -> int:
         raise
     except RegraspError as problem:
         status, message, error = status_of(problem), str(problem), problem
-        _complain(f"{'Interrupted' if status == INTERRUPTED else 'Error'}: {message}")
+        _complain(f"Error: {message}")
     if wants_json():
         say_json(facts_of(error, status, message))
     return status
@@ -124,7 +124,8 @@ def _stopped(stop: BaseException) -> tuple[int, str]:
     """The status of a run that was stopped, and what is said."""
     if isinstance(stop, _Ended):
         return (TERMINATED if stop.number == signal.SIGTERM else HUNG_UP), "Ended."
-    return INTERRUPTED, "Interrupted."
+    heard = stop.__cause__ if isinstance(stop, click.Abort) else stop
+    return INTERRUPTED, f"Interrupted: {heard}" if str(heard or "") else "Interrupted."  # a search says more
 
 
 def _complain(text: str) -> None:

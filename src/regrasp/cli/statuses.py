@@ -29,8 +29,6 @@ class Unverified(RegraspError):
 
 def status_of(error: RegraspError) -> int:
     """The exit status of an error."""
-    if isinstance(error.__cause__, KeyboardInterrupt):  # a search that had found nothing yet
-        return INTERRUPTED
     if isinstance(error, Infeasible):
         return INFEASIBLE
     return BAD_INPUT if isinstance(error, (InvalidInput, SolverUnavailable)) else UNVERIFIED

@@ -94,7 +94,7 @@ def naming(file: str | Path) -> Iterator[None]:
     except InvalidInput as error:
         raise type(error)(f"{file}: {error}") from None
     except Infeasible as error:
-        raise Infeasible(f"{file}: {error}", error.certificate) from error.__cause__
+        raise Infeasible(f"{file}: {error}", error.certificate) from None
 
 
 @contextmanager

@@ -61,7 +61,7 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     """The best grasp of a search for the least norm. ``Infeasible`` where there is none."""
     power, around, found = asked.law.power, _around(search, asked), _with_states(search, asked)
     if found is None:
-        raise _none_holds(search, asked) from _interrupt_of(search)
+        raise as_it_ended(_none_holds(search, asked), _was_cut(search))
     grasp, places, u, (states, worst) = found
     bound = min(search.bound, worst.value ** (1 / power))
     shown = tuple(map(_plain, states))
@@ -74,9 +74,17 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     )  # fmt: skip
 
 
-def _interrupt_of(search: Search) -> KeyboardInterrupt | None:
-    """What ended a search, if an interrupt did: the cause of a refusal that is no proof."""
-    return KeyboardInterrupt() if search.interrupted and len(search.left) else None
+def as_it_ended(refusal: Infeasible, interrupted: bool) -> BaseException:
+    """The refusal; or the interrupt by which a search ended with it, in its words and caused by it."""
+    if not interrupted:
+        return refusal
+    stop = KeyboardInterrupt(str(refusal))
+    stop.__cause__ = refusal
+    return stop
+
+
+def _was_cut(search: Search) -> bool:
+    return search.interrupted and len(search.left) > 0
 
 
 def _around(search: Search, asked: Asked) -> Search:
@@ -122,11 +130,12 @@ def chosen_at_level(
         top = level.value(level.top(search))
         needed = f", and forces of {least:.6g} N are needed at the least" if least else ""
         ended = "an interrupt ended the search" if search.interrupted else "allow more by most_boxes"
-        raise Infeasible(
+        refusal = Infeasible(
             f"{who} were found to hold the loads, {given}{needed}; {asked.objective} is nowhere better than "
             f"{top:.6g}; it is not proven that there are none: {ended}",
             proof,
-        ) from _interrupt_of(search)
+        )
+        raise as_it_ended(refusal, _was_cut(search))
 
     def judged(grasp: Grasp, negative: float, *_: Array) -> Shown | None:
         return level.shown(grasp, asked.objective, asked.loads, -negative)
@@ -136,11 +145,12 @@ def chosen_at_level(
     bound = level.value(beyond)
     if found is None:
         trivial = not search.closed or bound == 0.0
-        raise Infeasible(
+        refusal = Infeasible(
             "placements that hold the loads are so few that rounding decides, and none of those tried has "
             f"forces inside the cones and the limit; {asked.objective} is nowhere better than {bound:.6g}",
             proof_of(search, asked, 0.0 if trivial else _above(search, limit)),
-        ) from _interrupt_of(search)
+        )
+        raise as_it_ended(refusal, _was_cut(search))
     grasp, places, u, (states, value) = found
     bound = max(bound, value) if asked.objective in LARGEST else min(bound, value)
     trivial = not search.closed or bound == 0.0

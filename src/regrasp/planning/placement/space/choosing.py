@@ -20,6 +20,7 @@ from regrasp.planning.placement.chosen import ChosenGrasp, OtherGrasp
 from regrasp.planning.placement.laws import LARGEST, LEVELS, Law
 from regrasp.planning.placement.levels.level import AnsweredLevel, FrictionLevel, Level
 from regrasp.planning.placement.proofs.patch_proof import PatchProof
+from regrasp.planning.placement.results import as_it_ended
 from regrasp.planning.placement.search import Progress
 from regrasp.planning.placement.space.climbing import Climb
 from regrasp.planning.placement.space.patches import patches_of
@@ -119,7 +120,7 @@ def choose_on_mesh(
             min(bound**power, worst), read_only(spots[:, :3] + shape.centre_of_mass),
             _others(search, few, spots, objective, shape, _DIFFERENT * root), _proof(search, bound),
         )  # fmt: skip
-    raise _none_holds(search) from (KeyboardInterrupt() if search.interrupted else None)
+    raise as_it_ended(_none_holds(search), search.interrupted)
 
 
 def _at_level(
@@ -133,11 +134,12 @@ def _at_level(
         if not search.closed:
             ended = " (an interrupt ended the search)" if search.interrupted else ""
             what = f"were found to hold the loads, and that there are none is not proven{ended},"
-        raise Infeasible(
+        refusal = Infeasible(
             f"no {search.fingers} fingers anywhere on this mesh {what}, with friction {friction:g} and "
             f"forces of at most {limit:g} N",
             _proof(search, float(np.nextafter(limit, inf)) if search.closed else 0.0),
-        ) from (KeyboardInterrupt() if search.interrupted else None)
+        )
+        raise as_it_ended(refusal, search.interrupted)
     found: list[tuple[Array, Grasp, Sequence[GraspState], float]] = []
     for reached, spots in climb.kept[::-1][:_ATTEMPTS]:
         if any(_apart(spots, other[0]) < least for other in found):
