@@ -11,7 +11,7 @@ from time import monotonic
 from regrasp.errors import Infeasible, InvalidInput, RegraspError
 from regrasp.mechanics.value import one_line
 
-MOST_BYTES = 64 * 2**20
+MOST_BYTES = 256 * 2**20
 """Of a file that is read whole."""
 _PATIENCE = 8.0
 """Seconds that a pipe or a terminal may say nothing, and that it may take in all."""

@@ -24,6 +24,24 @@ def data_of(path: Path, what: str) -> Any:
         raise InvalidInput(f"{path}: not JSON, or cut short: {error}") from None
 
 
+def in_lines(document: dict[str, Any], depth: int = 1) -> str:
+    """JSON with a line for each value of a table, and of tables within it: long lists are not taken apart.
+
+    ``InvalidInput`` for numbers that are not finite.
+    """
+    rows = []
+    for key, value in document.items():
+        if isinstance(value, dict) and value:
+            text = in_lines(value, depth + 1)
+        else:
+            try:
+                text = json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+            except ValueError:
+                raise InvalidInput(f"{key}: expected finite numbers") from None
+        rows.append(f"{' ' * depth}{json.dumps(key, ensure_ascii=False)}: {text}")
+    return "{\n" + ",\n".join(rows) + "\n" + " " * (depth - 1) + "}"
+
+
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """A table of JSON, whose keys come once: of two values a reader would see either."""
     table = dict(pairs)

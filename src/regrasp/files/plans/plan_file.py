@@ -11,9 +11,9 @@ from typing import Any
 
 from regrasp.disk.staging import whole_file
 from regrasp.errors import InvalidInput, shown
-from regrasp.files.plans.json_text import data_of
+from regrasp.files.plans.json_text import data_of, in_lines
 from regrasp.files.plans.plan_schema import StoredPlan, StoredRecord, StoredRegrasp, StoredTransition
-from regrasp.files.source import naming
+from regrasp.files.source import MOST_BYTES, naming
 from regrasp.files.strict import validated
 from regrasp.mechanics.checks import array, file_path
 from regrasp.mechanics.contact import Contact
@@ -44,13 +44,23 @@ def write_plan(plan: Transition | RegraspPlan | ChosenGrasp, path: str | Path) -
         path: the file, in JSON.
 
     Raises:
-        InvalidInput: For a plan with numbers that are not finite, and where the file cannot be written.
+        InvalidInput: For a plan with numbers that are not finite, for a proof of more than 256 MiB, which
+            would not be read, and where the file cannot be written.
     """
     path = file_path(path)
     document = plan_document(plan, path)
+    if isinstance(plan, ChosenGrasp):  # a proof may have millions of numbers
+        text = in_lines(document)
+        if len(text) > MOST_BYTES:
+            boxes, most = plan.certificate.leaves, MOST_BYTES >> 20
+            raise InvalidInput(
+                f"{path}: with a proof of {boxes} boxes it takes {len(text) >> 20} MiB, and at most {most} "
+                "are read: choose with fewer most_boxes, or a larger tolerance"
+            )
+    else:
+        text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False)
     with whole_file(path) as file:
-        json.dump(document, file, indent=1, allow_nan=False, ensure_ascii=False)
-        file.write("\n")
+        file.write(f"{text}\n")
 
 
 def read_plan(path: str | Path) -> Transition | RegraspPlan | ChosenGrasp:
