@@ -172,6 +172,7 @@ def test_claims_that_the_proof_does_not_cover_are_seen() -> None:
         (replace(good, bound=good.bound * 1.0001), "above what the proof says"),
         (replace(good, objective="peak"), "not of peak"),
         (replace(good, value=good.bound), "above the value"),
+        (replace(good, value=good.value * 1.000001), "worse than what the states show"),
         (replace(good, grasp=moved, states=tuple(states), value=9.0), "none of the sides"),
         (replace(good, states=good.states[:2]), "has no state"),
         (replace(good, states=()), "no state"),

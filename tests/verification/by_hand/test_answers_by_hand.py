@@ -1,6 +1,6 @@
 """What is answered and withstood, claimed by others: each part of the claim and of its proof counts."""
 
-from math import atan, inf, nan, nextafter
+from math import atan, hypot, inf, nan, nextafter
 from types import SimpleNamespace
 
 import numpy as np
@@ -132,14 +132,14 @@ def test_what_a_verdict_tells() -> None:
     assert (verdict.ok, verdict.excluded, verdict.asked, verdict.worst_residual) == (True, 1, "", 0.0)
     assert (verdict.least_angle, verdict.least_cone_slack) == (pytest.approx(atan(0.5)), 0.25)
     aside = rg.GraspState(good.grasp, rg.Wrench([0, -1]), [[0.25, 1]])  # out of balance by a quarter
-    verdict = rg.verify(peak(states=(state, aside, state), value=2.0))
+    verdict = rg.verify(peak(states=(state, aside, state), value=hypot(0.25, 1)))
     assert verdict.worst_residual > 0.2
     assert verdict.least_angle == pytest.approx(atan(0.5) - atan(0.25))
     assert verdict.least_cone_slack == 1.25 - 1.0625
     assert [v.partition(":")[0] for v in verdict.violations] == ["state 2"]
     other = rg.Grasp([rg.Contact([0, -1], [0, 1], 0.4, name="F")])
     foreign = rg.GraspState(other, rg.Wrench([0, -1]), [[0, 5]])
-    found = rg.verify(peak(states=(state, foreign, aside), value=2.0)).violations
+    found = rg.verify(peak(states=(state, foreign, aside), value=5.0)).violations
     assert found[0] == "state 2 is of other contacts"
     assert [v.partition(":")[0] for v in found[1:]] == ["state 3"]
     nothing = rg.verify(peak(objective="plenty"))

@@ -1,5 +1,6 @@
 """Claims that touch their limit to the last bit hold; and what loads and places must be, by hand."""
 
+from fractions import Fraction
 from math import atan, hypot, inf, sin
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ import regrasp as rg
 from proofs import planar
 from regrasp.verification.placed import chosen_grasps as claims
 from regrasp.verification.placed.claims import contacts, levels
+from regrasp.verification.placed.whole_sets import makes_ball
 
 pytestmark = pytest.mark.contract
 
@@ -173,3 +175,52 @@ def test_spots_that_touch_their_limits(monkeypatch) -> None:
 def test_what_is_said_of_springs() -> None:
     tied = planar(SQUARE, [[0, 0, 0]], [NODE], tied=np.zeros((0, 3)))
     assert claims._part(tied) == " of fingers that answer by equal stiffness"
+
+
+def test_values_are_what_the_worst_of_the_states_shows() -> None:
+    """A value is no worse than that, but for a billionth; the weaker of two states says what it is."""
+    few = {"least_angle": 0.5, "least_force": 2.0, "largest_friction_use": 0.25}
+    more = {"least_angle": 0.6, "least_force": 3.0, "largest_friction_use": 0.125}
+    states = pressing(2.0, **few), pressing(1.0, **more)
+    for objective, shown, way in (
+        ("sum_normal", 4.0, 1), ("peak_normal", 2.0, 1), ("peak", 2.0, 1), ("effort", 8.0, 1),
+        ("friction_use", 0.25, 4), ("angle", 0.5, -2), ("force", 2.0, -1),
+    ):  # fmt: skip
+        for part, good in (0.0, True), (0.9e-9, True), (1.1e-9, False), (1.0, False), (1e300, False):
+            value = shown * (1 + way * part)
+            for order in states, states[::-1]:
+                found = claims._check_shown(chosen(objective, value, states=order))
+                words = f"value {value:.12g} is worse than what the states show, {shown:.12g}"
+                assert found == ([] if good else [words]), (objective, part)
+    idle = pressing(0.0, largest_friction_use=np.nan)  # no force uses friction
+    for order in (idle, *states), (*states, idle):
+        for value, good in (0.25, True), (0.3, False):
+            assert (claims._check_shown(chosen("friction_use", value, states=order)) == []) == good
+    for value, good in (0.0, True), (0.9e-9, True), (1.1e-9, False):
+        assert (claims._check_shown(chosen("friction_use", value, states=(idle,))) == []) == good
+    slips = pressing(1.0, least_force=-2.0)
+    for value, good in (-2.0, True), (-2.0 - 1.9e-9, True), (-2.0 - 2.1e-9, False):
+        assert (claims._check_shown(chosen("force", value, states=(slips,))) == []) == good
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_a_ball_is_no_smaller_than_the_fingers_make(scale) -> None:
+    """Three fingers around a disc, and what rounding of the largest wrench leaves of the radius."""
+    turns = 2 * np.pi * np.arange(3) / 3
+    out = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    grasp = rg.Grasp([rg.Contact(scale * p, -p, 0.5) for p in out])
+    low, high = 0.0, 3.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        held = makes_ball(grasp, 2.0, scale, Fraction(middle))
+        low, high = (middle, high) if held else (low, middle)
+    assert low > 0.1
+    slack = 1e-9 * (low + 6 * np.hypot(1, 0.5))  # three forces of at most 2 along n and half of it across
+    for off, good in (0.0, True), (0.99 * slack, True), (1.01 * slack, False), (low, False):
+        found = claims._check_shown(
+            chosen(
+                "wrench_ball", low - off, grasp=grasp, length=scale, max_force=2.0, states=(pressing(1.0),)
+            )
+        )
+        words = f"value {low - off:.12g} is worse than the ball of wrenches that the fingers make"
+        assert found == ([] if good else [words]), off

@@ -85,6 +85,16 @@ def test_levels_are_those_that_the_proof_excludes() -> None:
 
 
 @pytest.mark.parametrize("objective", list(OPTIONS))
+def test_values_are_understated_by_no_file(objective) -> None:
+    for good in chosen(objective), on_box():
+        assert said(good) == ""
+        factor = 1 if good.objective in ("friction_use", "peak") else -1
+        for part in (1e-6, 1.0) if factor < 0 else (1e-6, 1.0, 1e300):
+            found = said(replace(good, value=good.value * (1 + factor * part)))
+            assert "is worse than" in found or "the states do not hold the load" in found, part
+
+
+@pytest.mark.parametrize("objective", list(OPTIONS))
 def test_a_search_cut_short_proves_what_needs_no_proof(objective) -> None:
     """Forces above the limit alone are excluded by a proof of less than the limit."""
     good = chosen(objective)

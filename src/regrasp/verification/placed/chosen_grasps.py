@@ -9,7 +9,7 @@ import numpy as np
 from regrasp.mechanics.state import GraspState
 from regrasp.verification.exact import RESOLUTION, check_state, least_angle
 from regrasp.verification.placed.claims.contacts import check_places, check_spots
-from regrasp.verification.placed.claims.levels import check_level
+from regrasp.verification.placed.claims.levels import check_level, check_whole_ball
 from regrasp.verification.placed.claims.meanings import (
     CLOSE,
     LARGEST,
@@ -52,7 +52,7 @@ def verify_chosen(chosen: Chosen) -> Verification:
         angles.append(least_angle(state.grasp, state.forces))
         broken += violations
         broken += _check_value(chosen, state, i)
-    broken += [] if chosen.states else ["no state shows the value"]
+    broken += _check_shown(chosen) if chosen.states else ["no state shows the value"]
     broken += _check_others(chosen)
     in_space = hasattr(proof, "normals")
     if not in_space and chosen.objective != "wrench" and proof.tied is not None:
@@ -142,6 +142,32 @@ def _check_value(chosen: Chosen, state: GraspState, i: int) -> list[str]:
     if chosen.objective == "friction_use" and state.margins.largest_friction_use > value + CLOSE:
         broken.append(f"state {i}: the use of friction is above the value {value:.12g}")
     return broken
+
+
+def _check_shown(chosen: Chosen) -> list[str]:
+    """That the value is no worse than the worst of the states, either.
+
+    Of what is answered each state tells both sides (``check_level``), of a ball the fingers do.
+    """
+    size, norm = MEANINGS[chosen.objective]
+    margins = [state.margins for state in chosen.states]
+    value = chosen.value
+    if chosen.objective == "friction_use":  # NaN where no finger presses
+        uses = [each.largest_friction_use for each in margins]
+        shown = max((use for use in uses if use == use), default=0.0)
+        is_worse = value > shown + CLOSE
+    elif chosen.objective == "angle":
+        shown = min(each.least_angle for each in margins)
+        is_worse = value < shown - CLOSE
+    elif chosen.objective == "force":
+        shown = min(each.least_force for each in margins)
+        is_worse = value < shown - CLOSE * abs(shown)
+    elif chosen.objective not in LEVELS:
+        shown = max(_norm(state, size, norm) for state in chosen.states) ** power_of(norm)
+        is_worse = value > shown * (1 + CLOSE)
+    else:
+        return check_whole_ball(chosen) if chosen.objective == "wrench_ball" else []
+    return [f"value {value:.12g} is worse than what the states show, {shown:.12g}"] if is_worse else []
 
 
 def _check_bound(chosen: Chosen, proof: Proof) -> list[str]:

@@ -164,6 +164,15 @@ def test_equilibrium_at_its_limit(scale) -> None:
     assert "w_ext is 1 of the largest force" in said(made(loads=large, forces=0 * made().forces))
 
 
+def test_forces_are_within_the_limits_of_contacts() -> None:
+    regions = made()
+    for most, good in (100.0, True), (np.nextafter(100.0, 0), False):
+        regions.grasp = rg.Grasp(c.changed(max_force=most) for c in made().grasp)
+        assert said(regions) == (
+            "" if good else "; ".join(f"forces may be 100, above the max_force of {n}" for n in "ABCD")
+        )
+
+
 def test_radii_are_no_wider_than_polygons() -> None:
     for factor, good in (1 + 0.9e-9, True), (1 + 1.1e-9, False):
         found = said(made(radii=np.array([0.1 * factor, 0, 0, 0])))

@@ -1,7 +1,7 @@
 """Whether the bound of a level is what a proof proves, at which no forces below a limit exist."""
 
 from fractions import Fraction
-from math import atan, hypot, inf, sin
+from math import atan, hypot, inf, isfinite, sin
 from typing import Any
 
 import numpy as np
@@ -67,6 +67,22 @@ def check_ball(chosen: Chosen, limit: float) -> list[str]:
         return ["a ball of loads needs a length that torques are divided by"]
     if chosen.value < 0 or not makes_ball(chosen.grasp, limit, length, Fraction(chosen.value)):
         return [f"wrench_ball: the fingers do not make all wrenches up to the value {chosen.value:.12g}"]
+    return []
+
+
+def check_whole_ball(chosen: Chosen) -> list[str]:
+    """That the fingers make no larger ball, but for rounding: a billionth of it and of the largest wrench."""
+    limit, length = chosen.max_force, chosen.length
+    if limit is None or length is None or not 0 < min(limit, length) <= max(limit, length) < inf:
+        return []  # which is wrong anyway
+    lever = float(np.linalg.norm(chosen.grasp.positions, axis=1).max()) / length
+    mu = max(c.friction for c in chosen.grasp)
+    most = len(chosen.grasp) * limit * hypot(1.0, mu) * max(1.0, lever)
+    if not (isfinite(chosen.value) and most < inf):
+        return []
+    larger = Fraction(chosen.value) + Fraction(CLOSE) * (Fraction(chosen.value) + Fraction(most))
+    if makes_ball(chosen.grasp, limit, length, max(larger, Fraction(0))):
+        return [f"value {chosen.value:.12g} is worse than the ball of wrenches that the fingers make"]
     return []
 
 
