@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import regrasp as rg
+from regrasp.planning.placement.regions.curved import CurvedPlaces
 
 pytestmark = pytest.mark.laws
 
@@ -93,9 +94,7 @@ def test_corners_end_regions() -> None:
     half = rg.Outline([(np.cos(a), np.sin(a)) for a in np.radians(np.linspace(0, 180, 91))])
     up = rg.LoadSet.hull([rg.Wrench([0.1, -1]), rg.Wrench([-0.1, -1])])
     at = half.boundary.corners
-    held = grasp(
-        half, at[0] + 0.1, at[1] - 0.1, 0.5 * (at[0] + at[1]) if False else at[1] + 1.0, friction=2.0
-    )
+    held = grasp(half, at[0] + 0.1, at[1] - 0.1, at[1] + 1.0, friction=2.0)
     regions = rg.contact_regions(half, held, up, max_force=50.0)
     assert rg.verify(regions).ok
     assert regions.spans is not None
@@ -110,6 +109,19 @@ def test_corners_end_regions() -> None:
 def test_sides_that_meet_at_corners_are_exact_as_before() -> None:
     box = rg.Outline([(-2, -1), (2, -1), (2, 1), (-2, 1)])
     regions = rg.contact_regions(box, grasp(box, 0.5, 3.5, 8.0), LOADS)
+    assert regions.spans is None
+    assert rg.verify(regions).ok
+
+
+def test_regions_on_one_side_each_stand_where_wider_ones_fail_by_rounding(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def none(*_: object) -> None:
+        raise rg.Infeasible("left without forces by rounding")
+
+    held = grasp(DISC, 0.603 * DISC.length, 0.902 * DISC.length)
+    monkeypatch.setattr(CurvedPlaces, "states", none)
+    regions = rg.contact_regions(DISC, held, LOADS)
     assert regions.spans is None
     assert rg.verify(regions).ok
 

@@ -5,6 +5,7 @@ Curves of a drawing are rows of chords there: a region that ends with its chord 
 
 import numpy as np
 
+from regrasp.errors import Infeasible
 from regrasp.mechanics.checks import Array
 from regrasp.planning.placement.curves.curved_sides import CurvedSides
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
@@ -38,7 +39,10 @@ def around_bends(found: ContactRegions, loads: Array, widest: str) -> ContactReg
         return found
     if places.cells(places.spans(np.stack([at, at], axis=1)), limit) is None:  # not by the next side's normal
         return found
-    bent = widest_around(places, limit, widest)
+    try:
+        bent = widest_around(places, limit, widest)
+    except Infeasible:  # by rounding, which those on one side each do without
+        return found
     most, more = (_reach(each, places, widest) for each in (found, bent))
     return bent if bent.widths.prod() > found.widths.prod() and more >= _ENOUGH * most else found
 
