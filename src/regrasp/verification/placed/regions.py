@@ -191,8 +191,12 @@ def _check_curved(regions: Regions, pieces: Pieces) -> list[str]:
         place, half = float(regions.places[i]), regions.half_width
         if not np.hypot(*(regions.shape.points(place) - regions.grasp.positions[i])) <= 100 * slack:
             return [f"contact {i + 1} is not at its place"]
-        away = 100 * slack
-        normals = (regions.shape.normals(s) for s in (place, place - away, place + away))
+        away, (lo, hi) = 100 * slack, regions.arcs[i].tolist()
+        near = place + away * np.array([0.0, -1.0, 1.0])
+        if min(pieces.to_corners(place)) <= away:  # at a corner the normal is of the side that the arc is on
+            inside = min(away, 0.5 * (hi - lo))
+            near = np.clip(near, lo + inside, hi - inside)
+        normals = (regions.shape.normals(s) for s in near if np.isfinite(s))
         if not any(np.abs(n - regions.grasp.normals[i]).max() <= _ALIKE for n in normals):
             return [f"contact {i + 1} has another normal than its place"]
         before, after = place - regions.arcs[i, 0], regions.arcs[i, 1] - place

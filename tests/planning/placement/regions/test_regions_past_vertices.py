@@ -158,3 +158,24 @@ def test_a_finger_at_a_vertex_may_go_either_way(way: float) -> None:
     regions = rg.contact_regions(DISC, held, LOADS)
     assert rg.verify(regions).ok
     assert (np.abs(regions.arcs - regions.places[:, None]) > 5 * np.pi / 90).all()
+
+
+@pytest.mark.parametrize("way", [-1e-9, 1e-9])
+def test_a_finger_at_a_corner_is_on_the_side_of_its_arc(way: float) -> None:
+    """With the normal of the other side no region is proven."""
+    half = rg.Outline([(np.cos(a), np.sin(a)) for a in np.radians(np.linspace(0, 180, 91))])
+    up = rg.LoadSet.hull([rg.Wrench([0.1, -1]), rg.Wrench([-0.1, -1])])
+    corner = half.boundary.corners[1]
+    others = grasp(half, half.boundary.corners[0] + 0.1, corner + 1.0, friction=2.0)
+
+    def at(way: float) -> rg.Contact:
+        return rg.Contact(half.points(corner), half.normals(corner + way), 2.0, name="1")
+
+    regions = rg.contact_regions(half, rg.Grasp([at(way), *others]), up, max_force=50.0)
+    assert regions.spans is not None
+    assert rg.verify(regions).ok
+    first, *rest = regions.grasp
+    turned = rg.Contact(first.position, at(-way).normal, 2.0, name=first.name)
+    assert "another normal than its place" in str(
+        rg.verify(replace(regions, grasp=rg.Grasp([turned, *rest])))
+    )
