@@ -179,3 +179,17 @@ def test_a_finger_at_a_corner_is_on_the_side_of_its_arc(way: float) -> None:
     assert "another normal than its place" in str(
         rg.verify(replace(regions, grasp=rg.Grasp([turned, *rest])))
     )
+
+
+def test_boxes_that_fail_by_rounding_are_taken_smaller(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A box within one that held may be cut otherwise, and fail: regions are smaller then, not refused."""
+    held = grasp(DISC, 0.603 * DISC.length, 0.902 * DISC.length)
+    whole = rg.contact_regions(DISC, held, LOADS)
+    for parts in (1.0,), (0.97,), ():
+        monkeypatch.setattr("regrasp.planning.placement.regions.curved._SMALLER", parts)
+        smaller = rg.contact_regions(DISC, held, LOADS)
+        assert rg.verify(smaller).ok
+        assert (smaller.spans is not None) == bool(parts)
+        for part in parts:
+            assert smaller.widths == pytest.approx(part * whole.widths, rel=1e-9)
+            assert smaller.half_width == pytest.approx(part * whole.half_width, rel=1e-9)

@@ -37,6 +37,7 @@ ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
 _BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
 _CELLS, _STATES = 16, 4096  # at most
 _ALIKE = 1e-6  # of turns of parts: the first of those that are as wide is halved, whatever rounding says
+_SMALLER = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.6, 0.3)
 _KEPT = 4096  # parts of the outline
 _LITTLE = 0.02  # parts that turn by less are not halved [rad]
 _ON_CURVES, _OUT = 11, 6  # halvings, those after a search
@@ -207,9 +208,14 @@ def widest_around(around: CurvedPlaces, limit: float, widest: str) -> ContactReg
         box = _sought(holds, at, box, room, widest)
     free = ~around.at_corners(box)
     half = float(np.abs(box - single).min(where=free, initial=(1 - LESS) * half))
-    cells = around.cells(around.spans(box), limit)
-    if cells is None:
+    for part in _SMALLER:  # a box within one that holds may be cut otherwise, and fail
+        inside = single + part * (box - single)
+        cells = around.cells(around.spans(inside), limit)
+        if cells is not None:
+            break
+    else:
         raise Infeasible("the regions found were left without forces by rounding")
+    box, half = inside, part * half
     return ContactRegions(
         around.shape, around.grasp, read_only(at), read_only(box), half * (1 - LESS), read_only(alone),
         limit * (1 + LESS), tuple(s for cell in cells for s in around.states(cell, limit * (1 + LESS))),

@@ -16,6 +16,7 @@ from regrasp.verification.placed.protocol import Chosen, Proof
 from regrasp.verification.placed.touching import Touching
 
 _AT_ONCE = 1 << 16  # pairs of states
+_NEIGHBOURS = 12
 
 
 def check_spots(chosen: Chosen, proof: SurfaceProof, share: float) -> list[str]:
@@ -139,7 +140,14 @@ def _all_shown(chosen: Chosen, loads: Array) -> bool:
         size = np.abs(loads[:, one]).max(axis=0)  # forces and torques have units of their own
         scale[one] = np.where(size > 0, size, size.max() or np.abs(shown[:, one]).max(initial=0.0) or 1.0)
     shown, loads = shown / scale, loads / scale
-    return all(_is_between(load, shown) for load in loads)
+    return all(_is_between(load, _nearest_of(shown, load)) or _is_between(load, shown) for load in loads)
+
+
+def _nearest_of(shown: Array, load: Array) -> Array:
+    """Some states' loads: of a thousand around, a load is between neighbours, and all pairs take a minute."""
+    away = np.abs(shown - load)[:, :-1].max(axis=1)
+    result: Array = shown[np.argsort(away, kind="stable")[:_NEIGHBOURS]]
+    return result
 
 
 def _is_between(load: Array, shown: Array) -> bool:
