@@ -57,7 +57,7 @@ class SpaceGraspTask(Strict):
         "area if absent",
     )
     most_boxes: int | None = Field(
-        None, ge=64, le=10_000_000, description="boxes of places after which the search ends; 1,000,000"
+        None, ge=64, le=10_000_000, description="boxes of places after which the search ends; 200,000"
     )
 
 

@@ -122,9 +122,8 @@ def choose_grasp(
             0 lets a finger be on a corner or edge with the normal of either side, as on any vertex
             of a polygon that turns too little for a corner.
         most_boxes: boxes after which the search ends with the gap it has; they bound its memory. If not given
-            200,000, or 20,000 with ``keep`` or ``removable``, of which bounds know nothing, and 1,000,000 on
-            a mesh, and fewer on one of many faces: such for which 1.5 billion corners and groups of faces
-            were looked at.
+            200,000, or 20,000 with ``keep`` or ``removable``, of which bounds know nothing, and fewer on a
+            mesh of many faces: such for which 1.5 billion corners and groups of faces were looked at.
         progress: called with the bound and the best value so far as the search goes on, at last with those of
             the result: of the four norms the norm of forces behind the objective [N], infinite while none is
             found; of the others the objective itself, NaN while none is, with a bound that comes near at the

@@ -15,7 +15,7 @@ from regrasp.planning.placement.space.surface_boxes import (
     SurfaceBoxes,
 )
 
-MOST_BOXES = 1_000_000
+MOST_BOXES = 200_000
 """Boxes of a search in space unless told otherwise: 500 bytes each for three fingers, with their proof."""
 MOST_LOOKS = 1_500_000_000
 """Corners and groups of faces looked at, unless told how many boxes."""
