@@ -79,8 +79,8 @@ def test_threads_change_no_number_and_parts_no_answer(
         ("force", C, {"max_force": 4.0, "most_boxes": 600}),  # by twists of all loads together
         ("friction_use", TRIANGLE, {"max_force": 4.0, "most_boxes": 300}),  # by those that move with fingers
         ("friction_use", ELLIPSE, {"max_force": 4.0, "most_boxes": 4000}),  # by those that turn with them
-        ("peak_normal", rg.Mesh.box(0.04, 0.03, 0.05), {"most_boxes": 600}),
-        ("friction_use", rg.Mesh.box(0.04, 0.03, 0.05), {"max_force": 4.0, "most_boxes": 400}),
+        ("peak_normal", rg.Mesh.box(0.04, 0.03, 0.05), {"most_boxes": 300}),
+        ("friction_use", rg.Mesh.box(0.04, 0.03, 0.05), {"max_force": 4.0, "most_boxes": 200}),
     ],
     ids=["joined", "moving", "turning", "space", "space, a level"],
 )
