@@ -59,7 +59,8 @@ class Asked:
 
 def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     """The best grasp of a search for the least norm. ``Infeasible`` where there is none."""
-    power, around, found = asked.law.power, _around(search, asked), _with_states(search, asked)
+    power, around = asked.law.power, _around(search, asked)
+    found = _with_states(search, asked, around)
     if found is None:
         raise as_it_ended(_none_holds(search, asked), _was_cut(search))
     grasp, places, u, (states, worst) = found
@@ -95,10 +96,10 @@ def _around(search: Search, asked: Asked) -> Search:
 
 
 def _with_states(
-    search: Search, asked: Asked
+    search: Search, asked: Asked, around: Search
 ) -> tuple[Grasp, np.ndarray, Array, tuple[list[ChosenState], ChosenState]] | None:
     """The best placement tried of a search for the least norm, its states, and the worst of them."""
-    power, around = asked.law.power, _around(search, asked)
+    power = asked.law.power
 
     def judged(
         grasp: Grasp, norm: float, places: np.ndarray, u: Array
@@ -262,7 +263,7 @@ def _with_more_friction(search: Search, asked: Asked) -> str:
                 wider.take(there)
             else:
                 wider.run(_ROUGH, _SOME_BOXES, None)
-        found = _with_states(wider, replace(asked, friction=wider.friction))
+        found = _with_states(wider, replace(asked, friction=wider.friction), _around(wider, asked))
         if found is not None:
             value = found[-1][1].value
             return f" (with friction {wider.friction:.9g} one does hold them, {asked.objective} {value:.6g})"

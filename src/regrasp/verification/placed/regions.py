@@ -200,7 +200,7 @@ def _check_curved(regions: Regions, pieces: Pieces) -> list[str]:
         if not any(np.abs(n - regions.grasp.normals[i]).max() <= _ALIKE for n in normals):
             return [f"contact {i + 1} has another normal than its place"]
         before, after = place - regions.arcs[i, 0], regions.arcs[i, 1] - place
-        room = [_TO_THE_END * away for away in pieces.to_corners(place)]
+        room = [_TO_THE_END * far for far in pieces.to_corners(place)]
         short = max(min(half, room[0]) - before, min(half, room[1]) - after)
         if not (0 <= half < inf and short <= slack):
             return [f"arc {i + 1} is less than the half width {half:.12g} about its place"]

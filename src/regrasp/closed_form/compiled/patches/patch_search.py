@@ -234,7 +234,7 @@ def _looking(digest: str) -> Any:
 def _splitting(digest: str) -> Any:
     @kept("the search for places on surfaces", error_model="numpy", _nrt=False)
     def split(nodes, surface, radius, level, least, boxes, state, spare, proven, twists, together):  # type: ignore[no-untyped-def]
-        """Excludes or splits boxes that were looked at; how many are left open, too small to be split.
+        """Excludes boxes that were looked at, or splits them; those too small to be split stay open.
 
         radius: (K,) of each patch. state: numbers of boxes, of placements tried, of patches, of rows, of what
         was looked at, of rows of ``together`` (T, L, 6), of boxes whose loads were taken together, and of
