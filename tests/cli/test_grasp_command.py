@@ -23,6 +23,7 @@ def test_a_grasp_is_chosen_written_and_verified(tmp_path: Path, capsys: pytest.C
     status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
     assert (status, err) == (0, "")
     assert "no placement is below" in out
+    assert "how far fingers may miss along the outline: all at once " in out
     assert {file.name for file in (tmp_path / "out").iterdir()} == {
         "plan.json",
         "grasp.png",
@@ -38,7 +39,7 @@ def test_a_grasp_is_chosen_written_and_verified(tmp_path: Path, capsys: pytest.C
     file = tmp_path / "out" / "regions.json"
     status, out, err = regrasp(capsys, "verify", str(file))
     assert (status, err) == (0, "")
-    assert "ContactRegions" in out
+    assert "how far fingers may miss along the outline: all at once " in out
     file.write_text(re.sub(r'"half_width": 0', '"half_width": 1', file.read_text(encoding="utf-8")))
     status, out, err = regrasp(capsys, "verify", str(file))
     assert (status, out) == (2, "")
@@ -81,6 +82,7 @@ def test_a_grasp_on_a_mesh_of_a_file_is_chosen_drawn_and_verified(
     status, out, err = regrasp(capsys, "plan", str(tmp_path / "grasp.toml"), "-o", str(tmp_path / "out"))
     assert (status, err) == (0, "")
     assert "no placement is below" in out
+    assert "how far fingers may miss along their faces: all at once " in out
     assert {file.name for file in (tmp_path / "out").iterdir()} == {
         "plan.json",
         "grasp.png",

@@ -1,6 +1,7 @@
 """Runs that are interrupted, killed, cut off from their reader or out of disk leave one line, and no file."""
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -93,6 +94,28 @@ def test_a_search_that_is_interrupted_before_it_found_anything_says_its_bound(
     assert err.startswith("\nInterrupted: ")
     assert "no placement was found that holds the loads" in err
     assert len(err.splitlines()) == 2
+
+
+@posix
+def test_a_search_that_is_interrupted_writes_the_best_so_far_and_no_more_than_that(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Regions and maps took half a minute more, for who had asked it to end."""
+    from regrasp.cli import choosing
+
+    def interrupted(word: str, bound: float, best: float) -> str:
+        if math.isfinite(best):
+            os.kill(os.getpid(), signal.SIGINT)
+        return ""
+
+    monkeypatch.setattr(choosing, "_known", interrupted)
+    usual = signal.getsignal(signal.SIGINT)
+    assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
+    code, out, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures")
+    assert (code, err) == (0, "")
+    assert "Interrupted: the best so far is written" in out
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["plan.json"]
+    assert signal.getsignal(signal.SIGINT) is usual
 
 
 @posix

@@ -1,8 +1,12 @@
 """Choosing the grasp of a scenario: chosen, verified, and only then written and drawn."""
 
+import signal
 from collections.abc import Iterator
+from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from regrasp.cli.speech import say
@@ -30,28 +34,52 @@ def choose(
     word = scenario.task.objective
     with naming(name), progress_bar() as progress:
         task = progress.add_task("choosing", total=None)
-        chosen = scenario.chosen(
-            lambda bound, best: progress.update(task, description=_known(word, bound, best))
-        )
+        with _hearing() as interrupts:
+            chosen = scenario.chosen(
+                lambda bound, best: progress.update(task, description=_known(word, bound, best))
+            )
         progress.update(task, description="verifying")
         verdict = verified(verify(chosen), name)
     for remark in chosen.shape.notes:
         say(f"{name}: {one_line(remark)}")
     say(f"{one_line(scenario.title)}\n\n{chosen}" if scenario.title else chosen)
     say(verdict)
-    regions = _regions(chosen, scenario)
+    if interrupts:
+        say("\nInterrupted: the best so far is written, without regions and maps; an interrupt more ends it.")
+    regions = None if interrupts else _regions(chosen, scenario)
     with whole_folder(output) as folder:
         write_plan(chosen, folder / "plan.json")
         if regions is not None:
-            verified(verify(regions), "regions.json")
+            said = verified(verify(regions), "regions.json")
+            say(f"\n{regions}\n{said}")
             write_regions(regions, folder / "regions.json")
-        for figure, image in _pictures(chosen, regions, scenario) if draw else ():
+        for figure, image in _pictures(chosen, regions, scenario, maps=not interrupts) if draw else ():
             (folder / figure).write_bytes(image)
         written = sorted(file.name for file in folder.iterdir())
     say("")
     for file in written:
         say(f"wrote {output / file}")
     return verdict_facts(chosen, verdict, 0) | {"wrote": [output / file for file in written]}
+
+
+@contextmanager
+def _hearing() -> Iterator[list[int]]:
+    """The interrupts from the keyboard meanwhile, which searches answer by the best so far."""
+    heard: list[int] = []
+    usual = signal.getsignal(signal.SIGINT)
+
+    def hear(number: int, frame: FrameType | None) -> None:
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    listens = usual is signal.default_int_handler and current_thread() is main_thread()
+    if listens:
+        signal.signal(signal.SIGINT, hear)
+    try:
+        yield heard
+    finally:
+        if listens:
+            signal.signal(signal.SIGINT, usual)
 
 
 def _regions(chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenario") -> Any:
@@ -69,7 +97,7 @@ def _regions(chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenari
 
 
 def _pictures(
-    chosen: "ChosenGrasp", regions: Any, scenario: "GraspScenario | SpaceGraspScenario"
+    chosen: "ChosenGrasp", regions: Any, scenario: "GraspScenario | SpaceGraspScenario", *, maps: bool
 ) -> Iterator[tuple[str, bytes]]:
     """The grasp, the regions around its fingers, and of two on an outline the map of all places.
 
@@ -88,7 +116,7 @@ def _pictures(
     yield "grasp.png", image(plots.plot_chosen_grasp(chosen))
     if regions is not None:
         yield "regions.png", image(plots.plot_contact_regions(regions))
-    if not isinstance(shape, Outline) or len(chosen.grasp) != 2:
+    if not maps or not isinstance(shape, Outline) or len(chosen.grasp) != 2:
         return
     task: Any = scenario.task  # of the plane
     given: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length}

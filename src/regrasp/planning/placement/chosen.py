@@ -173,8 +173,9 @@ class ChosenGrasp(ArrayValue):
         width = 26 if arcs[0] else 36
         head = f"{'arc length':>14}" if arcs[0] else ""
         rows = [f"{'':10}{head}{'position':>{width}}{'inward normal':>{width - 4}}"]
-        positions = self.grasp.positions
-        positions = np.where(np.abs(positions) < _ROUNDING * np.abs(positions).max(), 0.0, positions)
+        positions, centre = self.grasp.positions, self.shape.centre_of_mass
+        size = np.abs(positions).max()
+        positions, centre = (np.where(np.abs(at) < _ROUNDING * size, 0.0, at) for at in (positions, centre))
         for contact, s, position in zip(self.grasp, arcs, positions, strict=True):
             at = ", ".join(f"{v:.6g}" for v in position)
             normal = ", ".join(f"{v + 0.0:.4f}" for v in contact.normal)
@@ -183,7 +184,9 @@ class ChosenGrasp(ArrayValue):
         of = f" {words}" if (words := measured_in(self.objective)) else ""
         value, bound, gap = self._printed()
         last = f"{self.objective} {value:.6g}{of}; no placement is {better} {bound:.6g}, a gap of {gap:.2g}"
-        return "\n".join([*rows, last])
+        own = ", ".join(f"{v:.6g}" for v in centre)
+        about = f"positions are relative to the centre of mass, ({own}) in the shape's own coordinates"
+        return "\n".join([*rows, about, last])
 
     def __repr__(self) -> str:
         value, bound, gap = self._printed()

@@ -73,6 +73,17 @@ class ContactRegions(Sealed):
         off = f"all off by {self.half_width:.4g}{ended}, " if self.half_width else ""
         return f"ContactRegions({off}widths {widths})"
 
+    def __str__(self) -> str:
+        ended = ", or to the end of its side" if self.ended.any() else ""
+        off = f": all at once {self.half_width:.6g} either way{ended}" if self.half_width else ""
+        rows = [f"how far fingers may miss along the outline{off}"]
+        rows.append(f"{'':10}{'anywhere from':>14}{'to':>14}{'alone, back':>14}{'ahead':>14}")
+        ways = np.hstack([self.arcs, self.alone])
+        ways[np.abs(ways) < _ENDED * self.shape.length] = 0.0
+        for name, numbers in zip(self.grasp.names, ways, strict=True):
+            rows.append(f"{name:10}" + "".join(f"{number:14.6g}" for number in numbers))
+        return "\n".join(rows)
+
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
         grasp, spans, cells = Grasp.from_dict(given["grasp"]), given.get("spans"), given.get("cells")

@@ -53,6 +53,13 @@ class FaceRegions(Sealed):
         radii = ", ".join(f"{r:.4g}" for r in self.radii)
         return f"FaceRegions(all off by {self.radius:.4g}, radii {radii})"
 
+    def __str__(self) -> str:
+        rows = [f"how far fingers may miss along their faces: all at once {self.radius:.6g} any way"]
+        rows.append(f"{'':10}{'each by':>14}{'alone':>14}")
+        for name, all_, alone in zip(self.grasp.names, self.radii, self.alone, strict=True):
+            rows.append(f"{name:10}{all_:14.6g}{alone:14.6g}")
+        return "\n".join(rows)
+
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
         grasp, shape = Grasp.from_dict(given["grasp"]), shape_of(given["shape"])
