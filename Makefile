@@ -17,7 +17,7 @@ test: checked tested
 
 tested: $(VENV)/installed-dev
 	$(BIN)/regrasp warm-up
-	$(BIN)/pytest -n $(WORKERS) --nbmake --nbmake-timeout=300 tests notebooks
+	$(BIN)/pytest -n $(WORKERS)
 
 checked: $(VENV)/installed-dev
 	$(BIN)/ruff check .

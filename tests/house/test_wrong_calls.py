@@ -3,6 +3,8 @@
 import inspect
 import re
 import warnings
+from collections.abc import Iterator
+from types import ModuleType
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -13,12 +15,10 @@ import regrasp.files
 import regrasp.plots
 from paper import GRASP, LOAD
 from refusals import refusal
-from wrong_calls import rows
+from wrong_calls import ROOMS, rows, rows_of
 from wrong_calls.row import Case, called_wrongly, cases, long_cases
 
 pytestmark = pytest.mark.contract
-
-ROWS = rows()
 
 # Records of results: they are made by the verbs, and hold what they are given.
 RECORDS = {
@@ -32,31 +32,39 @@ RECORDS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ROWS)
-def test_wrong_arguments_are_refused_in_one_line(name: str) -> None:
-    row, tried = ROWS[name], 0
-    try:
+@pytest.fixture(autouse=True)
+def _no_figure_is_left() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+BY_ROOM = pytest.mark.parametrize("room", ROOMS, ids=lambda room: room.__name__.rpartition(".")[2])
+
+
+@BY_ROOM
+def test_wrong_arguments_are_refused_in_one_line(room: ModuleType) -> None:
+    for name, row in rows_of(room).items():
+        tried = 0
         for case in cases(name, row):
-            said = refusal(lambda case=case: called_wrongly(row, case))
+            said = refusal(lambda case=case, row=row: called_wrongly(row, case))
             assert said is not None, f"{case} was taken"
             assert said.strip(), case
             assert "\n" not in said, case
             assert len(said) < 500, case
             tried += 1
-    finally:
-        plt.close("all")
-    assert tried > 0 or not inspect.signature(row.call).parameters
+        assert tried > 0 or not inspect.signature(row.call).parameters, name
 
 
-@pytest.mark.parametrize("name", ROWS)
-def test_what_is_long_is_not_repeated(name: str) -> None:
-    for case in long_cases(name, ROWS[name]):
-        try:
-            called_wrongly(ROWS[name], case)
-        except rg.RegraspError as error:
-            said = str(error)
-            assert len(said) < 500, (case.parameter, said[:600])
-            assert "\n" not in said
+@BY_ROOM
+def test_what_is_long_is_not_repeated(room: ModuleType) -> None:
+    for name, row in rows_of(room).items():
+        for case in long_cases(name, row):
+            try:
+                called_wrongly(row, case)
+            except rg.RegraspError as error:
+                said = str(error)
+                assert len(said) < 500, (case.parameter, said[:600])
+                assert "\n" not in said
 
 
 @pytest.mark.parametrize(
@@ -64,7 +72,7 @@ def test_what_is_long_is_not_repeated(name: str) -> None:
 )
 @pytest.mark.parametrize("load", [lambda: LOAD, lambda a, b: LOAD, lambda *, t: LOAD])
 def test_functions_of_other_arguments_are_refused(name: str, load: Any) -> None:
-    said = refusal(lambda: called_wrongly(ROWS[name], Case(name, "load", load)))
+    said = refusal(lambda: called_wrongly(rows()[name], Case(name, "load", load)))
     assert said is not None
     assert re.match("load must be (a|the) function of time", said)
 
@@ -72,11 +80,11 @@ def test_functions_of_other_arguments_are_refused(name: str, load: Any) -> None:
 @pytest.mark.parametrize("shape", ["RegraspProblem", "RegraspProblem in space"])
 def test_filters_of_other_arguments_or_answers_are_refused(shape: str) -> None:
     for keep, words in ((lambda: True, "keep must be a function of first"), (len, "keep must be")):
-        said = refusal(lambda keep=keep: called_wrongly(ROWS[shape], Case(shape, "keep", keep)))
+        said = refusal(lambda keep=keep: called_wrongly(rows()[shape], Case(shape, "keep", keep)))
         assert said is not None
         assert words in said
     with pytest.raises(rg.InvalidInput, match="keep must return which of"):
-        called_wrongly(ROWS[shape], Case(shape, "keep", lambda a, b, c: [True])).plans()
+        called_wrongly(rows()[shape], Case(shape, "keep", lambda a, b, c: [True])).plans()
 
 
 def test_names_that_are_long_or_many_leave_the_ends_of_a_message() -> None:
@@ -94,17 +102,17 @@ def test_names_that_are_long_or_many_leave_the_ends_of_a_message() -> None:
 
 
 def test_thousands_are_tried() -> None:
-    assert sum(1 for name, row in ROWS.items() for _ in cases(name, row)) > 5000
+    assert sum(1 for name, row in rows().items() for _ in cases(name, row)) > 5000
 
 
 def test_every_public_name_has_a_row() -> None:
     errors = {
         n for n in rg.__all__ if isinstance(getattr(rg, n), type) and issubclass(getattr(rg, n), Exception)
     }
-    missing = set(rg.__all__) - {name.split(".")[0].split(" ")[0] for name in ROWS} - errors - RECORDS
+    missing = set(rg.__all__) - {name.split(".")[0].split(" ")[0] for name in rows()} - errors - RECORDS
     assert missing == set()
     functions = {n for n in regrasp.files.__all__ if inspect.isfunction(getattr(regrasp.files, n))}
-    assert functions - {"scenario_schema"} <= ROWS.keys()
+    assert functions - {"scenario_schema"} <= rows().keys()
 
 
 def test_every_parameter_is_tried_where_it_has_a_right_value_too() -> None:
@@ -121,7 +129,7 @@ def test_every_parameter_is_tried_where_it_has_a_right_value_too() -> None:
         "Mesh.save_stl",
         "write_mcap",
     }
-    for name, row in ROWS.items():
+    for name, row in rows().items():
         if name in unanswered or name.startswith("plots."):
             continue
         needed = [

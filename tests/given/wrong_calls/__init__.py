@@ -5,6 +5,9 @@ from the signatures, so a new parameter without a kind, or a new name without a 
 names have their rows in its module; what is wrong for a kind stands in ``wrong``.
 """
 
+from functools import cache
+from types import ModuleType
+
 from wrong_calls import (
     changes,
     files,
@@ -23,8 +26,15 @@ from wrong_calls.row import Row
 ROOMS = (mechanics, states, surveys, plans, changes, placement, regrasps, shapes, studies, files, pictures)
 
 
+@cache
+def rows_of(room: ModuleType) -> dict[str, Row]:
+    """The rows of a room by name, made when first asked for: some values take seconds."""
+    made: dict[str, Row] = room.rows()
+    return made
+
+
 def rows() -> dict[str, Row]:
-    """All rows by name, made when asked for: some values take a moment."""
-    found = [item for room in ROOMS for item in room.rows().items()]
+    """All of them."""
+    found = [item for room in ROOMS for item in rows_of(room).items()]
     assert len(dict(found)) == len(found), "a name has two rows"
     return dict(found)

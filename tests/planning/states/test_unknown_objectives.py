@@ -4,6 +4,7 @@ import ast
 import inspect
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -19,7 +20,7 @@ from regrasp.planning.states.objectives.known import OBJECTIVES
 from regrasp.plots import html
 from scenarios import edited
 from scenarios import regrasp as command
-from wrong_calls import rows
+from wrong_calls import ROOMS, rows, rows_of
 from wrong_calls.row import Row
 
 pytestmark = pytest.mark.contract
@@ -42,9 +43,6 @@ class Stranger(ConvexObjective):
 
 STRANGER = Stranger("strange", "least double sum of squares", "$2|f|^2$", "sum", "N^2")
 WORDS = ("objective", "whole_objective", "start_objective", "path_objective")
-ROWS = rows()
-
-
 ANEW: dict[str, dict[str, Any]] = {
     "plan_removal": {"start": GRASP, "load": LOAD},
     "plan_addition": {"start": GRASP.without("P3"), "load": LOAD},
@@ -54,9 +52,9 @@ ANEW: dict[str, dict[str, Any]] = {
 """With grasps in place of states, so that nothing is given that an objective would have chosen."""
 
 
-def asking() -> Iterator[tuple[str, str]]:
+def asking(rows: dict[str, Row]) -> Iterator[tuple[str, str]]:
     """Every public call that takes an objective, with each of its parameters that does."""
-    for name, row in ROWS.items():
+    for name, row in rows.items():
         if name.partition(".")[0] not in ("SampledPath", "StraightPath", "TurningPath", "Record", "Choice"):
             for word in WORDS:
                 if word in inspect.signature(row.call).parameters:
@@ -73,15 +71,17 @@ def called(row: Row, **more: Any) -> Any:
     return row.call(*positional, **given)
 
 
-@pytest.mark.parametrize(("name", "word"), list(asking()))
-def test_every_call_answers_for_what_it_was_asked(name: str, word: str) -> None:
-    for wrong in ("angel", "", "ANGLE", 1, object()):
-        with pytest.raises(rg.InvalidInput, match=word.rpartition("_")[2]):
-            called(ROWS[name], **{word: wrong})
-    for own in (OWN, STRANGER):
-        said = answer(ROWS[name], {word: own})
-        assert any(part in said for part in (own.name, type(own).__name__, "objective must be")), said
-        plt.close("all")
+@pytest.mark.parametrize("room", ROOMS, ids=lambda room: room.__name__.rpartition(".")[2])
+def test_every_call_answers_for_what_it_was_asked(room: ModuleType) -> None:
+    found = rows_of(room)
+    for name, word in asking(found):
+        for wrong in ("angel", "", "ANGLE", 1, object()):
+            with pytest.raises(rg.InvalidInput, match=word.rpartition("_")[2]):
+                called(found[name], **{word: wrong})
+        for own in (OWN, STRANGER):
+            said = answer(found[name], {word: own})
+            assert any(part in said for part in (own.name, type(own).__name__, "objective must be")), said
+            plt.close("all")
 
 
 def answer(row: Row, asked: dict[str, Any]) -> str:
@@ -107,7 +107,7 @@ def told(found: Any) -> str:
 
 
 def test_there_are_many_such_calls() -> None:
-    assert len({name for name, _ in asking()}) >= 18
+    assert len({name for name, _ in asking(rows())}) >= 18
 
 
 def test_what_it_is_chosen_for_decides() -> None:
