@@ -66,11 +66,10 @@ def chosen_by_norm(search: Search, asked: Asked) -> ChosenGrasp:
     grasp, places, u, (states, worst) = found
     bound = min(search.bound, worst.value ** (1 / power))
     shown = tuple(map(_plain, states))
-    # what is no better than the best was judged by as many loads as it takes
-    exact = None if asked.constrained else around.norm_at
+    others = _others(search, asked, u, lambda norm: norm**power, around.norm_at)
     return ChosenGrasp(
         asked.shape, asked.objective, grasp, shown, worst.value, min(bound**power, worst.value),
-        _arc_lengths(search.sides, places, u), _others(search, asked, u, lambda norm: norm**power, exact),
+        _arc_lengths(search.sides, places, u), others,
         proof_of(search, asked, min(bound, search.largest)), asked.max_force, asked.min_normal,
     )  # fmt: skip
 
@@ -125,7 +124,7 @@ def chosen_at_level(
         least = min(search.bound, limit) if isinstance(level, AnsweredLevel | FrictionLevel) else 0.0
         proof = proof_of(search, asked, _above(search, limit) if search.closed else least)
         who = f"no {search.fingers} fingers anywhere on {_where(search)}"
-        given = f"with friction {asked.friction:g} and forces of at most {limit:g} N"
+        given = f"with friction {asked.friction:.9g} and forces of at most {limit:g} N"
         if search.closed:
             raise Infeasible(f"{who} hold the loads, {given}", proof)
         top = level.value(level.top(search))
@@ -227,7 +226,7 @@ def _none_holds(search: Search, asked: Asked) -> Infeasible:
         far = "" if largest < inf else f", not by forces of {proof.bound:.3g} N either"
         return Infeasible(
             f"no {search.fingers} fingers anywhere on {_where(search)} hold the loads, with friction "
-            f"{search.friction:g}{limited}{far}",
+            f"{search.friction:.9g}{limited}{far}",
             proof,
         )
     why = f"{search.count} boxes were looked at, allow more by most_boxes"
@@ -294,7 +293,8 @@ def _others(
 ) -> tuple[OtherGrasp, ...]:
     """The best placements tried that differ from the chosen one, from one another and from their images.
 
-    exact: the norm of places, where that of a placement tried may be less.
+    exact: the norm of places, where that of a placement tried may be less: what is no better than the best
+    was judged by as many loads as it takes.
     """
     sides, length = search.sides, float(search.sides.lengths.sum())
     kept, tried = _alike(search, u), search.placements()
