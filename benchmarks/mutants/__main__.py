@@ -31,6 +31,7 @@ sys.path[:0] = [
 SOURCE, TESTS, KEPT = ROOT / "src" / "regrasp", ROOT / "tests", ROOT / ".mutants"
 SURVIVORS, DRAWN = HERE / "survivors.txt", HERE / "drawn.txt"
 
+_SEARCH = "planning/placement"
 # Area -> modules, tests (patterns), and the least share of changes noticed.
 AREAS: dict[str, tuple[list[str], list[str], float]] = {
     "verification": (
@@ -130,6 +131,27 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
             "planning/**/test_tolerances.py",
             "planning/**/test_regrasps_that_withstand.py",
         ],
+        0.95,
+    ),
+    "results": (
+        [f"{_SEARCH}/results.py"],
+        [f"{_SEARCH}/test_[!glt]*.py", f"{_SEARCH}/levels/test_*.py", f"{_SEARCH}/answers/test_*.py"],
+        0.95,
+    ),
+    "constraints": (
+        [f"{_SEARCH}/{name}.py" for name in ("constrained/*", "reachable", "asking", "curves/tips", "sides")],
+        [*(f"{_SEARCH}/test_{name}.py" for name in ("c*", "f*", "w*")), f"{_SEARCH}/maps/test_*.py"],
+        0.95,
+    ),
+    "choosing": (
+        [
+            f"{_SEARCH}/{name}.py"
+            for name in (
+                *("choosing", "symmetries", "sliding", "knife_edges", "circles", "loads", "laws"),
+                "levels/ball",
+            )
+        ],
+        [f"{_SEARCH}/test_[!glt]*.py", "verification/proofs/curves/test_circles*.py"],
         0.95,
     ),
     "programs": (["programs/*.py"], ["programs/test_*.py", "programs/asked/test_*.py"], 0.95),
