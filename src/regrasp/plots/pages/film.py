@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
+from PIL import Image
 
 from regrasp.disk.staging import whole_path
 from regrasp.errors import InvalidInput, shown
@@ -87,7 +88,7 @@ def animate(
         if ending == ".html":
             part.write_text(film.to_jshtml(embed_frames=True), encoding="utf-8")
         else:
-            writer = PillowWriter(fps=rate) if ending == ".gif" else FFMpegWriter(fps=rate)  # type: ignore[arg-type]
+            writer = _GIF(fps=rate) if ending == ".gif" else FFMpegWriter(fps=rate)  # type: ignore[arg-type]
             film.save(part, writer=writer, dpi=_DPI)
     return target
 
@@ -169,8 +170,28 @@ class _SpaceScene:
         measures(ax, self.stage, self.window, self.units)
 
 
+class _Film(FuncAnimation):
+    """An animation whose frames are drawn where they are written, not before, too."""
+
+    def _post_draw(self, framedata: Any, blit: bool) -> None:
+        """Nothing: no window waits for the frame."""
+
+
+class _GIF(PillowWriter):
+    """A writer that draws a frame once; ``savefig`` draws twice, for layouts that films do without."""
+
+    _frames: list[Image.Image]
+
+    def grab_frame(self, **_: Any) -> None:
+        """Draw the figure as it is, and keep the picture."""
+        canvas: Any = self.fig.canvas
+        canvas.draw()
+        self._frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3]))
+
+
 def _film(scene: _Scene | _SpaceScene, frames: Sequence[tuple[str, Moment]], rate: float) -> FuncAnimation:
     figure = new_figure(height=3.6)
+    figure.set_dpi(_DPI)
     figure.set_layout_engine("none")
     ax = scene.axes(figure)
 
@@ -181,4 +202,4 @@ def _film(scene: _Scene | _SpaceScene, frames: Sequence[tuple[str, Moment]], rat
         ax.set_title(title, fontsize=TEXT, loc="left")
         return []
 
-    return FuncAnimation(figure, show, frames=len(frames), interval=1000 / rate, cache_frame_data=False)
+    return _Film(figure, show, frames=len(frames), interval=1000 / rate, cache_frame_data=False)
