@@ -1,6 +1,7 @@
 """What motions must keep, sampled with lines of their own."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 import regrasp as rg
 from regrasp.motions import Motions
@@ -16,19 +17,30 @@ def instants(motions: Motions, apart: float) -> np.ndarray:
 
 
 def to_faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(m,) distances of points from triangles (k, 3, 3): above a face to its plane, else to its sides."""
-    best = np.full(len(points), np.inf)
-    for a, b, c in corners:
-        n = np.cross(b - a, c - a)
-        n = n / np.linalg.norm(n)
-        over = np.ones(len(points), dtype=bool)
-        for p, q in ((a, b), (b, c), (c, a)):
-            side = q - p
-            over &= (points - p) @ np.cross(n, side) >= 0
-            s = np.clip((points - p) @ side / (side @ side), 0, 1)
-            best = np.minimum(best, np.linalg.norm(points - p - s[:, None] * side, axis=1))
-        best = np.where(over, np.minimum(best, abs((points - a) @ n)), best)
+    """(m,) distances of points from triangles (k, 3, 3), the least of all of them.
+
+    Not more than from their corners; a face is asked where the ball around it comes as near as that.
+    """
+    best = cKDTree(corners.reshape(-1, 3)).query(points)[0]
+    for face in corners:
+        middle = face.mean(axis=0)
+        radius = np.linalg.norm(face - middle, axis=1).max() * (1 + 1e-9)
+        near = np.linalg.norm(points - middle, axis=1) <= best + radius
+        best[near] = np.minimum(best[near], to_face(points[near], *face))
     return best
+
+
+def to_face(points: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """(m,) distances of points from a triangle: above it to its plane, else to its sides."""
+    n = np.cross(b - a, c - a)
+    n = n / np.linalg.norm(n)
+    over, best = np.ones(len(points), dtype=bool), np.full(len(points), np.inf)
+    for p, q in ((a, b), (b, c), (c, a)):
+        side = q - p
+        over &= (points - p) @ np.cross(n, side) >= 0
+        s = np.clip((points - p) @ side / (side @ side), 0, 1)
+        best = np.minimum(best, np.linalg.norm(points - p - s[:, None] * side, axis=1))
+    return np.where(over, np.minimum(best, abs((points - a) @ n)), best)
 
 
 def axes(motions: Motions, at: np.ndarray, apart: float) -> list[np.ndarray]:
