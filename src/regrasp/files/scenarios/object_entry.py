@@ -1,5 +1,6 @@
 """The solid object of a scenario in space."""
 
+from functools import cache
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -59,12 +60,20 @@ class ObjectEntry(Strict):
         return self
 
     def _made(self, folder: Path) -> "Mesh":
-        from regrasp.mesh import Mesh, parts
+        from regrasp.mesh import Mesh
 
         if self.part is not None:
-            return parts.PARTS[self.part]()
+            return _part(self.part)
         asked = {key: getattr(self, key) for key in ("scale", "bodies", "close_holes")}
         if self.crease_degrees is not None:
             asked["crease"] = radians(self.crease_degrees)
         given = {key: value for key, value in asked.items() if value is not None}
         return Mesh.from_file(folder / str(self.mesh), smooth=self.smooth, **given)
+
+
+@cache
+def _part(name: str) -> "Mesh":
+    """A part as it is by default; every scenario of a study has the same."""
+    from regrasp.mesh import parts
+
+    return parts.PARTS[name]()
