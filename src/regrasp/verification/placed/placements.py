@@ -113,6 +113,8 @@ def _shapes(proof: Proof) -> list[str]:
         broken.append("proof: a margin is of a largest force, and friction")
     if proof.size not in ("normal", "force", "margin") or proof.norm not in ("sum", "squares", "largest"):
         broken.append("proof: size or norm has no meaning")
+    if not broken and proof.control is not None and (proof.control[:, 0] != proof.vertices).any():
+        broken.append("proof: its control points must begin at its vertices")
     return broken
 
 

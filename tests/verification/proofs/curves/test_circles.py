@@ -107,7 +107,9 @@ def test_touched_proofs_of_circles_are_refused() -> None:
     assert "does not exclude" in words(found, control=bent)  # it is one, but for more
     bent = proof.control.copy()
     bent[5, 0] *= 1 + 1e-12
-    assert "no circle" in words(found, control=bent)  # it is not closed
+    assert "no circle" in words(found, control=bent, vertices=bent[:, 0])  # it is not closed
+    assert "must begin at its vertices" in words(found, control=bent)
+    assert "must begin at its vertices" in words(found, vertices=10 * proof.vertices)
     assert "does not exclude" in words(found, centre_of_mass=proof.centre_of_mass + 0.2)
 
 
