@@ -198,6 +198,7 @@ def test_without_friction_or_load_nothing_is_held_beside_a_load() -> None:
             {"tip_radius": 0.1, "max_force": 2.0},
             r"tip_radius: on outlines only, and the shape is a mesh",
         ),
+        ({"removable": True}, r"removable: on outlines only, and the shape is a mesh"),
         ({"from_corners": 1.0}, r"from_corners leaves no place for a finger"),
         (
             {"load": rg.LoadSet.turned(rg.Wrench([0, 0, -1]))},

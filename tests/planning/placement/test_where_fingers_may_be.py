@@ -10,6 +10,9 @@ from regrasp.planning.placement.loads import inner_and_outer
 
 pytestmark = pytest.mark.oracle
 
+ANSWERED = {"objective": "answered", "max_force": 3.0, "load": rg.Wrench([0, -1])}
+NOTHING_TOO = rg.Wrench([0, 0]), rg.Wrench([1, 0]), rg.Wrench([0, 1])
+
 
 def test_fingers_keep_apart_and_away_from_corners() -> None:
     chosen = rg.choose_grasp(BRACKET, 2, TILTED, friction=0.4, objective="peak", min_distance=3.0)
@@ -66,6 +69,9 @@ def test_limits_and_disturbances_go_with_their_objectives() -> None:
         ({"objective": "answered", "max_force": 3.0}, "disturbance"),
         ({"objective": "peak", "disturbance": DEVIATIONS}, "disturbance"),
         ({"objective": "answered", "max_force": 3.0, "disturbance": DEVIATIONS}, "one load"),
+        ({**ANSWERED, "disturbance": rg.Wrench([0, 1])}, "disturbance must be a planar LoadSet.hull"),
+        ({**ANSWERED, "disturbance": rg.LoadSet.turned(rg.Wrench([0, 1]))}, "a planar LoadSet.hull"),
+        ({**ANSWERED, "disturbance": rg.LoadSet.hull(NOTHING_TOO)}, "every vertex of disturbance"),
         ({"objective": "friction_use", "max_force": 3.0, "friction": 0.0}, "friction"),
         ({"objective": "angle", "max_force": 3.0, "load": rg.Wrench([0, 0])}, "other than zero"),
         ({"objective": "angle", "max_force": 1e300}, "more than 1e+13 times the loads"),

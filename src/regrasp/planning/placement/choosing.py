@@ -160,9 +160,7 @@ def choose_grasp(
         }
         named |= {"arcs": arcs, "tip_radius": tip_radius, "in_holes": in_holes, "load_offset": load_offset}
         named |= {"disturbance": disturbance, "length": length}
-        unused = {
-            name: value is not None and value is not False and value != 0 for name, value in named.items()
-        }
+        unused = {name: value is not None and value != 0 for name, value in named.items()}
         loads, reach = check_space(shape, load, goal, unused), float(np.linalg.norm(points, axis=1).max())
         chosen = choose_on_mesh(
             shape, fingers, loads, mu, goal, law, tolerance=tolerance,
