@@ -140,7 +140,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
     ),
     "constraints": (
         [f"{_SEARCH}/{name}.py" for name in ("constrained/*", "reachable", "asking", "curves/tips", "sides")],
-        [*(f"{_SEARCH}/test_{name}.py" for name in ("c*", "f*", "w*")), f"{_SEARCH}/maps/test_*.py"],
+        [*(f"{_SEARCH}/{name}.py" for name in ("test_c*", "test_f*", "test_w*", "maps/*", "answers/*"))],
         0.95,
     ),
     "choosing": (
@@ -151,7 +151,7 @@ AREAS: dict[str, tuple[list[str], list[str], float]] = {
                 "levels/ball",
             )
         ],
-        [f"{_SEARCH}/test_[!glt]*.py", "verification/proofs/curves/test_circles*.py"],
+        [*(f"{_SEARCH}/{of}.py" for of in ("test_[!glt]*", "answers/*")), "**/test_circles*.py"],
         0.95,
     ),
     "programs": (["programs/*.py"], ["programs/test_*.py", "programs/asked/test_*.py"], 0.95),
