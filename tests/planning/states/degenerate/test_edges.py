@@ -27,11 +27,12 @@ def verdict(grasp: rg.Grasp, load: np.ndarray, objective: str) -> str:
     try:
         state = rg.choose_state(grasp, rg.Wrench.from_vector(load), objective)
     except rg.Infeasible as reason:
-        why, twist = str(reason), reason.certificate
+        refused, twist = reason, reason.certificate
     else:
         assert state_faults(*data, grasp.max_forces, load, state.forces) == []
         return "held"
     if twist is None:
+        why = str(refused)  # looks for what helps, for longer than all else
         assert "more friction" not in why  # the advice that helps nobody who tips
         return "at its limit" if "at its limit" in why else why
     assert twist.is_proof
