@@ -39,7 +39,7 @@ def test_the_most_work_of_a_group_is_that_of_all_its_corners(size: int) -> None:
         patch = int(rng.integers(12)) if number else 0
         twist = rng.normal(size=6) * np.repeat([1, [0, 3, 300][number % 3]], 3)
         looked = np.zeros(1, int)
-        most, at = functions["largest"](surface, patch, twist, 0.4, size, force, best, stack, above, looked)
+        most, at = functions["largest"](surface, patch, twist, 0.4, size, best, stack, above, looked)
         first, count = patches.spans[patch]
         rows = range(first, first + count)
         every = [functions["sigma"](patches.rows[r], twist, 0.4, size, force) for r in rows]

@@ -27,7 +27,7 @@ _MISSED = 1e-8  # of the wrench, by which forces may be off it
 def support(surface, patches, y, mu, size, norm, work):  # type: ignore[no-untyped-def]
     """s(y), and the column at which it is attained: its wrench, and each finger's row and weight."""
     k = len(patches)
-    column, at, weight, force, best, most = work[:6]
+    column, at, weight, _, best, most = work[:6]
     stack, above, looked = work[13:16]
     rows, dual, top, squares = surface[0], 0.0, 0, 0.0
     for i in range(k):
@@ -36,7 +36,7 @@ def support(surface, patches, y, mu, size, norm, work):  # type: ignore[no-untyp
             for c in range(3):
                 best[i, c] = best[i - 1, c]
         else:
-            most[i], at[i] = largest(surface, patches[i], y, mu, size, force, best[i], stack, above, looked)
+            most[i], at[i] = largest(surface, patches[i], y, mu, size, best[i], stack, above, looked)
         if most[i] > most[top]:
             top = i
         dual += most[i]

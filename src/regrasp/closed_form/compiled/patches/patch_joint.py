@@ -16,7 +16,7 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS
 from regrasp.closed_form.compiled.patches.patch_gauge import exchanged
-from regrasp.closed_form.compiled.patches.patch_support import sigma
+from regrasp.closed_form.compiled.patches.patch_support import sigma, work
 
 ROWS = 128
 """Corners of all patches together, of which there may be so many."""
@@ -28,19 +28,40 @@ _TILT = 1e-9  # of the wrenches, which keeps them off faces of the body that col
 
 
 @njit(**VIEWS)
-def _together(rows, first, count, mu, size, y, column, force):  # type: ignore[no-untyped-def]
-    """The sum over fingers of the most that all twists y (L, 6) do at one corner; its column (6 L,)."""
-    loads, dual = len(y), 0.0
+def _different(rows, first, count, few):  # type: ignore[no-untyped-def]
+    """Writes the rows of a patch whose places or normals differ, and returns how many they are."""
+    many = 0
+    for r in range(first, first + count):
+        known = False
+        for j in range(many):
+            same = True
+            for c in range(6):
+                same = same and rows[r, c] == rows[few[j], c]
+            known = known or same
+        if not known:
+            few[many] = r
+            many += 1
+    return many
+
+
+@njit(**VIEWS)
+def _together(rows, ends, few, mu, size, y, column, force):  # type: ignore[no-untyped-def]
+    """The sum over fingers of the most that all twists y (L, 6) do at one corner; its column (6 L,).
+
+    few: rows, of finger i between ``ends`` i and i + 1; where there are none those of the one before.
+    """
+    loads, dual, top, at = len(y), 0.0, 0.0, -1
     for c in range(6 * loads):
         column[c] = 0.0
-    for i in range(len(first)):
-        top, at = 0.0, -1
-        for r in range(first[i], first[i] + count[i]):
+    for i in range(len(ends) - 1):
+        if ends[i] < ends[i + 1]:
+            top, at = 0.0, -1
+        for j in range(ends[i], ends[i + 1]):
             done = 0.0
             for n in range(loads):
-                done += sigma(rows[r], y[n], mu, size, force)
+                done += work(rows[few[j]], y[n], mu, size)
             if done > top:
-                top, at = done, r
+                top, at = done, few[j]
         dual += top
         if at < 0:
             continue
@@ -64,7 +85,7 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
     It ends at ``level``, and where forces are less at places that differ by the load. first, count: (k,) rows
     of each patch. room: of ``room_together``; its last number becomes what was looked at.
     """
-    inverse, x, y, column, d, force, looked = room
+    inverse, x, y, column, d, force, ends, few, looked = room
     loads = len(wanted)
     size_of, n = 0.0, 6 * loads
     for load in range(loads):
@@ -77,9 +98,12 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
         push = w + (_TILT if w >= 0.0 else -_TILT) * size_of * (1.0 + 0.37 * r)
         inverse[r, r] = _NEVER if push >= 0.0 else -_NEVER
         x[r] = abs(push) * _NEVER
-    corners = 0
+    ends[0] = 0
     for i in range(len(first)):
-        corners += count[i]
+        ends[i + 1] = ends[i]
+        if i == 0 or first[i] != first[i - 1]:
+            ends[i + 1] += _different(rows, first[i], count[i], few[ends[i] :])
+    corners = ends[len(first)]
     proven = 0.0
     most = _MOST * n
     for _ in range(most):
@@ -93,7 +117,7 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
         for c in range(n):
             value += wanted[c // 6, c % 6] * y[c // 6, c % 6]
         looked[0] += corners * loads + n * n // 14  # which take as long
-        dual = _together(rows, first, count, mu, size, y, column, force)
+        dual = _together(rows, ends, few, mu, size, y, column, force)
         bound = 0.0
         if value > 0.0:
             bound = value / dual if dual > 0.0 else np.inf
@@ -109,10 +133,10 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
     return proven
 
 
-def room_together(loads: int) -> tuple[Any, ...]:
-    """Memory for it."""
+def room_together(loads: int, k: int) -> tuple[Any, ...]:
+    """Memory for it, of k fingers."""
     n = 6 * loads
     return (
         np.zeros((n, n)), np.zeros(n), np.zeros((loads, 6)), np.zeros(n), np.zeros(n), np.zeros(3),
-        np.zeros(1, np.int64),
+        np.zeros(k + 1, np.int64), np.zeros(ROWS, np.int64), np.zeros(1, np.int64),
     )  # fmt: skip

@@ -168,16 +168,16 @@ def _locate(spans, radius, patches, first, count, wide):  # type: ignore[no-unty
 
 @njit(**VIEWS)
 def value_of(spots, loads, law, level, start, least, spare):  # type: ignore[no-untyped-def]
-    """The norm that fingers at spots (k, 6) need, for the worst load; infinite where they are too near."""
-    each, _, _, nowhere, scrap, work, spans, halves, balls = spare[3:]
+    """The norm that fingers at spots (k, 6) need, for the worst load, and this; its twist is in ``spare[7]``.
+
+    Infinite, and no load, -1, where they are too near.
+    """
+    each, _, _, nowhere, twist, work, spans, halves, balls = spare[3:]
     for i in range(len(spots)):
         for j in range(i):
             if _apart(spots[i], spots[j]) < least:
-                return np.inf
-    found, _ = _judge(
-        (spots, spans, halves, balls), each, loads, law, level, start, scrap, nowhere, work, True
-    )
-    return found
+                return np.inf, -1
+    return _judge((spots, spans, halves, balls), each, loads, law, level, start, twist, nowhere, work, True)
 
 
 def spare(k: int) -> tuple[Any, ...]:
@@ -215,7 +215,7 @@ def _looking(digest: str) -> Any:
         for n in range(first, len(nodes), step):
             box = nodes[n]
             trying = (usable, size, norm, precision)
-            values[n] = value_of(places[box], trials, trying, found, critical[box], least, spare)
+            values[n], _ = value_of(places[box], trials, trying, found, critical[box], least, spare)
             proven[n] = 0.0
             if not joining or bounds[box] >= level:
                 continue

@@ -8,6 +8,7 @@ from numba import njit
 
 from regrasp.closed_form.compiled.compiling import VIEWS, digest
 from regrasp.closed_form.compiled.patches import patch_gauge, patch_search, patch_support
+from regrasp.closed_form.compiled.patches.patch_gauge import bound_by
 from regrasp.closed_form.compiled.patches.patch_search import value_of
 from regrasp.closed_form.compiled.places import placement_search
 from regrasp.compilation import kept
@@ -65,21 +66,33 @@ def _put(rows, triangles, p, spot, foot):  # type: ignore[no-untyped-def]
                 spot[c], spot[3 + c] = foot[c], rows[3 * t, 3 + c]
 
 
+@njit(**VIEWS)
+def _no_less(spots, loads, law, value, twists, spare):  # type: ignore[no-untyped-def]
+    """Whether twists (L, 6), of each load or 0, prove that fingers at spots need no less than ``value``."""
+    mu, size, norm, _ = law
+    surface = (spots, spare[9], spare[10], spare[11])
+    for load in range(len(loads)):
+        if bound_by(surface, spare[3], loads[load], twists[load], mu, size, norm, spare[8][:16]) >= value:
+            return True
+    return False
+
+
 def _loop(digest: str) -> Any:
     @kept("sliding fingers over surfaces", error_model="numpy", _nrt=False)
     def slide(  # type: ignore[no-untyped-def]
-        rows, triangles, loads, law, least, step, shortest, spots, value, trial, scratch, spare
+        rows, triangles, loads, law, least, step, shortest, spots, value, trial, scratch, twists, spare
     ):
         """Moves spots (k, 6) while that lowers ``value``, computed if infinite, which it returns.
 
         Steps of ``step`` in eight directions along the face, of one finger and of all, are halved where none
-        helps, to ``shortest``.
+        helps, to ``shortest``. twists: (L, 6) zeros, which become those that last said of each load what a
+        place needs: most trials beside it are no better by one of them, and need no more than a look.
         """
         _ = digest
         k = len(spots)
-        p, foot, chance = scratch[0], scratch[1], 0.5
+        p, foot, chance, worst = scratch[0], scratch[1], 0.5, 0
         if value == np.inf:
-            value = value_of(spots, loads, law, value, 0, least, spare)
+            value, _ = value_of(spots, loads, law, value, worst, least, spare)
         while step > shortest:
             helped = False
             for move in range(_WAYS * k + _TOGETHER):
@@ -107,7 +120,13 @@ def _loop(digest: str) -> Any:
                         v = n[a] * (1.0 if b == axis else 0.0) - n[b] * (1.0 if a == axis else 0.0)
                         p[c] = spots[i, c] + cs * u + sn * v
                     _put(rows, triangles, p, trial[i], foot)
-                found = value_of(trial, loads, law, value, 0, least, spare)
+                if _no_less(trial, loads, law, value, twists, spare):
+                    continue
+                found, load = value_of(trial, loads, law, value, worst, least, spare)
+                if load >= 0:
+                    worst = load
+                    for c in range(6):
+                        twists[worst, c] = spare[7][c]
                 if found < value * (1.0 - 1e-9):
                     value, helped = found, True
                     for j in range(k):

@@ -24,19 +24,37 @@ DEEP = 256
 
 
 @njit(**VIEWS)
-def sigma(row, y, mu, size, force):  # type: ignore[no-untyped-def]
-    """The most work of a force of size 1 along a twist, and the force that does it."""
+def _velocity(row, y):  # type: ignore[no-untyped-def]
+    """Of a place along a twist: along the normal, across it, and the speed across."""
     vx = y[0] + y[4] * row[2] - y[5] * row[1]
     vy = y[1] + y[5] * row[0] - y[3] * row[2]
     vz = y[2] + y[3] * row[1] - y[4] * row[0]
     along = vx * row[3] + vy * row[4] + vz * row[5]
     tx, ty, tz = vx - along * row[3], vy - along * row[4], vz - along * row[5]
-    across = sqrt(tx * tx + ty * ty + tz * tz)
-    slope, most = mu, along + mu * across
-    if size == 1:  # |f| = 1
-        if across <= mu * along:
-            slope = across / along if along > 0.0 else 0.0
-        most = (along + slope * across) / sqrt(1.0 + slope * slope)
+    return along, tx, ty, tz, sqrt(tx * tx + ty * ty + tz * tz)
+
+
+@njit(**VIEWS)
+def _most(along, across, mu, size):  # type: ignore[no-untyped-def]
+    """The most work of a force of size 1, and its slope to the normal."""
+    if size == 1 and across <= mu * along:  # |f| = 1, in the direction of motion
+        return sqrt(along * along + across * across), across / along if along > 0.0 else 0.0
+    most = along + mu * across
+    return most / sqrt(1.0 + mu * mu) if size == 1 else most, mu
+
+
+@njit(**VIEWS)
+def work(row, y, mu, size):  # type: ignore[no-untyped-def]
+    """The most work of a force of size 1 along a twist, 0 if there is none."""
+    along, _, _, _, across = _velocity(row, y)
+    return max(_most(along, across, mu, size)[0], 0.0)
+
+
+@njit(**VIEWS)
+def sigma(row, y, mu, size, force):  # type: ignore[no-untyped-def]
+    """The most work of a force of size 1 along a twist, and the force that does it."""
+    along, tx, ty, tz, across = _velocity(row, y)
+    most, slope = _most(along, across, mu, size)
     if most <= 0.0:
         force[0] = force[1] = force[2] = 0.0
         return 0.0
@@ -67,7 +85,7 @@ def _below(ball, y, mu, size):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def largest(surface, patch, y, mu, size, force, best, stack, above, looked):  # type: ignore[no-untyped-def]
+def largest(surface, patch, y, mu, size, best, stack, above, looked):  # type: ignore[no-untyped-def]
     """The largest sigma of a patch and its row; the force that does it in ``best``.
 
     surface: rows (R, 6), points and inward normals; spans (K, 2), first row and rows of each patch; tree
@@ -75,8 +93,6 @@ def largest(surface, patch, y, mu, size, force, best, stack, above, looked):  # 
     """
     rows, spans, tree, balls = surface
     most, at, waiting = 0.0, spans[patch, 0], 1
-    for c in range(3):
-        best[c] = 0.0
     stack[0], above[0] = patch, np.inf
     while waiting > 0:
         waiting -= 1
@@ -87,11 +103,9 @@ def largest(surface, patch, y, mu, size, force, best, stack, above, looked):  # 
         if count <= FEW:
             looked[0] += count
             for r in range(first, first + count):
-                found = sigma(rows[r], y, mu, size, force)
+                found = work(rows[r], y, mu, size)
                 if found > most:
                     most, at = found, r
-                    for c in range(3):
-                        best[c] = force[c]
             continue
         looked[0] += 2
         left, right = tree[one, 0], tree[one, 1]
@@ -101,4 +115,5 @@ def largest(surface, patch, y, mu, size, force, best, stack, above, looked):  # 
         stack[waiting], above[waiting] = left, less
         stack[waiting + 1], above[waiting + 1] = right, more
         waiting += 2
+    sigma(rows[at], y, mu, size, best)
     return most, at

@@ -59,7 +59,8 @@ class SurfaceBoxes:
         self.unit = limit or float(np.abs(loads / self._unit).max()) or 1.0
         self._precision = min(0.1 * tolerance, _PRECISE) if limit is None else TRY_PRECISE
         self.put(friction, loads)
-        self._spares = [(spare(fingers), room_together(min(len(loads), LOADS))) for _ in range(PARTS)]
+        together = min(len(loads), LOADS)
+        self._spares = [(spare(fingers), room_together(together, fingers)) for _ in range(PARTS)]
         self._joins = self.law.codes()[1] == LARGEST and 1 < len(loads) <= LOADS
         rows = patches.rows / [self.size, self.size, self.size, 1, 1, 1]
         room = 2 * len(patches.spans) + FIRST_BOXES
@@ -121,7 +122,7 @@ class SurfaceBoxes:
             return CLOSED
         nodes = np.array(few)
         values, proven, twists = self._looked_at(nodes, level)
-        self._state[4] = sum(int(own[8][15][0] + room[6][0]) for own, room in self._spares)
+        self._state[4] = sum(int(own[8][15][0] + room[-1][0]) for own, room in self._spares)
         tried = np.column_stack([values, boxes[6][nodes].reshape(len(nodes), -1)])
         self._tried[(self._state[1] + np.arange(len(nodes))) % TRIED] = tried
         self._state[1] += len(nodes)

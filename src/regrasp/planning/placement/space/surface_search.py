@@ -126,7 +126,7 @@ class SurfaceSearch(SurfaceBoxes):
         return float(
             slide(
                 self._rows, 0, self._trials, law, self.apart / self.size, 0.0, 1.0, scaled, inf,
-                scaled.copy(), np.zeros((2, 3)), spare(self.fingers),
+                scaled.copy(), np.zeros((2, 3)), np.zeros_like(self._trials), spare(self.fingers),
             )
         )  # fmt: skip
 
@@ -140,7 +140,8 @@ class SurfaceSearch(SurfaceBoxes):
         law = (self._usable, *self._law[1:3], TRY_PRECISE)
         value = slide(
             self._rows, len(self.patches.order), self._trials, law, self.apart / self.size, step, shortest,
-            spots, self._found[0], spots.copy(), np.zeros((2, 3)), spare(self.fingers),
+            spots, self._found[0], spots.copy(), np.zeros((2, 3)), np.zeros_like(self._trials),
+            spare(self.fingers),
         )  # fmt: skip
         self._take(spots, value)
 
