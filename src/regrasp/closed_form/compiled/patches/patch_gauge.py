@@ -19,6 +19,7 @@ from regrasp.closed_form.compiled.patches.patch_support import DEEP, largest
 NEVER = 1e5
 """Norm, as a multiple of the wrench's, from which nothing is held: what columns cost that no finger makes."""
 _MOST = 150  # columns made
+_FINE = 1e-6  # of a norm, beyond which no bound is looked for
 _TILT = 1e-10  # of the wrench, which keeps it off faces of the bodies that columns span
 _MISSED = 1e-8  # of the wrench, by which forces may be off it
 
@@ -102,9 +103,10 @@ def exchanged(inverse, x, d, column):  # type: ignore[no-untyped-def]
 
 @njit(**VIEWS)
 def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, work):  # type: ignore[no-untyped-def]
-    """A bound of the norm of forces that make w, within ``precision`` or not below ``level``, and its twist.
+    """A bound of the norm of forces that make w, and its twist.
 
-    It ends, too, where forces make w whose norm is at most ``enough``.
+    It ends where that is not below ``level``, where forces make w whose norm is, and is at most ``enough`` or
+    within ``precision`` of the bound, and where no better bound is to be had.
 
     surface: as of ``largest``. patches: (k,) of the fingers. best: (6,) the twist. In ``work`` stay the
     columns that make w: their amounts x (6,), and of each finger its rows (6, k), weights (6, k) and forces
@@ -147,12 +149,12 @@ def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, w
             proven = bound
             for c in range(6):
                 best[c] = y[c]
-        if proven >= level or dual <= 1.0 + precision:
+        if proven >= level or dual <= 1.0 + _FINE:
             break
         total = 0.0
         for r in range(6):
             total += x[r]
-        if total <= enough or total - proven <= precision * total:
+        if total <= enough or (total < level and total - proven <= precision * total):
             break
         leaving = exchanged(inverse, x, d, column)
         if leaving < 0:

@@ -24,6 +24,7 @@ LOADS = 12
 """Loads that are taken together, at most: each costs six unknowns."""
 _MOST = 20  # columns made for each unknown
 _NEVER = 1e4  # what columns cost that no finger makes, where norms of wrenches are about 1
+_FINE = 1e-6  # of a norm, beyond which no bound is looked for
 _TILT = 1e-9  # of the wrenches, which keeps them off faces of the body that columns span
 
 
@@ -79,7 +80,7 @@ def _together(rows, ends, few, mu, size, y, column, force):  # type: ignore[no-u
 
 
 @njit(**VIEWS)
-def bound_together(rows, first, count, wanted, mu, size, level, precision, best, room):  # type: ignore[no-untyped-def]
+def bound_together(rows, first, count, wanted, mu, size, level, best, room):  # type: ignore[no-untyped-def]
     """A bound of the largest force that makes the worst of all wrenches, and twists (L, 6) that prove it.
 
     It ends at ``level``, and where forces are less at places that differ by the load. first, count: (k,) rows
@@ -101,7 +102,7 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
     ends[0] = 0
     for i in range(len(first)):
         ends[i + 1] = ends[i]
-        if i == 0 or first[i] != first[i - 1]:
+        if i == 0 or first[i] != first[i - 1] or count[i] != count[i - 1]:
             ends[i + 1] += _different(rows, first[i], count[i], few[ends[i] :])
     corners = ends[len(first)]
     proven = 0.0
@@ -126,7 +127,7 @@ def bound_together(rows, first, count, wanted, mu, size, level, precision, best,
             for load in range(loads):
                 for c in range(6):
                     best[load, c] = y[load, c]
-        if proven >= level or dual <= 1.0 + precision or total < level:
+        if proven >= level or dual <= 1.0 + _FINE or total < level:
             break
         if exchanged(inverse, x, d, column) < 0:
             break

@@ -224,9 +224,7 @@ def _looking(digest: str) -> Any:
                 corners[i], count[i] = spans[patches[box, i], 0], spans[patches[box, i], 1]
                 total += count[i]
             if total <= ROWS:
-                proven[n] = bound_together(
-                    rows, corners, count, loads, mu, size, level, precision, twists[n], room
-                )
+                proven[n] = bound_together(rows, corners, count, loads, mu, size, level, twists[n], room)
 
     return look
 

@@ -18,7 +18,7 @@ from regrasp.planning.placement.space.patches import Patches
 FIRST_BOXES = 4096
 TRIED = 4096
 TRY_PRECISE = 1e-6
-_PRECISE = 1e-3
+_PRECISE, _ROUGH = 1e-3, 0.05  # of bounds below the best, and below a level, which need not say by how much
 _AT_A_TIME, _ROWS = 512, 3000  # boxes, on so many rows
 _ROUND, _SHARE = 64, 8  # boxes of a round at most, and of so many open ones one
 _OFTEN = 16  # boxes of which one at least is excluded by all loads together
@@ -57,7 +57,7 @@ class SurfaceBoxes:
         self.size = float(np.linalg.norm(patches.rows[:, :3], axis=1).max()) or 1.0
         self._unit = np.repeat([1.0, self.size], 3)
         self.unit = limit or float(np.abs(loads / self._unit).max()) or 1.0
-        self._precision = min(0.1 * tolerance, _PRECISE) if limit is None else TRY_PRECISE
+        self._precision = min(0.1 * tolerance, _PRECISE) if limit is None else _ROUGH
         self.put(friction, loads)
         together = min(len(loads), LOADS)
         self._spares = [(spare(fingers), room_together(together, fingers)) for _ in range(PARTS)]
