@@ -97,8 +97,9 @@ def judge_of(surface: Surface, loads: np.ndarray, friction: float, objective: st
         scaled = np.ascontiguousarray(spots / surface.size)
         scaled[:, 3:] = spots[:, 3:]
         found = slide(
-            scaled, 0, wanted, law, 1e-6, 0.0, 1.0, scaled, inf, scaled.copy(), np.zeros((2, 3)), memory
-        )
+            scaled, 0, wanted, law, 1e-6, 0.0, 1.0, scaled, inf, scaled.copy(), np.zeros((2, 3)),
+            np.zeros_like(wanted), memory,
+        )  # fmt: skip
         return float((found * top) ** power) if found < 1e3 else inf
 
     return value

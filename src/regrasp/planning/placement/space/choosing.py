@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from heapq import heapify, heappop, heappush
 from math import inf, sqrt
 from types import MappingProxyType
 
@@ -38,8 +39,8 @@ _DIFFERENT = 0.05  # of the root of the area
 _OTHERS = 4
 _PASSED_OVER = 128  # placements tried, the best first, among which others are looked for
 _NARROW = 1e-6  # of the size: triangles of smaller sides are not halved
-_SAMPLED = 200  # points, on which a first placement is sought
-_SAMPLED_BOXES = 20_000
+_SAMPLED, _SAMPLED_GAP = 200, 0.01  # points, on which a first placement is sought, and to what gap at least
+_SAMPLED_BOXES = 3000
 
 _OF_LEVELS = ("max_force", "disturbance")
 
@@ -96,10 +97,10 @@ def choose_on_mesh(
         climb = Climb(search, level, tolerance)
         if isinstance(level, AnsweredLevel):
             climb.put(1.0)
-        few = _on_samples(corners, normals, search)
+        few = _on_samples(corners, normals, search, half)
         climb.run([spots for _, spots in few.placements()[:_OTHERS]], _NARROW, boxes, looks, progress)
         return _at_level(climb, shape, loads, friction, objective, _DIFFERENT * root)
-    few = _on_samples(corners, normals, search)
+    few = _on_samples(corners, normals, search, half)
     for _, spots in few.placements()[:_OTHERS]:
         search.accept(spots)
     looks = -1 if few.interrupted else looks  # some boxes, for a bound, and no more after an interrupt
@@ -169,8 +170,9 @@ def _at_level(
     )  # fmt: skip
 
 
-def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> SurfaceSearch:
+def _on_samples(corners: Array, normals: Array, search: SurfaceSearch, tolerance: float) -> SurfaceSearch:
     """A search on some points spread over the faces, as on faces: exact on these points."""
+    gap = max(tolerance, _SAMPLED_GAP)
     sides = corners[:, 1:] - corners[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     steps = (np.arange(_SAMPLED) + 0.5) / _SAMPLED * areas.sum()
@@ -181,9 +183,9 @@ def _on_samples(corners: Array, normals: Array, search: SurfaceSearch) -> Surfac
     points = corners[on, 0] + u[:, None] * sides[on, 0] + v[:, None] * sides[on, 1]
     few = SurfaceSearch(
         patches_of(np.repeat(points[:, None], 3, axis=1), normals[on]), search.fingers, search.friction,
-        search.loads, search.law, search.apart, 0.01,
+        search.loads, search.law, search.apart, gap,
     )  # fmt: skip
-    few.run(0.01, _SAMPLED_BOXES, _NARROW, None)
+    few.run(gap, _SAMPLED_BOXES, _NARROW, None)
     return few
 
 
@@ -204,13 +206,17 @@ def _others(
     """
     kept = [spots]
     found: list[OtherGrasp] = []
-    # those that are not the best yet were judged by as many loads as it takes
     passed = search.placements()[:_PASSED_OVER] + few.placements()[:_PASSED_OVER]
-    tried = [(search.norm_at(other), other) for _, other in passed]
-    for norm, other in sorted(tried, key=lambda one: one[0]):
-        if len(kept) > _ATTEMPTS or len(found) == _OTHERS or norm == inf:
-            break
-        if min(_apart(other, one) for one in kept) < least:
+    # those that are not the best yet were judged by as many loads as it takes: they need no less
+    waiting = [(norm, i, False) for i, (norm, _) in enumerate(passed)]
+    heapify(waiting)
+    while waiting and len(kept) <= _ATTEMPTS and len(found) < _OTHERS:
+        norm, i, judged = heappop(waiting)
+        other = passed[i][1]
+        if norm == inf or min(_apart(other, one) for one in kept) < least:
+            continue
+        if not judged:
+            heappush(waiting, (search.norm_at(other), i, True))
             continue
         kept.append(other)
         try:

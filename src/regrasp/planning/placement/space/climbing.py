@@ -13,7 +13,8 @@ from regrasp.planning.placement.space.surface_search import SurfaceSearch
 
 SpaceLevel = FrictionLevel | AnsweredLevel
 _SURE = 1e-6  # of the limit, more than norms are uncertain by
-_HALVINGS, _EXACT = 40, 1e-9  # of a level of a placement
+_STEPS, _EXACT = 40, 1e-9  # to a level of a placement
+_LEAST = 1e-300
 _SLIDES, _SLOW = 8, 1e-4  # of a placement, while each gains so much of its level
 
 
@@ -74,8 +75,10 @@ class Climb:
         except KeyboardInterrupt:
             search.closed, search.interrupted, self.beyond = False, True, self.top
 
-    def _holds(self, spots: Array) -> bool:
-        return self.search.norm_at(spots) <= self.level.max_force * (1 - _SURE)
+    def _spared(self, level: float, spots: Array) -> float:
+        """What part of the forces of a placement could come on top at a level; -1 where there are none."""
+        self.put(level)
+        return self.level.max_force * (1 - _SURE) / max(self.search.norm_at(spots), _LEAST) - 1
 
     def _raised(self, aim: float, spots: Array) -> float:
         """The level to look for next, as a placement is found at ``aim``."""
@@ -98,16 +101,21 @@ class Climb:
 
     def _reached(self, known: float, spots: Array) -> float:
         """The best level at which a placement has forces below the limit; -inf for less than ``known``."""
-        self.put(known)
-        if not self.search.norm_at(spots) <= self.level.max_force:
-            return -inf
         lo, hi = known, self.top
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (lo + hi)
-            self.put(middle)
-            lo, hi = (middle, hi) if self._holds(spots) else (lo, middle)
-            if hi - lo <= _EXACT * max(abs(lo), abs(hi)):
+        below, above = self._spared(lo, spots), -self._spared(hi, spots)
+        if below < -_SURE or above <= 0:
+            return -inf if below < -_SURE else hi
+        below, twice = max(below, 0.0), 0
+        for _ in range(_STEPS):  # of false position (Illinois)
+            middle = lo + (hi - lo) * below / (below + above)
+            spared = self._spared(middle, spots)
+            if spared >= 0:
+                lo, below, twice = middle, spared, max(twice, 0) + 1
+            else:
+                hi, above, twice = middle, -spared, min(twice, 0) - 1
+            if 0 <= spared <= _SURE or hi - lo <= _EXACT * max(abs(lo), abs(hi)):
                 break
+            below, above = (0.5 * below if twice < -1 else below), (0.5 * above if twice > 1 else above)
         return lo
 
     def _settled(self, aim: float) -> float:
