@@ -51,7 +51,11 @@ def test_no_triple_of_points_is_better_than_the_bound(objective: str) -> None:
     for three in combinations(contacts, 3):
         try:
             grasp = rg.Grasp(three)
-            value = max(rg.choose_state(grasp, w, objective).value for w in LOADS_OF)
+            value = 0.0
+            for w in LOADS_OF:
+                value = max(value, rg.choose_state(grasp, w, objective).value)
+                if value >= best:
+                    break
         except rg.Infeasible:
             continue
         best = min(best, value)
@@ -83,7 +87,7 @@ def test_on_many_faces_a_search_ends_after_so_many_corners(monkeypatch: pytest.M
     )
     asked: dict[str, Any] = {"friction": 0.6, "objective": "peak_normal"}
     short = rg.choose_grasp(parts.bracket(), 3, loads, **asked)
-    longer = rg.choose_grasp(parts.bracket(), 3, loads, **asked, most_boxes=4000)
+    longer = rg.choose_grasp(parts.bracket(), 3, loads, **asked, most_boxes=2000)
     assert len(short.certificate.number) < len(longer.certificate.number)
     assert short.bound < short.value
     assert rg.verify(short).ok
