@@ -213,7 +213,7 @@ class Search(Boxes):
         friction = kept_friction(self.friction, 2 * RESERVE)
         codes = self._law(friction, friction, law or self.law)
         at = np.repeat(places[:, None], 2, axis=1), np.repeat(u[:, None], 2, axis=1)
-        found = value_of(self._table, self._wanted, codes, most / self.unit, *at, self._spare)
+        found, _ = value_of(self._table, self._wanted, codes, most / self.unit, *at, 0, self._spare)
         return float(found) * self.unit
 
     def is_within(self, places: np.ndarray, u: Array, most: float) -> bool:

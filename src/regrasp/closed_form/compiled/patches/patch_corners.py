@@ -32,7 +32,9 @@ def _loop(digest: str) -> Any:
                     spots[i, 3 + c] = normals[i, c]
             for load in range(len(loads)):
                 w = loads[load]
-                found = gauge(alone, each, w, mu, size, norm, limit, -1.0, precision, best, work[:16])
+                found = gauge(
+                    alone, each, w, mu, size, norm, limit, -1.0, precision, best, work[:16], load > 0
+                )
                 if found >= limit:
                     return corner
                 untilted = True

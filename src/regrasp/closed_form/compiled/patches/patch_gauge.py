@@ -102,11 +102,42 @@ def exchanged(inverse, x, d, column):  # type: ignore[no-untyped-def]
 
 
 @njit(**VIEWS)
-def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, work):  # type: ignore[no-untyped-def]
+def _resumed(w, scale, work):  # type: ignore[no-untyped-def]
+    """Makes w, nearly, of the columns at hand; False where some would have to be less than nothing."""
+    inverse, x = work[6], work[7]
+    for r in range(6):
+        x[r] = 0.0
+        for c in range(6):
+            x[r] += inverse[r, c] * (w[c] + _TILT * scale * (1.0 + 0.37 * c))
+        if x[r] < 0.0:
+            return False
+    return True
+
+
+@njit(**VIEWS)
+def _begun(surface, patches, w, scale, work):  # type: ignore[no-untyped-def]
+    """Makes w, nearly, of columns that no finger makes."""
+    inverse, x, made, shares, pushes = work[6], work[7], work[10], work[11], work[12]
+    for r in range(6):
+        for c in range(6):
+            inverse[r, c] = 0.0
+        push = w[r] + _TILT * scale * (1.0 + 0.37 * r)
+        inverse[r, r] = NEVER if push >= 0.0 else -NEVER
+        x[r] = abs(push) * NEVER
+        for i in range(len(patches)):
+            shares[r, i] = 0.0
+            made[r, i] = surface[1][patches[i], 0]
+            for c in range(3):
+                pushes[r, i, c] = 0.0
+
+
+@njit(**VIEWS)
+def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, work, again=False):  # type: ignore[no-untyped-def]
     """A bound of the norm of forces that make w, and its twist.
 
     It ends where that is not below ``level``, where forces make w whose norm is, and is at most ``enough`` or
     within ``precision`` of the bound, and where no better bound is to be had.
+    again: the columns that are at hand are of these patches, and may do to begin with.
 
     surface: as of ``largest``. patches: (k,) of the fingers. best: (6,) the twist. In ``work`` stay the
     columns that make w: their amounts x (6,), and of each finger its rows (6, k), weights (6, k) and forces
@@ -122,17 +153,8 @@ def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, w
         for c in range(6):
             x[c] = 0.0
         return 0.0
-    for r in range(6):
-        for c in range(6):
-            inverse[r, c] = 0.0
-        push = w[r] + _TILT * scale * (1.0 + 0.37 * r)
-        inverse[r, r] = NEVER if push >= 0.0 else -NEVER
-        x[r] = abs(push) * NEVER
-        for i in range(k):
-            shares[r, i] = 0.0
-            made[r, i] = surface[1][patches[i], 0]
-            for c in range(3):
-                pushes[r, i, c] = 0.0
+    if not (again and _resumed(w, scale, work)):
+        _begun(surface, patches, w, scale, work)
     proven = 0.0
     for _ in range(_MOST):
         value = 0.0

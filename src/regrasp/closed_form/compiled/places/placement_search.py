@@ -326,19 +326,35 @@ def _loop(digest: str) -> Any:
 
 def _value(digest: str) -> Any:
     @kept("the search for places", error_model="numpy", nogil=True, _nrt=False)
-    def value_of(sides, loads, law, most, arcs, ends, spare):  # type: ignore[no-untyped-def]
-        """What the worst load needs of a placement, a box of no width; some value beyond ``most``.
+    def value_of(sides, loads, law, most, arcs, ends, first, spare):  # type: ignore[no-untyped-def]
+        """What the worst load needs of the worst placement at ends of arcs, one or the other of each finger.
 
-        sides, loads, law, arcs, ends, spare: as of ``search``.
+        sides, loads, law, arcs, ends, spare: as of ``search``. first: bits of the corner to begin with.
+        Returns some value beyond ``most``, if there is one, and bits of the worst corner seen.
         """
         _ = digest
         _, usable, size, norm, precision, limit, margin = law
-        work, _, nowhere, _, twist = spare
-        law = (usable, size, norm, limit, margin)
-        found, _ = _judge(
-            sides, arcs, ends, loads, law, precision, most, 0, twist[0], work, nowhere, True
-        )  # fmt: skip
-        return found
+        work, _, nowhere, at_arcs, at_ends = spare
+        law, twist = (usable, size, norm, limit, margin), work[12][0]
+        worst, corner, critical = -1.0, first, 0
+        for number in range(1 << len(arcs)):
+            bits, new = first ^ number, True
+            for i in range(len(arcs)):
+                end = (bits >> i) & 1
+                single = arcs[i, 0] == arcs[i, 1] and ends[i, 0] == ends[i, 1]
+                new = new and not (single and (number >> i) & 1)
+                at_arcs[i, 0] = at_arcs[i, 1] = arcs[i, end]
+                at_ends[i, 0] = at_ends[i, 1] = ends[i, end]
+            if not new:
+                continue
+            found, critical = _judge(
+                sides, at_arcs, at_ends, loads, law, precision, most, critical, twist, work, nowhere, True
+            )  # fmt: skip
+            if found > worst:
+                worst, corner = found, bits
+            if worst >= most:
+                break
+        return worst, corner
 
     return value_of
 

@@ -16,22 +16,19 @@ from itertools import product
 
 import numpy as np
 
-from regrasp.errors import Infeasible, InvalidInput, RegraspError
+from regrasp.errors import Infeasible, InvalidInput
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.mechanics.contact import Contact
 from regrasp.mechanics.grasp import Grasp
 from regrasp.mechanics.state import GraspState
-from regrasp.mechanics.wrench import Wrench
 from regrasp.outline.outline import Outline
 from regrasp.planning.placement.curves.curved_sides import CurvedSides, curved_sides
-from regrasp.planning.placement.laws import LAWS
 from regrasp.planning.placement.regions.contact_arcs import ContactRegions
+from regrasp.planning.placement.regions.corners import Corners, states_at
 from regrasp.planning.placement.regions.growing import farthest, moved_out
 from regrasp.planning.placement.regions.needs import LESS, limit_of
 from regrasp.planning.placement.regions.seeking import MOST, Seeking
-from regrasp.planning.placement.search import Search
-from regrasp.planning.placement.sides import Sides, moved
-from regrasp.planning.states.choosing import choose_state
+from regrasp.planning.placement.sides import moved
 
 ON_CURVE = 1e-6  # of the size: farther from the curve a contact is not on it
 _BEYOND = 1e-9  # of the size, by which chords are longer than they must be, for rounding
@@ -58,6 +55,11 @@ class _Part:
     off: float
     turned: float
 
+    @property
+    def normal(self) -> Array:
+        """The inward normal of its chord."""
+        return np.array([-self.tangent[1], self.tangent[0]])
+
 
 class CurvedPlaces:
     """Parts of an outline around contacts of one grasp, and whether loads are held all over them.
@@ -70,7 +72,8 @@ class CurvedPlaces:
         self, shape: Outline, sides: CurvedSides, grasp: Grasp, places: Array, loads: Array
     ) -> None:  # fmt: skip
         self.shape, self.sides, self.grasp, self.places, self.loads = shape, sides, grasp, places, loads
-        self._part = lru_cache(_KEPT)(self._part_between)
+        self._corners = Corners(len(grasp), loads, sides.size)
+        self._part, self._u_at = lru_cache(_KEPT)(self._part_between), lru_cache(_KEPT)(sides.u_at)
         self.far, corners = 0.25 * shape.length, shape.boundary.corners
         away = (_WAYS[:, None] * (corners - self.places[:, None, None])) % shape.length
         reach = np.minimum(away.min(axis=2, initial=np.inf), self.far)
@@ -84,17 +87,15 @@ class CurvedPlaces:
     def spans(self, box: Array) -> Array:
         """(k, 2) the u of arc lengths (k, 2), which may run past the start."""
         turns = np.floor(box / self.shape.length)
-        at = [[self.sides.u_at(float(s)) for s in row] for row in box - turns * self.shape.length]
+        at = [[self._u_at(float(s)) for s in row] for row in box - turns * self.shape.length]
         result: Array = np.array(at) + turns * len(self.sides.control)
         return result
 
     def cells(self, span: Array, limit: float) -> list[Array] | None:
         """Parts (k, 2) in u whose corners need no more than a limit, which make up a box; None for none."""
-        k = len(span)
-        ends = (np.array([[end] * 2 for end in corner]) for corner in product(*span))
-        if any(self.need(end, limit) > limit for end in ends):
+        if not self._ends_hold(span, limit):
             return None
-        most = min(_CELLS, max(1, _STATES // (2**k * len(self.loads))))
+        most = min(_CELLS, max(1, _STATES // (2 ** len(span) * len(self.loads))))
         proven, left = [], [span]
         while left:
             cell = left.pop()
@@ -122,7 +123,7 @@ class CurvedPlaces:
             lo, hi = part.along
             reach = part.off * np.tan(alpha) + (_BEYOND * self.sides.size if lo < hi else 0.0)
             ends.append(part.base + np.array([[lo - reach], [hi + reach]]) * part.tangent)
-        return np.array(ends), np.array([[-p.tangent[1], p.tangent[0]] for p in parts]), float(np.tan(alpha))
+        return np.array(ends), np.array([p.normal for p in parts]), float(np.tan(alpha))
 
     def _part_between(self, lo: float, hi: float) -> "_Part":
         points, tangents = self.sides.hull(lo, hi)
@@ -137,36 +138,37 @@ class CurvedPlaces:
         if found is None:
             return np.inf
         ends, normals, mu = found
-        k = len(ends)
-        table = _Points(ends.reshape(-1, 2), np.repeat(normals, 2, axis=0), self.sides.size)
-        search = Search(table, k, mu, self.loads, LAWS["peak"], 0.0, 0.0)
-        worst = 0.0
-        for corner in product(range(2), repeat=k):
-            places = 2 * np.arange(k) + corner
-            worst = max(worst, search.norm_at(places, places.astype(float)))
-            if worst > limit or worst == np.inf:
-                break
-        return worst
+        return self._need(ends, np.repeat(normals[:, None], 2, axis=1), mu, limit)
+
+    def _ends_hold(self, span: Array, limit: float) -> bool:
+        """Whether fingers at the ends of parts need no more than a limit."""
+        mu = float(self.grasp.frictions[0]) * (1 - LESS)
+        if np.arctan(mu) > _STEEP:
+            return False
+        parts = [self._part(u, u) for u in span.ravel().tolist()]
+        points, normals = np.array([p.base for p in parts]), np.array([p.normal for p in parts])
+        return self._need(points.reshape(-1, 2, 2), normals.reshape(-1, 2, 2), mu, limit) <= limit
+
+    def _need(self, ends: Array, normals: Array, mu: float, limit: float) -> float:
+        """The largest least force with which fingers at one of two points each (k, 2, 2) hold the loads."""
+        n = np.arange(2 * len(ends))
+        ends, normals = ends.reshape(-1, 2), normals.reshape(-1, 2)
+        table = np.column_stack([ends / self.sides.size, 0 * ends, normals, n, n, n])
+        on = n.reshape(-1, 2)
+        return self._corners.need(table, mu, on, on.astype(float), limit)
 
     def states(self, span: Array, limit: float) -> tuple[GraspState, ...]:
         """States at all corners, load by load, which prove a cell."""
         found = self.corners(span)
         assert found is not None
         ends, normals, mu = found
-        states = []
+        states = list[GraspState]()
         for corner in product(range(2), repeat=len(ends)):
             at = Grasp(
                 Contact(p[e], n, mu, name=c.name)
                 for p, n, e, c in zip(ends, normals, corner, self.grasp, strict=True)
             )
-            for load in map(Wrench.from_vector, self.loads):
-                try:
-                    forces = choose_state(at, load, "peak", max_force=limit).forces
-                except RegraspError as error:
-                    raise Infeasible(
-                        f"a corner of the regions was left without forces by rounding: {error}"
-                    ) from None
-                states.append(GraspState(at, load, forces))
+            states += states_at(at, self.loads, limit)
         return tuple(states)
 
 
@@ -254,26 +256,3 @@ def _turned(tangents: Array) -> tuple[Array, float, float]:
     middle /= np.hypot(*middle)
     turned = np.arctan2(middle[0] * tangents[:, 1] - middle[1] * tangents[:, 0], tangents @ middle)
     return middle, 0.5 * float(turned.max() + turned.min()), float(np.ptp(turned))
-
-
-class _Points(Sides):
-    """Points with normals of their own, as sides of no length."""
-
-    def __init__(self, points: Array, normals: Array, size: float) -> None:
-        n = np.arange(len(points))
-        super().__init__(points, n, np.stack([n, n + 0.0], axis=1))
-        object.__setattr__(self, "normals", normals)
-        object.__setattr__(self, "extent", size)
-
-    normals: Array
-    extent: float
-
-    @property
-    def size(self) -> float:
-        """What lengths are measured in [m]."""
-        return self.extent
-
-    def table(self) -> Array:
-        """(m, 9) as the compiled search takes them."""
-        n = np.arange(len(self.vertices), dtype=float)[:, None]
-        return np.hstack([self.vertices / self.extent, 0 * self.vertices, self.normals, n, n, n])

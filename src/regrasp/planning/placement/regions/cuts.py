@@ -26,21 +26,15 @@ class Cuts:
         self.twists, self.numbers = np.zeros((0, 3)), np.zeros(0, int)
         self._work = np.zeros(0)
 
-    def known(self, box: Array, only: int | None = None) -> tuple[Array, int] | None:
-        """A corner of a box (k, 2) that a twist excludes, and the twist's number; None where none does.
-
-        only: the number of the one twist to look at.
-        """
-        some = slice(None) if only is None else slice(only, only + 1)
+    def known(self, box: Array) -> tuple[Array, int] | None:
+        """A corner of a box (k, 2) that a twist excludes, and the twist's number; None where none does."""
         if not len(self.twists):
             return None
-        ends = self._sigma(self.twists[some], box)  # (m, k, 2)
+        ends = self._sigma(self.twists, box)  # (m, k, 2)
         # of all corners the one where fingers do least
-        over = self._work[some] * (1 - _CLEAR) - self.limit * ends.min(axis=2).sum(axis=1)
+        over = self._work * (1 - _CLEAR) - self.limit * ends.min(axis=2).sum(axis=1)
         cut = int(over.argmax())
-        if not over[cut] > 0:
-            return None
-        return box[np.arange(len(box)), ends[cut].argmin(axis=1)], cut if only is None else only
+        return (box[np.arange(len(box)), ends[cut].argmin(axis=1)], cut) if over[cut] > 0 else None
 
     def fails(self, box: Array) -> bool:
         """Whether a corner of a box fails, by a twist so far or by a new one."""

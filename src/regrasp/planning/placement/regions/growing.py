@@ -7,11 +7,11 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array
 
-_HALVINGS = 40
+HALVINGS = 40
 _SHORTEST, _TRADED, _BETTER = 0.005, 9, 1e-4  # least step, halvings and gain of a trade
 
 
-def farthest(holds: Callable[[float], bool], most: float, halvings: int = _HALVINGS) -> float:
+def farthest(holds: Callable[[float], bool], most: float, halvings: int = HALVINGS) -> float:
     """The largest width that holds, of nested ones; 0 holds."""
     if holds(most):
         return most
@@ -23,9 +23,11 @@ def farthest(holds: Callable[[float], bool], most: float, halvings: int = _HALVI
 
 
 def moved_out(
-    holds: Callable[[Array], bool], box: Array, i: int, end: int, last: float, halvings: int = _HALVINGS
+    holds: Callable[[Array], bool], box: Array, i: int, end: int, last: float, halvings: int = HALVINGS
 ) -> float:
     """Where one end of a box may be moved towards ``last``."""
+    if box[i, end] == last:
+        return last
 
     def moved(fraction: float) -> Array:
         there = box.copy()
@@ -36,8 +38,11 @@ def moved_out(
     return float(moved(fraction)[i, end])
 
 
-def traded(holds: Callable[[Array], bool], box: Array, u: Array, room: Array, lengths: Array) -> Array:
-    """A box with a larger product of widths: one end is drawn in, others move out, while that helps."""
+def traded(out: Callable[[Array, int, int, int], float], box: Array, u: Array, lengths: Array) -> Array:
+    """A box with a larger product of widths: one end is drawn in, others move out, while that helps.
+
+    out: where one end of a box may be moved to, by so many halvings.
+    """
     ends = list(product(range(len(u)), range(2)))
 
     def score(of: Array) -> float:
@@ -53,7 +58,7 @@ def traded(holds: Callable[[Array], bool], box: Array, u: Array, room: Array, le
             tried[i, end] += step * (u[i] - box[i, end])
             for k in range(len(ends)):
                 other = ends[(j + first + k) % len(ends)]
-                tried[other] = moved_out(holds, tried, *other, room[other], _TRADED)
+                tried[other] = out(tried, *other, _TRADED)
             found = score(tried)
             if found > best + _BETTER:
                 best, box, helped = found, tried, True

@@ -16,6 +16,7 @@ import numpy as np
 
 from regrasp.mechanics.checks import Array, read_only
 from regrasp.planning.placement.regions.cuts import Cuts
+from regrasp.planning.placement.regions.growing import farthest
 from regrasp.planning.placement.regions.widest_proof import WidestProof
 
 TOLERANCE = 0.01
@@ -56,7 +57,8 @@ class LeastArc:
             looked += 1
             below, bound = self._between(partial(self._inner, starts), starts[:, 0])
             if bound > self.width * (1 + tolerance) and not self._fails(self._inner(starts, below)):
-                self._slide(starts.mean(axis=1))
+                for each in (starts.mean(axis=1), starts[:, 1]):  # the latest may be the places themselves
+                    self._slide(each)
                 for half, most_of_it in self._halved(starts):
                     heappush(cells, _Cell(-min(bound, most_of_it), next(self._number), half))
             else:  # no wider, or by a new twist less wide
@@ -82,15 +84,9 @@ class LeastArc:
 
     def _between(self, box: Callable[[float], Array], starts: Array) -> tuple[float, float]:
         """A width whose box no twist so far excludes, and just above it one that is excluded, or no room."""
-        width = above = self._room(starts)
-        while width > 0 and (found := self.cuts.known(box(width))) is not None:
-            lo, above = 0.0, width
-            for _ in range(_HALVINGS):  # of what one twist excludes
-                middle = 0.5 * (lo + above)
-                fails = self.cuts.known(box(middle), found[1]) is not None
-                lo, above = (lo, middle) if fails else (middle, above)
-            width = lo
-        return width, above
+        room = self._room(starts)
+        width = farthest(lambda width: self.cuts.known(box(width)) is None, room, _HALVINGS)
+        return width, width if width == room else width + room / 2**_HALVINGS
 
     def _halved(self, starts: Array) -> list[tuple[Array, float]]:
         """Both halves of a box of starts, cut where that helps most, and what is no wider in each."""

@@ -40,7 +40,7 @@ def regions_on_faces(mesh: Mesh, grasp: Grasp, loads: Array, given: float | None
     none = np.zeros(k)
     if not search.holds(none):
         raise Infeasible(ON_EDGE)
-    radius = (1 - LESS) * _farthest(lambda r: search.holds(none + r), 0.0, far, _HALVINGS)
+    radius = _farthest(lambda r: search.holds(none + r), 0.0, far, _HALVINGS)
     radii, alone = none + radius, none.copy()
     for i in range(k):
         radii[i] = _farthest(partial(search.holds_with, radii, i), radius, far, _OWN_HALVINGS)
@@ -78,6 +78,7 @@ class _Regions:
         self.unit = float(np.abs(loads / np.repeat([1.0, self.size], 3)).max()) or 1.0
         self.limit = inf
         self._hard = [0] * len(loads)
+        self._held: list[tuple[Array, Array]] = []
 
     def need(self) -> float:
         """The least largest force with which the grasp holds all loads as it is [N]."""
@@ -112,7 +113,20 @@ class _Regions:
         patches = self.patches(radii)
         if prod(map(len, patches)) > _MOST_CORNERS:
             return False
-        return all(self._proven(patches, load) is not None for load in range(len(self.loads)))
+        known, found = self._known_within(radii), []
+        for load in range(len(self.loads)):
+            proven = self._proven(patches, load, known[load])
+            if proven is None:
+                return False
+            found.append(proven[0])
+        self._held.append((radii.copy(), np.array(found)))
+        return True
+
+    def _known_within(self, radii: Array) -> Array:
+        """(l, k) moments that the largest regions need that hold within others, load by load."""
+        within = [held for held in self._held if (held[0] <= radii).all()]
+        none = np.zeros((len(self.loads), len(radii)))
+        return max(within, key=lambda held: float(held[0].sum()))[1] if within else none
 
     def holds_with(self, radii: Array, i: int, own: float) -> bool:
         """The same with another radius of one finger."""
@@ -121,12 +135,12 @@ class _Regions:
     def proof(self, radii: Array) -> tuple[Array, Array, Array, Array]:
         """Moments (l, k), tilts (l, k, 3), focus (l, k) and forces (l, c, s, k, 3) of regions that hold."""
         patches = self.patches(radii)
-        found = [self._proven(patches, load) for load in range(len(self.loads))]
+        known = self._known_within(radii)
+        found = [self._proven(patches, load, known[load]) for load in range(len(self.loads))]
         return tuple(map(np.array, zip(*filter(None, found), strict=True)))  # type: ignore[return-value]
 
-    def _proven(self, patches: list[Array], load: int) -> tuple[Array, ...] | None:
+    def _proven(self, patches: list[Array], load: int, moments: Array) -> tuple[Array, ...] | None:
         """Moments, tilts, focus and forces, which prove that the patches hold a load; None for none."""
-        moments = np.zeros(len(patches))
         for _ in range(_ROUNDS):
             forces = self._at_corners(patches, load, moments)
             if forces is None:
