@@ -190,3 +190,29 @@ def write_child(sides, arcs, ends, i, same, left, at, u, new_arcs, new_ends):  #
         elif i + left <= f < i + same:
             whole = arcs[i, 0] < arcs[i, 1]
             new_arcs[f, 0], new_ends[f, 0] = (at + 1, sides[at + 1, 6]) if whole else (at, u)
+
+
+@njit(**VIEWS)
+def push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
+    """Adds a node to a heap of ``count``, the least bound on top."""
+    at = count
+    while at > 0 and bounds[heap[(at - 1) // 2]] > bounds[node]:
+        heap[at] = heap[(at - 1) // 2]
+        at = (at - 1) // 2
+    heap[at] = node
+
+
+@njit(**VIEWS)
+def pop(heap, count, bounds):  # type: ignore[no-untyped-def]
+    """The node of the least bound of ``count``; the heap is one shorter."""
+    top, node, at = heap[0], heap[count - 1], 0
+    while 2 * at + 1 < count - 1:
+        child = 2 * at + 1
+        if child + 1 < count - 1 and bounds[heap[child + 1]] < bounds[heap[child]]:
+            child += 1
+        if bounds[heap[child]] >= bounds[node]:
+            break
+        heap[at] = heap[child]
+        at = child
+    heap[at] = node
+    return top

@@ -31,6 +31,8 @@ from regrasp.closed_form.compiled.places.least_norm import (
 from regrasp.closed_form.compiled.places.placement_boxes import (
     alike,
     cut,
+    pop,
+    push,
     put,
     spread,
     to_split,
@@ -49,32 +51,6 @@ COARSE = 32.0
 """Of the narrowest arcs, those of boxes where no corner has fingers as far apart as they must be."""
 CLOSED, IMPROVED, PAUSED, FULL = 0, 1, 2, 3
 """Why a search returns: no box is left; a placement within a fixed level; after so many boxes; no memory."""
-
-
-@njit(**VIEWS)
-def push(heap, count, bounds, node):  # type: ignore[no-untyped-def]
-    """Adds a node to a heap of ``count``, the least bound on top."""
-    at = count
-    while at > 0 and bounds[heap[(at - 1) // 2]] > bounds[node]:
-        heap[at] = heap[(at - 1) // 2]
-        at = (at - 1) // 2
-    heap[at] = node
-
-
-@njit(**VIEWS)
-def pop(heap, count, bounds):  # type: ignore[no-untyped-def]
-    """The node of the least bound of ``count``; the heap is one shorter."""
-    top, node, at = heap[0], heap[count - 1], 0
-    while 2 * at + 1 < count - 1:
-        child = 2 * at + 1
-        if child + 1 < count - 1 and bounds[heap[child + 1]] < bounds[heap[child]]:
-            child += 1
-        if bounds[heap[child]] >= bounds[node]:
-            break
-        heap[at] = heap[child]
-        at = child
-    heap[at] = node
-    return top
 
 
 @njit(**VIEWS)
@@ -336,17 +312,17 @@ def _value(digest: str) -> Any:
         _, usable, size, norm, precision, limit, margin = law
         work, _, nowhere, at_arcs, at_ends = spare
         law, twist = (usable, size, norm, limit, margin), work[12][0]
-        worst, corner, critical = -1.0, first, 0
+        worst, corner, critical, single = -1.0, first, 0, 0
+        for i in range(len(arcs)):
+            if arcs[i, 0] == arcs[i, 1] and ends[i, 0] == ends[i, 1]:
+                single |= 1 << i
         for number in range(1 << len(arcs)):
-            bits, new = first ^ number, True
-            for i in range(len(arcs)):
-                end = (bits >> i) & 1
-                single = arcs[i, 0] == arcs[i, 1] and ends[i, 0] == ends[i, 1]
-                new = new and not (single and (number >> i) & 1)
-                at_arcs[i, 0] = at_arcs[i, 1] = arcs[i, end]
-                at_ends[i, 0] = at_ends[i, 1] = ends[i, end]
-            if not new:
+            if number & single:
                 continue
+            bits = first ^ number
+            for i in range(len(arcs)):
+                at_arcs[i, 0] = at_arcs[i, 1] = arcs[i, (bits >> i) & 1]
+                at_ends[i, 0] = at_ends[i, 1] = ends[i, (bits >> i) & 1]
             found, critical = _judge(
                 sides, at_arcs, at_ends, loads, law, precision, most, critical, twist, work, nowhere, True
             )  # fmt: skip
