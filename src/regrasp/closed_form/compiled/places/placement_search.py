@@ -311,6 +311,7 @@ def _value(digest: str) -> Any:
         _ = digest
         _, usable, size, norm, precision, limit, margin = law
         work, _, nowhere, at_arcs, at_ends = spare
+        at_arcs, at_ends = at_arcs[: len(arcs)], at_ends[: len(arcs)]  # some may have left
         law, twist = (usable, size, norm, limit, margin), work[12][0]
         worst, corner, critical, single = -1.0, first, 0, 0
         for i in range(len(arcs)):
