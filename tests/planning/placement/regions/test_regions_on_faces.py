@@ -7,6 +7,7 @@ import pytest
 
 import regrasp as rg
 from refusals import refusal
+from regrasp.planning.placement.laws import LAWS
 from values import WEIGHT, on_faces
 
 pytestmark = pytest.mark.laws
@@ -138,3 +139,16 @@ def test_what_has_no_regions_is_refused() -> None:
         assert words in str(refusal(lambda given=given: rg.contact_regions(*given)))
     with pytest.raises(rg.Infeasible, match="above max_force"):
         rg.contact_regions(box, grasp, WEIGHT, max_force=0.1)
+
+
+def test_a_load_after_none_is_made_of_columns_of_its_own() -> None:
+    from regrasp.closed_form.compiled.patches.patch_corners import corner_forces
+    from regrasp.closed_form.compiled.patches.patch_search import spare
+
+    points = np.array([[[1.0, 0, 0]], [[-0.5, 0.8, 0]], [[-0.5, -0.8, 0]]])
+    normals, forces = np.tile([0.0, 0, 1], (3, 1)), np.zeros((1, 2, 3, 3))
+    loads = np.array([np.zeros(6), [0.1, 0.0, 1, 0, 0, 0]])
+    law = (0.5, *LAWS["effort"].codes(), 1e-3)
+    corners = np.zeros((1, 3), int)
+    assert corner_forces(points, normals, corners, 0, loads, law, 9.0, forces, np.zeros((3, 6)), spare(3)) < 0
+    assert np.allclose(forces.sum(axis=2), loads[:, :3], atol=1e-6)

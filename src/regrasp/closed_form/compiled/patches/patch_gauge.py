@@ -149,12 +149,10 @@ def gauge(surface, patches, w, mu, size, norm, level, enough, precision, best, w
     for c in range(6):
         scale += abs(w[c])
         best[c] = 0.0
-    if scale == 0.0:
-        for c in range(6):
-            x[c] = 0.0
-        return 0.0
-    if not (again and _resumed(w, scale, work)):
+    if not (again and scale > 0.0 and _resumed(w, scale, work)):
         _begun(surface, patches, w, scale, work)
+    if scale == 0.0:  # columns of others are not left for the next
+        return 0.0
     proven = 0.0
     for _ in range(_MOST):
         value = 0.0
