@@ -113,9 +113,26 @@ def test_a_search_that_is_interrupted_writes_the_best_so_far_and_no_more_than_th
     assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
     code, out, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures")
     assert (code, err) == (0, "")
-    assert "Interrupted: the best so far is written" in out
+    assert "Interrupted: the grasp is written" in out
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["plan.json"]
     assert signal.getsignal(signal.SIGINT) is usual
+
+
+def test_an_interrupt_after_the_search_leaves_the_grasp(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was chosen, proven and printed, and then nothing was written."""
+    from regrasp import plots
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(plots, "plot_contact_regions", interrupted)
+    assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
+    code, out, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out")
+    assert (code, err) == (0, "")
+    assert "Interrupted: the grasp is written" in out
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"plan.json", "regions.json", "grasp.png"}
 
 
 @posix

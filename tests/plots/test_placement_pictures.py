@@ -141,7 +141,7 @@ def test_regions_on_faces_are_drawn_where_they_are() -> None:
     ids = [artist.get_gid() for artist in ax.collections]
     assert sum(str(name).startswith("region ") for name in ids) == 3
     words = [text.get_text() for text in ax.get_legend().get_texts()]
-    for name, word, radius in zip(on_faces().grasp.names, words, on_faces().radii, strict=False):
+    for name, word, radius in zip(on_faces().grasp.names, words, on_faces().reach, strict=False):
         assert word.startswith(f"{name} {radius:.2g}".rstrip("0"))
         assert ", alone " in word
     assert " m at once" in words[-1]

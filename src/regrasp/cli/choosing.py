@@ -26,7 +26,7 @@ def choose(
 ) -> dict[str, Any]:
     """Write the chosen grasp with its proof as plan.json, and draw it."""
     from regrasp.disk.staging import whole_folder
-    from regrasp.files import write_plan, write_regions
+    from regrasp.files import write_plan
     from regrasp.files.source import naming
     from regrasp.mechanics.value import one_line
     from regrasp.verification import verify
@@ -44,22 +44,24 @@ def choose(
         say(f"{name}: {one_line(remark)}")
     say(f"{one_line(scenario.title)}\n\n{chosen}" if scenario.title else chosen)
     say(verdict)
-    if interrupts:
-        say("\nInterrupted: the best so far is written, without regions and maps; an interrupt more ends it.")
-    regions = None if interrupts else _regions(chosen, scenario)
     with whole_folder(output) as folder:
         write_plan(chosen, folder / "plan.json")
-        if regions is not None:
-            said = verified(verify(regions), "regions.json")
-            say(f"\n{regions}\n{said}")
-            write_regions(regions, folder / "regions.json")
-        for figure, image in _pictures(chosen, regions, scenario, maps=not interrupts) if draw else ():
-            (folder / figure).write_bytes(image)
-        written = sorted(file.name for file in folder.iterdir())
+        files = {"plan.json"}
+        try:
+            if interrupts:
+                raise KeyboardInterrupt
+            for written in _more(chosen, scenario, folder, draw=draw):
+                files.add(written)
+        except KeyboardInterrupt:
+            say("\nInterrupted: the grasp is written, and no more than there was time for.")
+            for file in folder.iterdir():
+                if file.name not in files:
+                    file.unlink()
+    wrote = [output / file for file in sorted(files)]
     say("")
-    for file in written:
-        say(f"wrote {output / file}")
-    return verdict_facts(chosen, verdict, 0) | {"wrote": [output / file for file in written]}
+    for path in wrote:
+        say(f"wrote {path}")
+    return verdict_facts(chosen, verdict, 0) | {"wrote": wrote}
 
 
 @contextmanager
@@ -82,6 +84,24 @@ def _hearing() -> Iterator[list[int]]:
             signal.signal(signal.SIGINT, usual)
 
 
+def _more(
+    chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenario", folder: Path, *, draw: bool
+) -> Iterator[str]:
+    """Writes what stands beside the grasp, its regions, judged first, and pictures: the files' names."""
+    from regrasp.files import write_regions
+    from regrasp.verification import verify
+
+    regions = _regions(chosen, scenario)
+    if regions is not None:
+        verdict = verified(verify(regions), "regions.json")
+        say(f"\n{regions}\n{verdict}")
+        write_regions(regions, folder / "regions.json")
+        yield "regions.json"
+    for name, image in _pictures(chosen, regions, scenario) if draw else ():
+        (folder / name).write_bytes(image)
+        yield name
+
+
 def _regions(chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenario") -> Any:
     """The regions around its fingers; None, and why in words, where there are none."""
     from regrasp.errors import RegraspError
@@ -97,7 +117,7 @@ def _regions(chosen: "ChosenGrasp", scenario: "GraspScenario | SpaceGraspScenari
 
 
 def _pictures(
-    chosen: "ChosenGrasp", regions: Any, scenario: "GraspScenario | SpaceGraspScenario", *, maps: bool
+    chosen: "ChosenGrasp", regions: Any, scenario: "GraspScenario | SpaceGraspScenario"
 ) -> Iterator[tuple[str, bytes]]:
     """The grasp, the regions around its fingers, and of two on an outline the map of all places.
 
@@ -116,7 +136,7 @@ def _pictures(
     yield "grasp.png", image(plots.plot_chosen_grasp(chosen))
     if regions is not None:
         yield "regions.png", image(plots.plot_contact_regions(regions))
-    if not maps or not isinstance(shape, Outline) or len(chosen.grasp) != 2:
+    if not isinstance(shape, Outline) or len(chosen.grasp) != 2:
         return
     task: Any = scenario.task  # of the plane
     given: dict[str, Any] = {"max_force": chosen.max_force, "length": chosen.length}

@@ -132,13 +132,14 @@ def _bar(colour: str, words: str, linewidth: float = 4, alpha: float = 1.0) -> L
 def _say_widths(ax: Axes, regions: FaceRegions, units: Units) -> None:
     """In the legend, how far each finger may be off, and while the others are not, and all at once."""
     radii, alone = (
-        [short(float(f"{r:.2g}")) for r in each] for each in ([*regions.radii, regions.radius], regions.alone)
+        [short(float(f"{r:.2g}")) for r in each] for each in ([*regions.reach, regions.radius], regions.alone)
     )
     words = [
         f"{name} {radius}, alone {one} {units.length}"
         for name, radius, one in zip(regions.grasp.names, radii, alone, strict=False)
     ]
-    words.append(f"all off by {radii[-1]} {units.length} at once")
+    ended = ", or to its face's end" if regions.ended.any() else ""
+    words.append(f"all off by {radii[-1]} {units.length} at once{ended}")
     colours = [*contact_colours(regions.grasp).values(), GREY]
     legend(ax, list(map(_bar, colours, words)), ncols=1)  # two are wider than a column
 

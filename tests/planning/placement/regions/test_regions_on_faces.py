@@ -152,3 +152,16 @@ def test_a_load_after_none_is_made_of_columns_of_its_own() -> None:
     corners = np.zeros((1, 3), int)
     assert corner_forces(points, normals, corners, 0, loads, law, 9.0, forces, np.zeros((3, 6)), spare(3)) < 0
     assert np.allclose(forces.sum(axis=2), loads[:, :3], atol=1e-6)
+
+
+def test_what_is_said_of_regions_ends_where_faces_do() -> None:
+    """A finger on a strip 1 wide was said to have a radius larger than the part."""
+    found = on_faces()
+    assert not found.ended.any()
+    assert "end of the face" not in f"{found} {found!r}"
+    narrow = found.grasp.positions[0] + (found.patches[0] - found.grasp.positions[0]) / 4
+    cut = replace(found, patches=(narrow, *found.patches[1:]))
+    assert cut.ended.tolist() == [True, False, False]
+    assert cut.reach[0] == np.linalg.norm(narrow - found.grasp.positions[0], axis=1).max() < found.radii[0]
+    assert (cut.reach[1:] == found.radii[1:]).all()
+    assert all("or to the end of the face" in said for said in (str(cut), repr(cut)))

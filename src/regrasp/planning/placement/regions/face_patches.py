@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Self
 
+import numpy as np
+
 from regrasp.errors import InvalidInput
 from regrasp.mechanics.checks import Array, array, number
 from regrasp.mechanics.grasp import Grasp
@@ -10,6 +12,8 @@ from regrasp.mechanics.plain import listed
 from regrasp.mesh.mesh import Mesh
 from regrasp.planning.placement.proofs.sealed import Sealed
 from regrasp.planning.placement.proofs.shape_data import shape_of
+
+_ENDED = 1e-5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,16 +53,39 @@ class FaceRegions(Sealed):
     focus: Array
     forces: Array
 
+    @property
+    def reach(self) -> Array:
+        """(k,) ``radii``, or how far the polygon's farthest corner is, where its face ends before [m]."""
+        places = zip(self.patches, self.grasp.positions, strict=True)
+        farthest = [np.linalg.norm(patch - place, axis=1).max() for patch, place in places]
+        return np.minimum(self.radii, farthest)
+
+    @property
+    def ended(self) -> np.ndarray:
+        """(k,) whether a face ends before a finger is ``radius`` off."""
+        nearest = []
+        for patch, place in zip(self.patches, self.grasp.positions, strict=True):
+            sides = np.roll(patch, -1, axis=0) - patch
+            away = np.linalg.norm(np.cross(place - patch, sides), axis=1)
+            lengths = np.linalg.norm(sides, axis=1)
+            nearest.append(min(away[lengths > 0] / lengths[lengths > 0], default=0.0))
+        return np.asarray(np.array(nearest) < self.radius * (1 - _ENDED))
+
     def __repr__(self) -> str:
-        radii = ", ".join(f"{r:.4g}" for r in self.radii)
-        return f"FaceRegions(all off by {self.radius:.4g}, radii {radii})"
+        reach = ", ".join(f"{r:.4g}" for r in self.reach)
+        return f"FaceRegions(all off by {self.radius:.4g}{self._to_ends}, each by {reach})"
 
     def __str__(self) -> str:
-        rows = [f"how far fingers may miss along their faces: all at once {self.radius:.6g} any way"]
+        off = f"{self.radius:.6g} any way{self._to_ends}"
+        rows = [f"how far fingers may miss along their faces: all at once {off}"]
         rows.append(f"{'':10}{'each by':>14}{'alone':>14}")
-        for name, all_, alone in zip(self.grasp.names, self.radii, self.alone, strict=True):
+        for name, all_, alone in zip(self.grasp.names, self.reach, self.alone, strict=True):
             rows.append(f"{name:10}{all_:14.6g}{alone:14.6g}")
         return "\n".join(rows)
+
+    @property
+    def _to_ends(self) -> str:
+        return " or to the end of the face" if self.ended.any() else ""
 
     @classmethod
     def _checked(cls, given: dict[str, Any]) -> Self:
