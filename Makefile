@@ -17,7 +17,7 @@ test: checked tested
 
 tested: $(VENV)/installed-dev
 	$(BIN)/regrasp warm-up
-	$(BIN)/pytest -n $(WORKERS)
+	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 
 checked: $(VENV)/installed-dev
 	$(BIN)/ruff check .
