@@ -109,13 +109,20 @@ def test_a_search_that_is_interrupted_writes_the_best_so_far_and_no_more_than_th
         return ""
 
     monkeypatch.setattr(choosing, "_known", interrupted)
-    usual = signal.getsignal(signal.SIGINT)
-    assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
-    code, out, err = regrasp(capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures")
+    before = signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # ignored where tests run in the background
+    try:
+        assert regrasp(capsys, "new", "grasp", tmp_path / "grasp.toml")[0] == 0
+        code, out, err = regrasp(
+            capsys, "plan", tmp_path / "grasp.toml", "-o", tmp_path / "out", "--no-figures"
+        )
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert (code, err) == (0, "")
     assert "Interrupted: the grasp is written" in out
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["plan.json"]
-    assert signal.getsignal(signal.SIGINT) is usual
 
 
 def test_an_interrupt_after_the_search_leaves_the_grasp(

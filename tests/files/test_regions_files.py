@@ -53,7 +53,7 @@ def test_regions_come_back_equal_and_verify(
     assert rg.verify(again).ok
     status, out, err = regrasp(capsys, "verify", str(file))
     assert (status, err) == (0, "")
-    assert repr(regions) in out
+    assert str(regions) in out
     data = json.loads(file.read_text(encoding="utf-8"))
     assert signed(data) == data
 
