@@ -156,6 +156,8 @@ def test_an_interrupt_at_any_moment_is_one_line(delay: float, tmp_path: Path) ->
     early = "regrasp" not in err or ("in main" not in err and err.rstrip().endswith("KeyboardInterrupt"))
     if early and process.returncode in (1, -signal.SIGINT):
         return  # Python itself had not come to our first line, if to our modules
+    if "Remainder of file ignored" in err:
+        return  # Python took it for an error in a file that says where modules are, and went on
     if process.returncode == 0 and "in: <function _get_module_lock" in err:
         return  # a callback of Python's imports heard it, and what is raised there goes no further
     assert (process.returncode, err.strip()) in [(130, "Interrupted."), (0, "")]
