@@ -144,7 +144,7 @@ BOX = rg.Mesh.box(0.04, 0.03, 0.05)
 SHAPES = [
     (BRACKET, [BRACKET.contact_at(s, friction=0.4) for s in (0.3, 0.5, 3.98)], rg.Wrench([0, -1])),
     (ELLIPSE, [ELLIPSE.contact_at(s, friction=0.6) for s in (0.5, 3.8, 6.7)], rg.Wrench([0, -1])),
-    (BOX, [BOX.contact_at(p, friction=0.8) for p in ((0.02, 0, 0), (-0.02, 0.01, 0), (-0.02, -0.01, 0))],
+    (BOX, [BOX.contact_at([x, y, -0.025], friction=0.5) for x, y in ((0.01, 0.01), (-0.01, 0.01), (0, -.01))],
      rg.Wrench([0, 0, -2])),
 ]  # fmt: skip
 
