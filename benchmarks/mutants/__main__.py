@@ -263,7 +263,7 @@ def _run(area: str, fresh: bool) -> int:
         return (changed or not first) if row["verdict"] == OPEN else changed and row["verdict"] in again
 
     engine = Engine(modules, wanted, told, KEPT / f"{area}.seen.jsonl", plainly)
-    silent = ["-qq", "-p", "no:cacheprovider", "-p", "no:nbmake", "--tb=no", "--assert=plain"]
+    silent = ["-qq", "-p", "no:cacheprovider", "--tb=no", "--assert=plain"]
     pytest.main([*silent, "--capture=no", "--hypothesis-seed=0", *files], plugins=[engine])
     rows = [row for row in found.values() if drawn is None or row["key"] in drawn]
     rows += [

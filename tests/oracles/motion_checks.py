@@ -26,21 +26,19 @@ def to_faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         middle = face.mean(axis=0)
         radius = np.linalg.norm(face - middle, axis=1).max() * (1 + 1e-9)
         near = np.linalg.norm(points - middle, axis=1) <= best + radius
-        best[near] = np.minimum(best[near], to_face(points[near], *face))
+        best[near] = np.minimum(best[near], to_face(points[near], face))
     return best
 
 
-def to_face(points: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """(m,) distances of points from a triangle: above it to its plane, else to its sides."""
-    n = np.cross(b - a, c - a)
-    n = n / np.linalg.norm(n)
-    over, best = np.ones(len(points), dtype=bool), np.full(len(points), np.inf)
-    for p, q in ((a, b), (b, c), (c, a)):
-        side = q - p
-        over &= (points - p) @ np.cross(n, side) >= 0
-        s = np.clip((points - p) @ side / (side @ side), 0, 1)
-        best = np.minimum(best, np.linalg.norm(points - p - s[:, None] * side, axis=1))
-    return np.where(over, np.minimum(best, abs((points - a) @ n)), best)
+def to_face(points: np.ndarray, face: np.ndarray) -> np.ndarray:
+    """(m,) distances of points from a triangle (3, 3): its plane above and below it, else its sides."""
+    edges, ways = face[1:] - face[0], np.roll(face, -1, axis=0) - face
+    weights = np.linalg.lstsq(edges.T, (points - face[0]).T, rcond=None)[0].T
+    within = (weights >= 0).all(axis=1) & (weights.sum(axis=1) <= 1)
+    off = points[:, None] - face
+    along = np.clip((off * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
+    beside = np.linalg.norm(off - along[..., None] * ways, axis=2).min(axis=1)
+    return np.where(within, np.linalg.norm(off[:, 0] - weights @ edges, axis=1), beside)
 
 
 def axes(motions: Motions, at: np.ndarray, apart: float) -> list[np.ndarray]:

@@ -86,7 +86,8 @@ class LeastArc:
         """A width whose box no twist so far excludes, and just above it one that is excluded, or no room."""
         room = self._room(starts)
         width = farthest(lambda width: self.cuts.known(box(width)) is None, room, _HALVINGS)
-        return width, width if width == room else width + room / 2**_HALVINGS
+        excluded = min(width + 1.001 * room / 2**_HALVINGS, room)  # past the last halving, rounding too
+        return width, width if width == room else excluded
 
     def _halved(self, starts: Array) -> list[tuple[Array, float]]:
         """Both halves of a box of starts, cut where that helps most, and what is no wider in each."""
